@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
 
 from aionode._node.end_record import NodeEnd, short_text
+from aionode._restart import Backoff, wants_another
 from aionode._tracebacks import traceback_text
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import NodeNotRunningError
@@ -94,22 +95,15 @@ class Supervisor(Generic[NodeT]):
             raise ValueError(
                 f'Supervisor: restart={restart!r} is unknown; use "on-failure", "always" or "no"'
             )
-        if not 0 <= min_delay_sec <= max_delay_sec:
-            raise ValueError(
-                f"Supervisor: min_delay_sec={min_delay_sec}, max_delay_sec={max_delay_sec}; the "
-                "first delay must be at least 0 and at most the longest"
-            )
+        self._backoff = Backoff(min_delay_sec, max_delay_sec, "Supervisor")
         self._make_node = make_node
         self._restart = restart
-        self._min_delay_sec = min_delay_sec
-        self._max_delay_sec = max_delay_sec
         self._clock = SteadyClock(time_base=clock)
         self._state: Literal["starting", "running", "restarting", "ended"] = "starting"
         self._node: NodeT | None = None
         self._name = ""
         self._since_ns = 0
         self._restarts = 0
-        self._failed_in_a_row = 0
         self._last_end: NodeEnd | None = None
         self._error = ""
         self._tasks: asyncio.TaskGroup | None = None
@@ -238,20 +232,13 @@ class Supervisor(Generic[NodeT]):
         # A cancellation during the end of a node that failed is hidden by the node's exceptions.
         if self._work is not None and self._work.cancelling():
             return False
-        return self._restart == "always" or (
-            self._restart == "on-failure" and end.reason == "failed"
-        )
+        return wants_another(self._restart, failed=end.reason == "failed")
 
     async def _pause(self, end: NodeEnd) -> None:
         """Wait before the next start, longer after each failure in a row."""
         was_running, self._state = self._state == "running", "restarting"
-        ran_ns = self._clock.now_ns() - self._since_ns
-        if was_running and ran_ns >= self._max_delay_sec * S_TO_NS:
-            self._failed_in_a_row = 0
-        # The exponent is bounded: 2.0**1024 overflows, after a week of failures.
-        factor = 2.0 ** min(self._failed_in_a_row, 64)
-        delay_sec = min(self._max_delay_sec, self._min_delay_sec * factor)
-        self._failed_in_a_row += 1
+        ran_ns = self._clock.now_ns() - self._since_ns if was_running else 0
+        delay_sec = self._backoff.delay_after(ran_ns / S_TO_NS)
         trace = "" if end.error is None else ":\n" + traceback_text(end.error)
         get_logger("aionode.supervisor").error(
             f"node {self._name} {end.reason}; restarting in {delay_sec:g} s{trace}"

@@ -65,6 +65,7 @@ PROCESSES = (
     "tests/processes/",
     "tests/faults/",
     "tests/attacks/",
+    "tests/system/",
     "tests/cli/test_terminal.py",
     "tests/cli/test_ending.py",
     "tests/cli/test_shells.py",

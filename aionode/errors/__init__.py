@@ -30,6 +30,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── InvalidROSArgsError (ValueError)
     │   └── UnknownROSArgsError
     ├── InvalidRemapRuleError (ValueError)
+    ├── MemberNotFoundError (LookupError)
     ├── MessageError (ValueError)
     ├── LeaseExpiredError (TimeoutError)
     ├── LeaseHeldError (RuntimeError)
@@ -49,6 +50,8 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── ParameterFileError (ValueError, RuntimeError)
     ├── NodeNameNonExistentError (LookupError, RuntimeError)
     ├── NodeNotRunningError (RuntimeError)
+    ├── NotReadyError (TimeoutError)
+    ├── ProgramStartError (OSError)
     ├── QueueFullError (RuntimeError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError (TimeoutError)
@@ -71,6 +74,8 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from aionode.errors import _values
 from aionode.errors._values import (
@@ -157,17 +162,20 @@ __all__ = [
     "LeaseExpiredError",
     "LeaseHeldError",
     "LookupException",
+    "MemberNotFoundError",
     "MessageError",
     "NameValidationException",
     "NoDataForExtrapolationException",
     "NodeNameNonExistentError",
     "NodeNotRunningError",
+    "NotReadyError",
     "ParameterAlreadyDeclaredException",
     "ParameterException",
     "ParameterFileError",
     "ParameterImmutableException",
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
+    "ProgramStartError",
     "QueueFullError",
     "RequestRefusedError",
     "RequestTimeoutError",
@@ -408,6 +416,52 @@ class NodeNotRunningError(AionodeError, RuntimeError):
         self.node = node
         self.problem = problem
         super().__init__(f"node {node}: not running: {problem}")
+
+
+class NotReadyError(AionodeError, TimeoutError):
+    """A member of a system is not ready: something is missing, or it has ended.
+
+    Attributes:
+        name: The member.
+        problem: What is missing, or how it ended.
+        last_lines: What it printed last.
+    """
+
+    def __init__(self, name: str, problem: str, last_lines: Sequence[str] = ()) -> None:
+        self.name = name
+        self.problem = problem
+        self.last_lines = tuple(last_lines)
+        lines = "\n".join(f"  {line}" for line in self.last_lines)
+        printed = f"; its last lines:\n{lines}" if lines else "; it has printed nothing"
+        super().__init__(f"{name}: not ready: {problem}{shortened(printed)}")
+
+
+class MemberNotFoundError(AionodeError, LookupError):
+    """A system has no member of this name.
+
+    Attributes:
+        name: The name that was looked up.
+        known: The names of its members.
+    """
+
+    def __init__(self, name: str, known: Sequence[str]) -> None:
+        self.name = name
+        self.known = tuple(known)
+        super().__init__(f"{name}: no such member; the system has {', '.join(known) or 'none'}")
+
+
+class ProgramStartError(AionodeError, OSError):
+    """A program could not be started.
+
+    Attributes:
+        argv: Its command line.
+        problem: Why not.
+    """
+
+    def __init__(self, argv: Sequence[str], problem: str) -> None:
+        self.argv = list(argv)
+        self.problem = problem
+        super().__init__(f"{' '.join(self.argv)}: could not be started: {problem}")
 
 
 class TransportError(AionodeError, ConnectionError):

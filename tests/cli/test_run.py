@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from aionode._node_source import node_maker
 from aionode.cli._main import main
-from aionode.cli._nouns.run import node_maker
 from aionode.errors import CommandError
 
 SOURCE = """

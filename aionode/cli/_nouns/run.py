@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 import ast
-import importlib
-import importlib.util
 import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from aionode.errors import CommandError
+from aionode._node_source import FITS, node_maker
 from aionode.interfaces import shipped_packages
-from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from types import ModuleType
+    from collections.abc import Sequence
 
-__all__ = ["node_maker", "run_command"]
+__all__ = ["run_command"]
 
 ROS_ARGS = "--ros-args"
-
-FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker"
 
 
 @click.command(
@@ -93,28 +87,6 @@ def run_command(
     run(*(node_maker(spec) for spec in specs), args=list(ros_args))
 
 
-def node_maker(spec: str) -> Callable[[], Any]:
-    """Return the class or function named by ``module:name`` or ``file.py:name``.
-
-    The name may be left out if the module defines exactly one node class.
-
-    Raises:
-        CommandError: there is no such module, or it has no node class or function of that name.
-    """
-    source, _, name = spec.partition(":")
-    module = module_of(source, spec)
-    if not name:
-        return only_node_class(module, spec)
-    maker: Any = module
-    for part in name.split("."):
-        maker = getattr(maker, part, None)
-    if not callable(maker) or (isinstance(maker, type) and not issubclass(maker, Node)):
-        known = ", ".join(node_classes(module)) or "none"
-        what = "nothing of that name" if maker is None else "neither a node class nor a function"
-        raise CommandError(f"{spec}: {what} in {source}; its node classes: {known}")
-    return maker  # type: ignore[no-any-return]  # checked to be callable above
-
-
 def is_rclpy_program(name: str) -> bool:
     """Return whether a name is that of a file that imports rclpy or ROS's message packages.
 
@@ -164,60 +136,3 @@ def run_program(interfaces: Sequence[str], program: Sequence[str]) -> NoReturn:
     if sys.platform == "win32":  # where the new process would not take the place of this one
         sys.exit(subprocess.run(command, check=False).returncode)  # noqa: S603 (the user's program)
     os.execv(sys.executable, command)  # noqa: S606 (the same)
-
-
-def module_of(source: str, spec: str) -> ModuleType:
-    """Return the module of this name, or in this file."""
-    if not source:
-        raise CommandError(f"{spec!r}: no module; {FITS}")
-    if source.endswith(".py"):
-        return module_in_file(Path(source), spec)
-    try:
-        return importlib.import_module(source)
-    except ModuleNotFoundError as error:
-        if error.name is None or not f"{source}.".startswith(f"{error.name}."):
-            raise CommandError(
-                f"{spec}: {source} needs {error.name}, which is not installed"
-            ) from error
-        where = f"here ({Path.cwd()}) or installed"
-        raise CommandError(f"{spec}: no module {error.name} {where}; {FITS}") from error
-
-
-def module_in_file(path: Path, spec: str) -> ModuleType:
-    """Return the module in a file; like a program, it may import modules beside it."""
-    if not path.is_file():
-        raise CommandError(f"{spec}: no file {path} here ({Path.cwd()}); {FITS}")
-    loaded = sys.modules.get(path.stem)
-    if loaded is not None and loaded.__spec__ is not None:
-        origin = loaded.__spec__.origin
-        if origin is not None and Path(origin).resolve() == path.resolve():
-            return loaded
-    sys.path.insert(0, str(path.parent.resolve()))
-    module_spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert module_spec is not None  # noqa: S101  # its name ends in .py
-    assert module_spec.loader is not None  # noqa: S101  # as above
-    module = importlib.util.module_from_spec(module_spec)
-    sys.modules[path.stem] = module
-    module_spec.loader.exec_module(module)
-    return module
-
-
-def node_classes(module: ModuleType) -> dict[str, type[Node]]:
-    """Return the node classes that a module defines itself."""
-    return {
-        name: value
-        for name, value in vars(module).items()
-        if isinstance(value, type)
-        and issubclass(value, Node)
-        and value.__module__ == module.__name__
-    }
-
-
-def only_node_class(module: ModuleType, spec: str) -> type[Node]:
-    """Return the only node class of a module."""
-    known = node_classes(module)
-    if len(known) != 1:
-        raise CommandError(
-            f"{spec}: give a class, as {spec}:NAME; its node classes: {', '.join(known) or 'none'}"
-        )
-    return next(iter(known.values()))

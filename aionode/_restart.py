@@ -1,0 +1,47 @@
+"""When what has ended is started again: by which policy, and after which delay."""
+
+from __future__ import annotations
+
+__all__ = ["Backoff", "wants_another"]
+
+
+class Backoff:
+    """The delays between starts: doubled with each failure in a row, up to a limit.
+
+    Args:
+        min_delay_sec: The first delay, in seconds.
+        max_delay_sec: The longest delay, in seconds; who has run for so long has not failed "in a
+            row" any more.
+        subject: Who restarts, for errors.
+
+    Raises:
+        ValueError: the delays are negative or not in order.
+    """
+
+    def __init__(self, min_delay_sec: float, max_delay_sec: float, subject: str) -> None:
+        if not 0 <= min_delay_sec <= max_delay_sec:
+            raise ValueError(
+                f"{subject}: min_delay_sec={min_delay_sec}, max_delay_sec={max_delay_sec}; the "
+                "first delay must be at least 0 and at most the longest"
+            )
+        self._min_delay_sec = min_delay_sec
+        self._max_delay_sec = max_delay_sec
+        self.failed_in_a_row = 0
+
+    def delay_after(self, ran_sec: float) -> float:
+        """Count a failure, and return the delay before the next start, in seconds.
+
+        Args:
+            ran_sec: How long the last one has run, in seconds; 0 if it did not start.
+        """
+        if ran_sec > 0 and ran_sec >= self._max_delay_sec:
+            self.failed_in_a_row = 0
+        # The exponent is bounded: 2.0**1024 overflows, after a week of failures.
+        factor = 2.0 ** min(self.failed_in_a_row, 64)
+        self.failed_in_a_row += 1
+        return min(self._max_delay_sec, self._min_delay_sec * factor)
+
+
+def wants_another(policy: str, *, failed: bool) -> bool:
+    """Return whether a restart policy asks for another start."""
+    return policy == "always" or (policy == "on-failure" and failed)

@@ -1,0 +1,350 @@
+"""The guardian: starts the programs of a system, and stops them when the system is gone.
+
+It is a program of its own, which imports nothing of aionode: ``python -I -S _guardian.py FD``. Its
+only link is a socket to the supervisor. When that closes, however the supervisor has ended, the
+guardian stops every program, the last one first, and ends after the last process has.
+
+Each program is started in a session of its own. The guardian is the subreaper of all of them
+(``PR_SET_CHILD_SUBREAPER``): a process that loses its parent, such as one that forked twice, is
+the guardian's child from then on, so every process of the system is found below the guardian.
+Which program such a process belongs to, its session tells, its parent, or the token in its
+environment.
+
+Commands and events are packets of JSON. Commands: ``start`` (with five descriptors: the description
+of the program, its three standard streams, and the end of its output that is read), ``stop``,
+``kill``. Events: ``started``, ``refused``, ``exited``, ``gone`` (no process of it is left).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from typing import Any
+
+__all__ = ["TOKEN_VARIABLE", "Guardian", "Program", "main"]
+
+TOKEN_VARIABLE = "AIONODE_SYSTEM"  # noqa: S105  # no secret: says which system a process is of
+PR_SET_CHILD_SUBREAPER = 36
+PR_SET_NAME = 15
+LOOK_S = 0.1
+"""How often processes that are to end are looked for, in seconds."""
+
+
+class Program:
+    """A program that was started, and the processes that it has started.
+
+    Attributes:
+        number: By which the supervisor knows it.
+        pid: Of its first process; also its session and process group.
+        ended: Whether the first process has ended.
+        gone: Whether no process is left.
+        output: The end of its output that is read when the supervisor is gone.
+        ladder: The signals that end it, and how long each is waited for, in seconds.
+    """
+
+    def __init__(self, number: int, pid: int, output: int, ladder: list[tuple[str, float]]) -> None:
+        self.number, self.pid, self.output, self.ladder = number, pid, output, ladder
+        self.token = token_of(number)
+        self.ended = self.gone = False
+        self.stopping = False
+        self._steps: list[tuple[str, float]] = []
+        self._due = 0.0
+
+    def stop(self) -> None:
+        """Begin with the first signal, unless a stop is under way."""
+        if not self.stopping:
+            self.stopping = True
+            self._steps, self._due = list(self.ladder), 0.0
+
+    def kill(self) -> None:
+        """Let SIGKILL be the next signal, now."""
+        self.stopping = True
+        self._steps, self._due = [], 0.0
+
+    def note_end(self) -> None:
+        """Record the end of the first process; what it has left behind is stopped from now on."""
+        self.ended = True
+        if self._steps or not self.stopping:
+            self.stopping = False
+            self.stop()
+
+    def advance(self, rest: list[int]) -> None:
+        """Send the signal that is due, if any.
+
+        As long as the first process lives, SIGINT and SIGTERM go to its process group alone, as
+        from a terminal: it may have an order in which to end its own children.
+
+        Args:
+            rest: The processes of the program.
+        """
+        now = time.monotonic()
+        if now < self._due:
+            return
+        name, wait_s = self._steps.pop(0) if self._steps else ("SIGKILL", 0.0)
+        self._due = now + wait_s
+        number = signal.Signals[name]
+        if not self.ended and number != signal.SIGKILL:
+            send(os.killpg, self.pid, number)
+        else:
+            for pid in rest:
+                send(os.kill, pid, number)
+
+
+def send(function: Any, pid: int, number: signal.Signals) -> None:
+    """Send a signal to a process or a group that may have ended meanwhile."""
+    # It has ended meanwhile, or runs as another user, as with sudo.
+    with suppress(ProcessLookupError, PermissionError):
+        function(pid, number)
+
+
+def token_of(number: int) -> str:
+    """Return what stands in the environment of the processes of a program."""
+    return f"{os.getpid()}.{number}"
+
+
+class Guardian:
+    """Starts programs, and reports and stops them, in one thread.
+
+    Args:
+        link: The socket to the supervisor.
+    """
+
+    def __init__(self, link: socket.socket) -> None:
+        self._link: socket.socket | None = link
+        self._programs: dict[int, Program] = {}  # in the order of their starts
+        self._wake, wake = socket.socketpair()
+        self._wake.setblocking(False)
+        wake.setblocking(False)
+        self._waker = wake
+        for name in ("SIGINT", "SIGTERM", "SIGHUP", "SIGCHLD"):
+            signal.signal(signal.Signals[name], lambda *_: None)
+        signal.set_wakeup_fd(wake.fileno(), warn_on_full_buffer=False)
+
+    def run(self) -> None:
+        """Serve the supervisor until it is gone, and every process of the system has ended."""
+        while self._link is not None or not self._is_over():
+            self._wait()
+            self._reap()
+            if self._link is None:
+                self._stop_next()
+            self._advance()
+
+    def _is_over(self) -> bool:
+        return all(program.gone for program in self._programs.values()) and not children()
+
+    def _wait(self) -> None:
+        poll = select.poll()
+        poll.register(self._wake, select.POLLIN)
+        if self._link is not None:
+            poll.register(self._link, select.POLLIN)
+        else:
+            for program in self._programs.values():
+                if program.output >= 0:
+                    poll.register(program.output, select.POLLIN)
+        busy = self._link is None or any(
+            program.stopping and not program.gone for program in self._programs.values()
+        )
+        for descriptor, _ in poll.poll(LOOK_S * 1000 if busy else None):
+            if descriptor == self._wake.fileno():
+                self._wake.recv(4096)
+            elif self._link is not None:
+                self._receive(self._link)
+            else:
+                self._drain(descriptor)
+
+    def _drain(self, descriptor: int) -> None:
+        """Read what nobody else does, so that a program that prints as it ends is not blocked."""
+        if not os.read(descriptor, 1 << 16):
+            for program in self._programs.values():
+                if program.output == descriptor:
+                    os.close(descriptor)
+                    program.output = -1
+
+    # Commands and events
+
+    def _receive(self, link: socket.socket) -> None:
+        try:
+            packet, descriptors, _, _ = socket.recv_fds(link, 65536, 5)
+        except ConnectionError:
+            packet, descriptors = b"", []
+        if not packet:
+            self._link = None
+            link.close()
+            return
+        command = json.loads(packet)
+        if command["do"] == "start":
+            self._start(command["number"], *descriptors)
+        elif command["do"] == "stop":
+            program = self._programs.get(command["number"])
+            if program is not None and not program.gone:
+                program.stop()
+        elif command["do"] == "kill":
+            for program in self._programs.values():
+                program.kill()
+
+    def _tell(self, **event: Any) -> None:
+        if self._link is not None:
+            with suppress(OSError):  # it is gone, which the next look shows
+                self._link.send(json.dumps(event).encode())
+
+    def _start(
+        self, number: int, description: int, stdin: int, stdout: int, stderr: int, output: int
+    ) -> None:
+        with open(description, "rb") as file:  # a descriptor
+            program = json.load(file)
+        env = program["env"]
+        env[TOKEN_VARIABLE] = ":".join(filter(None, [env.get(TOKEN_VARIABLE), token_of(number)]))
+        try:
+            process = subprocess.Popen(  # noqa: S603  # the programs of the user's system
+                program["argv"],
+                env=env,
+                cwd=program["cwd"],
+                stdin=stdin,
+                stdout=stdout,
+                stderr=stderr,
+                start_new_session=True,
+                preexec_fn=joining(program["cgroup"]),  # noqa: PLW1509  # it has no threads
+            )
+        except (OSError, subprocess.SubprocessError) as error:
+            os.close(output)
+            self._tell(event="refused", number=number, text=str(error))
+        else:
+            process.returncode = 0  # it is reaped here, not by subprocess
+            self._programs[number] = Program(number, process.pid, output, program["ladder"])
+            self._tell(event="started", number=number, pid=process.pid)
+        finally:
+            for descriptor in (stdin, stdout, stderr):
+                os.close(descriptor)
+
+    # Processes
+
+    def _reap(self) -> None:
+        by_pid = {one.pid: one for one in self._programs.values() if not one.ended}
+        while True:
+            try:
+                pid, status = os.waitpid(-1, os.WNOHANG)
+            except ChildProcessError:
+                return
+            if not pid:
+                return
+            program = by_pid.get(pid)
+            if program is not None:
+                program.note_end()
+                code = os.waitstatus_to_exitcode(status)
+                self._tell(event="exited", number=program.number, code=code)
+
+    def _stop_next(self) -> None:
+        """Stop the last program that is not stopped; those before it when it has gone."""
+        for program in reversed(self._programs.values()):
+            if not program.gone:
+                program.stop()
+                return
+        for pid in children():  # of no program: their sessions and environments are new
+            send(os.kill, pid, signal.SIGKILL)
+
+    def _advance(self) -> None:
+        stopping = [one for one in self._programs.values() if one.stopping and not one.gone]
+        if not stopping:
+            return
+        owned = self._owned()
+        for program in stopping:
+            rest = owned.get(program.number, [])
+            if program.ended and not rest:
+                program.gone = True
+                self._forget(program)
+                self._tell(event="gone", number=program.number)
+            else:
+                program.advance(rest)
+
+    def _forget(self, program: Program) -> None:
+        if self._link is not None:
+            if program.output >= 0:
+                os.close(program.output)
+            del self._programs[program.number]
+
+    def _owned(self) -> dict[int, list[int]]:
+        """Return the live processes of each program, by its number."""
+        sessions = {program.pid: program.number for program in self._programs.values()}
+        tokens = {program.token: program.number for program in self._programs.values()}
+        owners: dict[int, int] = {}
+        for pid, parent, session in descendants():
+            number = sessions.get(session, owners.get(parent))
+            if number is None:
+                number = next((tokens[one] for one in tokens_in(pid) if one in tokens), None)
+            if number is not None:
+                owners[pid] = number
+        owned: dict[int, list[int]] = {}
+        for pid, number in owners.items():
+            owned.setdefault(number, []).append(pid)
+        return owned
+
+
+def joining(cgroup: str | None) -> Any:
+    """Return what a new process does before it becomes the program: it enters its cgroup."""
+    if cgroup is None:
+        return None
+
+    def join() -> None:
+        with open(f"{cgroup}/cgroup.procs", "w") as file:  # noqa: PTH123
+            file.write("0")
+
+    return join
+
+
+def descendants() -> list[tuple[int, int, int]]:
+    """Return process, parent and session of all live descendants, parents first."""
+    below: dict[int, list[tuple[int, int, int]]] = {}
+    for name in os.listdir("/proc"):  # noqa: PTH208  # every import here takes time at each start
+        if name.isdigit() and (fields := stat_of(name)) and fields[0] not in {"Z", "X"}:
+            parent, session = int(fields[1]), int(fields[3])
+            below.setdefault(parent, []).append((int(name), parent, session))
+    found = below.get(os.getpid(), [])
+    for pid, _, _ in found:  # which grows meanwhile
+        found.extend(below.get(pid, []))
+    return found
+
+
+def children() -> list[int]:
+    """Return the live processes below this one."""
+    return [pid for pid, _, _ in descendants()]
+
+
+def stat_of(name: str) -> list[str]:
+    """Return the fields of ``/proc/PID/stat`` after the name of the program; none if it is gone."""
+    try:
+        with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as file:  # noqa: PTH123
+            return file.read().rpartition(")")[2].split()
+    except OSError:
+        return []
+
+
+def tokens_in(pid: int) -> list[str]:
+    """Return the tokens in the environment of a process; none if it cannot be read."""
+    try:
+        with open(f"/proc/{pid}/environ", "rb") as file:  # noqa: PTH123
+            entries = file.read().split(b"\0")
+    except OSError:
+        return []
+    start = f"{TOKEN_VARIABLE}=".encode()
+    values = [entry[len(start) :].decode() for entry in entries if entry.startswith(start)]
+    return values[0].split(":") if values else []
+
+
+def main() -> None:
+    """Serve the supervisor behind the socket that is the only argument."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+    libc.prctl(PR_SET_NAME, b"aionode-guard", 0, 0, 0)
+    Guardian(socket.socket(fileno=int(sys.argv[1]))).run()
+
+
+if __name__ == "__main__":
+    main()

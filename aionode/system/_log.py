@@ -1,0 +1,238 @@
+"""One log of all members of a system: on a stream, and in a file for each member on request."""
+
+from __future__ import annotations
+
+import io
+import os
+import stat
+import sys
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Final, TextIO
+
+import msgspec
+
+from aionode._streams import accepts, is_lost
+from aionode.clock import MachineTime
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["SystemLog"]
+
+LAST_LINES: Final = 20
+"""How many lines of a member are shown when it has failed."""
+
+KEPT_BYTES: Final = 16_384
+"""How many bytes of a member's last lines are kept."""
+
+LONGEST_LINE: Final = 65_536
+"""How many bytes of a line are waited for until its end."""
+
+PIECE: Final = 4096
+"""How many bytes a pipe takes at once, if it takes any: PIPE_BUF."""
+
+COLORS: Final = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)
+
+
+class SystemLog:
+    """The merged output of a system: each line with its time and the name of its member.
+
+    Nothing is dropped while the system runs: when the stream takes no more, the members' output
+    waits in their pipes. Output that nobody can read any more is dropped.
+
+    Args:
+        stream: Where the lines are written; ``sys.stdout`` by default, as it is then.
+        json: Whether each line is a record with ``time``, ``name`` and ``text``.
+        color: Whether names have colours; by default on a terminal, unless ``NO_COLOR`` is set.
+        folder: A folder for files, ``NAME.log`` for each member, and ``system.log``; none by
+            default. It is created.
+        max_bytes: How large a file becomes before it is renamed to ``NAME.log.1``, in bytes.
+        backups: How many renamed files are kept of each.
+
+    Raises:
+        OSError: the folder cannot be created.
+    """
+
+    def __init__(
+        self,
+        stream: TextIO | None = None,
+        *,
+        json: bool = False,
+        color: bool | None = None,
+        folder: str | os.PathLike[str] | None = None,
+        max_bytes: int = 10_000_000,
+        backups: int = 5,
+    ) -> None:
+        self._stream = sys.stdout if stream is None else stream
+        self._descriptor = descriptor_of(self._stream)
+        self._json = json
+        is_terminal = self._descriptor is not None and os.isatty(self._descriptor)
+        self._color = (
+            is_terminal and "NO_COLOR" not in os.environ and not json if color is None else color
+        )
+        self._files: dict[str, RotatingFile] = {}
+        self._folder = None if folder is None else Path(folder)
+        if self._folder is not None:
+            self._folder.mkdir(parents=True, exist_ok=True)
+        self._max_bytes, self._backups = max_bytes, backups
+        self._time = MachineTime()
+        self._width = len("system")
+        self._colors: dict[str, int] = {}
+        self._unfinished: dict[str, bytes] = {}
+        self._last: dict[str, bytes] = {}
+        self._unwritten = bytearray()
+        self.listeners: list[Callable[[bytes], object]] = []
+
+    def add_member(self, name: str) -> None:
+        """Reserve a colour and the width of a name, before the first line of it."""
+        self._colors.setdefault(name, COLORS[len(self._colors) % len(COLORS)])
+        self._width = max(self._width, len(name))
+
+    def note(self, text: str) -> None:
+        """Write a line of the system's own."""
+        self.write("system", f"{text}\n".encode())
+
+    def write(self, name: str, output: bytes) -> None:
+        """Write what a member has printed; the rest of a line waits for its end."""
+        lines, newline, rest = (self._unfinished.pop(name, b"") + output).rpartition(b"\n")
+        if len(rest) > LONGEST_LINE:
+            lines, newline, rest = lines + newline + rest, b"\n", b""
+        if rest:
+            self._unfinished[name] = rest
+        if newline:
+            self._write_lines(name, lines)
+
+    def end_line(self, name: str) -> None:
+        """Write the rest of a line whose end will not come."""
+        if rest := self._unfinished.pop(name, b""):
+            self._write_lines(name, rest)
+
+    def last_lines(self, name: str) -> list[str]:
+        """Return the last lines of a member, 20 at most."""
+        text = (self._last.get(name, b"") + self._unfinished.get(name, b"")).decode(
+            errors="replace"
+        )
+        return text.splitlines()[-LAST_LINES:]
+
+    def _write_lines(self, name: str, lines: bytes) -> None:
+        self._last[name] = (self._last.get(name, b"") + lines[-KEPT_BYTES:] + b"\n")[-KEPT_BYTES:]
+        now_ns = self._time.system_ns()
+        moment = datetime.fromtimestamp(now_ns / 1e9).astimezone()
+        if self._json:
+            text = records(moment.isoformat(timespec="milliseconds"), name, lines)
+        else:
+            text = prefixed(self._prefix(name, moment), lines)
+        if self._folder is not None:
+            stamp = f"{moment:%Y-%m-%d %H:%M:%S}.{moment.microsecond // 1000:03} ".encode()
+            self._file(name).write(prefixed(stamp, lines))
+        for listener in self.listeners:
+            listener(text)
+        if self._descriptor is None:
+            self._stream.write(text.decode(errors="replace"))
+        else:
+            self._unwritten += text
+            self.flush()
+
+    def _prefix(self, name: str, moment: datetime) -> bytes:
+        stamp = f"{moment:%H:%M:%S}.{moment.microsecond // 1000:03}"
+        label = f"{name:>{self._width}} |"
+        if self._color:
+            label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
+        return f"{stamp} {label} ".encode()
+
+    def flush(self) -> bool:
+        """Write what the stream takes without blocking, and return whether that was everything."""
+        descriptor = self._descriptor
+        if descriptor is None:
+            return True
+        is_file = stat.S_ISREG(os.fstat(descriptor).st_mode)
+        while self._unwritten:
+            if not is_file and not accepts(descriptor):
+                return False
+            piece = self._unwritten if is_file else self._unwritten[:PIECE]
+            try:
+                written = os.write(descriptor, piece)
+            except BlockingIOError:
+                return False
+            except OSError:
+                if not is_lost(descriptor) and not is_file:
+                    raise
+                written = len(self._unwritten)  # nobody can read it any more, or the disk is full
+            del self._unwritten[:written]
+        return True
+
+    def _file(self, name: str) -> RotatingFile:
+        if name not in self._files:
+            assert self._folder is not None  # noqa: S101  # checked by the caller
+            path = self._folder / f"{name.strip('/').replace('/', '.')}.log"
+            self._files[name] = RotatingFile(path, self._max_bytes, self._backups)
+        return self._files[name]
+
+    def close(self) -> None:
+        """Write what is left, as far as the stream takes it, and close the files."""
+        for name in list(self._unfinished):
+            self.end_line(name)
+        self.flush()
+        for file in self._files.values():
+            file.close()
+        self._files.clear()
+
+
+def descriptor_of(stream: TextIO) -> int | None:
+    """Return the descriptor of a stream; None if it has none, such as io.StringIO."""
+    try:
+        stream.flush()
+        return stream.fileno()
+    except (io.UnsupportedOperation, AttributeError, ValueError):
+        return None
+
+
+def prefixed(prefix: bytes, lines: bytes) -> bytes:
+    """Return lines, each with a prefix. One call in C for a megabyte: programs may log a lot."""
+    return prefix + lines.replace(b"\n", b"\n" + prefix) + b"\n"
+
+
+def records(time: str, name: str, lines: bytes) -> bytes:
+    """Return lines as records of JSON."""
+    encode = msgspec.json.encode
+    return b"".join(
+        encode({"time": time, "name": name, "text": line.decode(errors="replace")}) + b"\n"
+        for line in lines.split(b"\n")
+    )
+
+
+class RotatingFile:
+    """A file that is renamed to ``.1`` when it is full, as ``.1`` to ``.2``, and so on.
+
+    Args:
+        path: The file; what is there already stays.
+        max_bytes: When it is full.
+        backups: How many renamed ones are kept.
+    """
+
+    def __init__(self, path: Path, max_bytes: int, backups: int) -> None:
+        self._path, self._max_bytes, self._backups = path, max_bytes, backups
+        self._file = path.open("ab", buffering=0)
+
+    def write(self, text: bytes) -> None:
+        """Append whole lines."""
+        if self._file.tell() and self._file.tell() + len(text) > self._max_bytes:
+            self._rotate()
+        self._file.write(text)
+
+    def _rotate(self) -> None:
+        self._file.close()
+        for number in range(self._backups, 0, -1):
+            older = self._path.with_name(f"{self._path.name}.{number}")
+            newer = self._path.with_name(f"{self._path.name}.{number - 1}") if number > 1 else None
+            source = self._path if newer is None else newer
+            if source.exists():
+                source.replace(older)
+        if not self._backups:
+            self._path.unlink()
+        self._file = self._path.open("ab", buffering=0)
+
+    def close(self) -> None:
+        """Close it."""
+        self._file.close()

@@ -1,0 +1,192 @@
+"""A node as a member of a system: tasks of this process, or a process of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import inspect
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from aionode._node.end_record import failure_text
+from aionode._tracebacks import traceback_text
+from aionode.arguments import Usage, parse_arguments
+from aionode.context import Context
+from aionode.node import Node
+from aionode.system._member import Member
+from aionode.system._status import MemberEnd
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from aionode.system._member import Host, Options
+
+__all__ = ["NodeMember", "Parameters", "program_of", "ros_arguments"]
+
+Parameters = Mapping[str, Any] | str | os.PathLike[str]
+
+
+class NodeMember(Member):
+    """A node that runs as tasks of this process; each start makes a new one.
+
+    Args:
+        name: Its name in the system.
+        host: The system.
+        options: What both kinds have in common.
+        make_node: Makes it.
+        context: The context that it joins, unless `make_node` chooses another one.
+        arguments: Its ROS arguments, as on a command line.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        host: Host,
+        options: Options,
+        make_node: Callable[[], Node],
+        context: Context,
+        arguments: Sequence[str],
+    ) -> None:
+        super().__init__(name, host, options)
+        self._make_node = make_node
+        self._context = context
+        self._arguments = parse_arguments(["--ros-args", *arguments])
+        self._arguments.refuse_unknown()
+
+    async def run_once(self, stop: asyncio.Event) -> MemberEnd:
+        """Make the node, and run it until it ends."""
+        try:
+            node = self._made()
+            async with node:
+                self.note_running(os.getpid())
+                stopper = self.host.tasks.create_task(self._stop_at(stop, node))
+                try:
+                    await node.until_destroyed()
+                finally:
+                    stopper.cancel()
+        except Exception as error:  # noqa: BLE001  # shown in the log and the status
+            self.host.log.write(self.name, traceback_text(error).encode())
+            return MemberEnd(
+                self.name, failed=True, text=f"failed: {failure_text(error)}", status=1
+            )
+        return MemberEnd(self.name, failed=False, text="ended", status=0)
+
+    async def _stop_at(self, stop: asyncio.Event, node: Node) -> None:
+        await stop.wait()
+        self.set_state("stopping")
+        node.destroy_node()
+
+    def _made(self) -> Node:
+        """Return a new node, made with the arguments of this member beside those of all."""
+        context, own = self._context, self._arguments
+        shared = context.arguments
+        before = context._usage
+        context._usage = Usage(
+            replace(
+                shared,
+                remap_rules=own.remap_rules + shared.remap_rules,
+                parameter_rules=shared.parameter_rules + own.parameter_rules,
+            )
+        )
+        try:
+            with Context.as_default(context):
+                node = self._make_node()
+        finally:
+            context._usage = before
+        if not isinstance(node, Node):
+            raise TypeError(f"{self.name}: {self._make_node!r} returned {node!r}, which is no node")
+        return node
+
+
+def ros_arguments(
+    name: str | None,
+    namespace: str | None,
+    parameters: Any,
+    remappings: Any,
+) -> list[str]:
+    """Return the ROS arguments of a node, as on a command line after ``--ros-args``.
+
+    Args:
+        name: What the node is called; its own name if None.
+        namespace: Its namespace.
+        parameters: A mapping of names to values, the path of a parameter file, or a sequence of
+            both, of which later ones win.
+        remappings: A mapping of names to names, or a sequence of pairs.
+    """
+    arguments = []
+    if name is not None:
+        arguments += ["-r", f"__node:={name}"]
+    if namespace is not None:
+        arguments += ["-r", f"__ns:={'/' + namespace.strip('/')}"]
+    pairs = remappings.items() if hasattr(remappings, "items") else remappings or ()
+    for source, target in pairs:
+        arguments += ["-r", f"{source}:={target}"]
+    if isinstance(parameters, str | os.PathLike) or hasattr(parameters, "items"):
+        parameters = [parameters]
+    for one in parameters or ():
+        if isinstance(one, str | os.PathLike):
+            arguments += ["--params-file", os.fspath(one)]
+        else:
+            for key, value in flat(one):
+                arguments += ["-p", f"{key}:={yaml_text(value)}"]
+    return arguments
+
+
+def flat(parameters: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
+    """Return parameters by their full names: mappings within are joined by dots."""
+    found = []
+    for key, value in parameters.items():
+        if hasattr(value, "items"):
+            found += flat(value, f"{prefix}{key}.")
+        else:
+            found.append((f"{prefix}{key}", value))
+    return found
+
+
+def yaml_text(value: Any) -> str:
+    """Return a value as YAML in one line, so that a text stays a text."""
+    value = list(value) if isinstance(value, tuple) else value
+    text = yaml.safe_dump(value, default_flow_style=True, width=float("inf"), allow_unicode=True)
+    return text.strip().removesuffix("...").strip()
+
+
+def maker_of(node: Callable[[], Node] | str) -> Callable[[], Any]:
+    """Return what makes a node: the callable itself, or that of ``module:Class``.
+
+    Raises:
+        CommandError: there is none of that name.
+    """
+    if not isinstance(node, str):
+        return node
+    from aionode._node_source import node_maker
+
+    return node_maker(node)
+
+
+def program_of(node: Callable[[], Node] | str, name: str) -> list[str]:
+    """Return the command line that runs a node in a process of its own.
+
+    Raises:
+        ValueError: the node is made by something without a name that another process could import.
+    """
+    return [sys.executable, "-m", "aionode", "run", spec_of(node, name), "--ros-args"]
+
+
+def spec_of(node: Callable[[], Node] | str, name: str) -> str:
+    """Return ``module:Class`` or ``file.py:Class`` of what makes a node."""
+    if isinstance(node, str):
+        return node
+    module, path = getattr(node, "__module__", ""), getattr(node, "__qualname__", "<")
+    if "<" in path or not module:
+        raise ValueError(
+            f"{name}: {node!r} cannot be imported by a process of its own; pass a class or "
+            'function of a module, or its name as "module:Class"'
+        )
+    if module == "__main__":
+        return f"{Path(inspect.getfile(node)).resolve()}:{path}"
+    return f"{module}:{path}"

@@ -1,0 +1,213 @@
+"""Facts of the graph that tell when a member of a system is ready."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
+
+from aionode.errors import ServiceError
+from aionode.graph import EndpointKind
+from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
+from aionode.interfaces.lifecycle_msgs.srv import GetState
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from aionode.node import Node
+
+__all__ = ["ActionReady", "Fact", "NodeActive", "NodeExists", "ServiceReady", "TopicPublished"]
+
+ASK_SEC = 2.0
+"""How long a managed node may take to tell its state, in seconds."""
+
+
+@runtime_checkable
+class Fact(Protocol):
+    """What a system waits for. Your own class may be one."""
+
+    @property
+    def timeout_sec(self) -> float:
+        """How long it may take, in seconds."""
+        ...
+
+    def __str__(self) -> str:
+        """Return what is awaited, such as ``a publisher of /odom``."""
+        ...
+
+    async def wait(self, node: Node) -> None:
+        """Return when it is so; it is cancelled after `timeout_sec`.
+
+        Args:
+            node: The node of the system, which sees the graph.
+        """
+        ...
+
+
+@dataclass(frozen=True)
+class NodeExists:
+    """A node is in the graph.
+
+    Attributes:
+        name: Its full name, such as ``/driver``.
+        timeout_sec: How long it may take, in seconds.
+    """
+
+    name: str
+    timeout_sec: float = 10.0
+
+    def __str__(self) -> str:
+        """Return what is awaited."""
+        return f"node {absolute(self.name)}"
+
+    async def wait(self, node: Node) -> None:
+        """Return when it is there."""
+        name = absolute(self.name)
+        await node.graph.until(lambda: bool(node.graph.nodes_named(name)), name)
+
+
+@dataclass(frozen=True)
+class TopicPublished:
+    """A topic has a publisher.
+
+    Attributes:
+        topic: Its full name.
+        timeout_sec: How long it may take, in seconds.
+    """
+
+    topic: str
+    timeout_sec: float = 10.0
+
+    def __str__(self) -> str:
+        """Return what is awaited."""
+        return f"a publisher of {absolute(self.topic)}"
+
+    async def wait(self, node: Node) -> None:
+        """Return when it has one."""
+        await endpoint_of(node, EndpointKind.PUBLISHER, absolute(self.topic))
+
+
+@dataclass(frozen=True)
+class ServiceReady:
+    """A service has a server.
+
+    Attributes:
+        service: Its full name.
+        timeout_sec: How long it may take, in seconds.
+    """
+
+    service: str
+    timeout_sec: float = 10.0
+
+    def __str__(self) -> str:
+        """Return what is awaited."""
+        return f"service {absolute(self.service)}"
+
+    async def wait(self, node: Node) -> None:
+        """Return when it has one."""
+        await endpoint_of(node, EndpointKind.SERVER, absolute(self.service))
+
+
+@dataclass(frozen=True)
+class ActionReady:
+    """An action has a server: goals can be sent, cancelled and awaited.
+
+    Attributes:
+        action: Its full name.
+        timeout_sec: How long it may take, in seconds.
+    """
+
+    action: str
+    timeout_sec: float = 10.0
+
+    def __str__(self) -> str:
+        """Return what is awaited."""
+        return f"action {absolute(self.action)}"
+
+    async def wait(self, node: Node) -> None:
+        """Return when it has one."""
+        for service in ("send_goal", "cancel_goal", "get_result"):
+            name = f"{absolute(self.action)}/_action/{service}"
+            await endpoint_of(node, EndpointKind.SERVER, name)
+
+
+@dataclass(frozen=True)
+class NodeActive:
+    """A managed node is active, whoever has activated it.
+
+    Attributes:
+        name: Its full name.
+        timeout_sec: How long it may take, in seconds.
+    """
+
+    name: str
+    timeout_sec: float = 10.0
+
+    def __str__(self) -> str:
+        """Return what is awaited."""
+        return f"managed node {absolute(self.name)} to be active"
+
+    async def wait(self, node: Node) -> None:
+        """Return when it is: its state is asked for, and again after each of its transitions."""
+        name = absolute(self.name)
+        moved = asyncio.Event()
+        events = node.create_subscription(
+            TransitionEvent, f"{name}/transition_event", lambda _: moved.set()
+        )
+        client = node.create_client(GetState, f"{name}/get_state")
+        try:
+            while True:
+                moved.clear()
+                await client.wait_for_service()
+                try:
+                    response = await client.call(GetState.Request(), timeout_sec=ASK_SEC)
+                except (ServiceError, TimeoutError):
+                    continue  # it has gone again, or is busy; another call waits for it
+                if response.current_state.label == "active":
+                    return
+                await moved.wait()
+        finally:
+            events.destroy()
+            client.destroy()
+
+
+async def endpoint_of(node: Node, kind: EndpointKind, name: str) -> None:
+    """Return when the graph has an endpoint of this kind and name."""
+    await node.graph.until(lambda: node.graph.count(kind, name) > 0, name)
+
+
+def absolute(name: str) -> str:
+    """Return a full name; the leading slash may be left out."""
+    return f"/{name.lstrip('/')}"
+
+
+def facts_of(ready: Fact | Sequence[Fact] | None, subject: str) -> tuple[Fact, ...]:
+    """Return the facts that a user gave.
+
+    Raises:
+        TypeError: something else was given.
+    """
+    facts = () if ready is None else (ready,) if isinstance(ready, Fact) else tuple(ready)
+    for fact in facts:
+        if not isinstance(fact, Fact):
+            raise TypeError(
+                f"{subject}: ready={fact!r} is no fact; use NodeExists, TopicPublished, "
+                "ServiceReady, ActionReady or NodeActive of aionode.system"
+            )
+    return facts
+
+
+async def missing_of(facts: Sequence[Fact], node: Node) -> list[str]:
+    """Wait for all facts at the same time, and return those that did not come in time."""
+
+    async def wait(fact: Fact) -> str:
+        try:
+            async with asyncio.timeout(fact.timeout_sec):
+                await fact.wait(node)
+        except TimeoutError:
+            return f"{fact} (waited {fact.timeout_sec:g} s)"
+        return ""
+
+    async with asyncio.TaskGroup() as tasks:
+        waits = [tasks.create_task(wait(fact)) for fact in facts]
+    return [text for one in waits if (text := one.result())]

@@ -1,0 +1,442 @@
+"""`System`: processes and nodes that are started, watched and stopped as one thing."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+from typing import TYPE_CHECKING, Final, Self, Unpack
+
+from aionode import names
+from aionode._concurrency import to_the_end
+from aionode.context import Context
+from aionode.errors import ConfigurationError, MemberNotFoundError
+from aionode.node import Node
+from aionode.system._control import Control
+from aionode.system._guard import Guard
+from aionode.system._limits import Limits
+from aionode.system._log import SystemLog
+from aionode.system._member import Member, MemberOptions, Restart, options_of
+from aionode.system._node_member import (
+    NodeMember,
+    Parameters,
+    maker_of,
+    program_of,
+    ros_arguments,
+)
+from aionode.system._output import OutputReader
+from aionode.system._process import ProcessMember, ProcessOptions
+from aionode.system._readiness import Fact, NodeExists, facts_of
+from aionode.system._report import exit_report
+from aionode.system._status import MemberEnd, MemberStatus, SystemHealth
+from aionode.system._usage import UsageMeter
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+    from types import TracebackType
+
+__all__ = ["System"]
+
+MAX_ENDS: Final = 1000
+"""How many ends are kept."""
+
+
+class System:
+    """Processes and nodes that are started, watched and stopped as one thing.
+
+    ::
+
+        async with System() as system:
+            system.process("driver", ["my_driver"], ready=TopicPublished("/odom"))
+            system.node("planner", "my_robot.planner:Planner", restart="on-failure")
+            await system.ready()
+            await system.wait()
+
+    Members start in the order in which they are added, at once or, if they were added before, as
+    ``async with`` is entered. At its end they stop in reverse order, each after the one before has
+    ended: a process gets SIGINT, after 7 s SIGTERM, and after 5 s more SIGKILL.
+
+    Nothing of a process is left when it has ended, nor of the system, even if this process is
+    killed: a guardian, a small process of its own, then stops all of them in the same order.
+    Processes need Linux.
+
+    Args:
+        name: Its name: that of its node is ``aionode_system_NAME``.
+        context: The context of its nodes; `Context.default()` by default.
+        log: Where the output of all members goes; `SystemLog` on ``sys.stdout`` by default.
+
+    Attributes:
+        log: The log.
+        ends: How members ended that nobody had stopped, in order; the first thousand.
+
+    Raises:
+        ConfigurationError: this is no Linux (a ValueError).
+    """
+
+    def __init__(
+        self,
+        name: str = "",
+        *,
+        context: Context | None = None,
+        log: SystemLog | None = None,
+    ) -> None:
+        if not sys.platform.startswith("linux"):
+            raise ConfigurationError("System", sys.platform, "systems of processes need Linux")
+        self.name = name or str(os.getpid())
+        self.context = context
+        self.log = SystemLog() if log is None else log
+        self.ends: list[MemberEnd] = []
+        self.closing = False
+        self._members: dict[str, Member] = {}
+        self._over = asyncio.Event()
+        self._first_failure: MemberEnd | None = None
+        self._usage = UsageMeter()
+        self._entered = False
+        self._changed = asyncio.Event()
+        self.tasks: asyncio.TaskGroup
+        self.guard: Guard
+        self.reader: OutputReader
+        self.graph_node: Node
+        self._control: Control
+
+    def __repr__(self) -> str:
+        return f"<System {self.name} members={len(self._members)}>"
+
+    # Members
+
+    def process(
+        self,
+        name: str,
+        argv: Sequence[str | os.PathLike[str]],
+        *,
+        env: Mapping[str, str] | None = None,
+        cwd: str | os.PathLike[str] | None = None,
+        restart: Restart = "never",
+        ready: Fact | Sequence[Fact] | None = None,
+        stdin: bool = False,
+        term_after_sec: float = 7.0,
+        kill_after_sec: float = 5.0,
+        memory_bytes: int | None = None,
+        cpu_cores: float | None = None,
+        **options: Unpack[MemberOptions],
+    ) -> Member:
+        """Add a program.
+
+        It runs in a session of its own, so the terminal's Ctrl-C does not reach it: the system
+        stops it. What it has started and left behind is stopped when it ends.
+
+        Args:
+            name: Its name in the system.
+            argv: Its command line.
+            env: Variables of its environment beside those of this process.
+            cwd: Its working folder.
+            restart: When it is started again: ``"never"``, ``"on-failure"`` (an exit status other
+                than 0, or a signal) or ``"always"``.
+            ready: What is awaited before it is ready; without it, that it runs.
+            stdin: Whether it reads the keyboard: standard input and output are the terminal then,
+                if there is one, and standard error goes to the log. Others have an empty standard
+                input.
+            term_after_sec: How long after SIGINT it gets SIGTERM, in seconds.
+            kill_after_sec: How long after SIGTERM it gets SIGKILL, in seconds.
+            memory_bytes: How much memory it may have, by cgroup v2. Where that is not allowed, it
+                runs without, and the log says so.
+            cpu_cores: How many cores it may use, such as 0.5; as above.
+            options: The rest; see `MemberOptions`.
+
+        Returns:
+            The member; its `name` is what the other methods take.
+
+        Raises:
+            ValueError: the name is taken, or an argument does not fit.
+            MemberNotFoundError: `after` or `fails_with` names no member (a LookupError).
+            TypeError: `ready` is no fact, or an option is unknown.
+        """
+        if not argv or isinstance(argv, str):
+            raise ValueError(f"{name}: argv={argv!r}; use a list, such as ['my_driver', '--fast']")
+        process = ProcessOptions(
+            [os.fspath(word) for word in argv],
+            dict(env or {}),
+            None if cwd is None else os.fspath(cwd),
+            stdin,
+            term_after_sec,
+            kill_after_sec,
+            Limits(memory_bytes, cpu_cores),
+        )
+        shared = options_of(restart, facts_of(ready, name), options, name)
+        return self._add(ProcessMember(name, self, self, shared, process))
+
+    def node(
+        self,
+        name: str,
+        node: Callable[[], Node] | str,
+        *,
+        parameters: Parameters | Sequence[Parameters] | None = None,
+        remappings: Mapping[str, str] | Sequence[tuple[str, str]] | None = None,
+        namespace: str | None = None,
+        processes: bool = False,
+        restart: Restart = "never",
+        ready: Fact | Sequence[Fact] | None = None,
+        env: Mapping[str, str] | None = None,
+        cwd: str | os.PathLike[str] | None = None,
+        **options: Unpack[MemberOptions],
+    ) -> Member:
+        """Add a node, as tasks of this process or as a process of its own.
+
+        It is called `name`, whatever name it gives itself, so that one class can be there twice.
+        Without `ready`, it is ready when it is in the graph.
+
+        Args:
+            name: Its name, and that of the node.
+            node: Makes the node, such as its class; or ``"module:Class"``, ``"file.py:Class"``.
+            parameters: A mapping of names to values, the path of a parameter file, or a sequence
+                of both, of which later ones win.
+            remappings: Names of topics and services, and what they become.
+            namespace: Its namespace.
+            processes: Whether it runs in a process of its own: several use several cores.
+            restart: When it is started again; as for `process`.
+            ready: What is awaited before it is ready.
+            env: Variables of the environment of a process of its own.
+            cwd: Its working folder; as above.
+            options: The rest; see `MemberOptions`.
+
+        Returns:
+            The member; its `name` is what the other methods take.
+
+        Raises:
+            InvalidNodeNameException: `name` is no name of a node (a ValueError).
+            ValueError: the name is taken, or an argument does not fit.
+            CommandError: there is no such module or class (a RuntimeError).
+            MemberNotFoundError: `after` or `fails_with` names no member (a LookupError).
+            TypeError: `ready` is no fact, or an option is unknown.
+        """
+        names.validate_node_name(name)
+        arguments = ros_arguments(name, namespace, parameters, remappings)
+        full_name = names.fully_qualified_name(names.normalize_namespace(namespace), name)
+        facts = facts_of(NodeExists(full_name) if ready is None else ready, name)
+        if processes:
+            argv = [*program_of(node, name), *arguments]
+            return self.process(
+                name, argv, env=env, cwd=cwd, restart=restart, ready=facts, **options
+            )
+        if env is not None or cwd is not None:
+            raise ValueError(f"{name}: env and cwd are for nodes with processes=True")
+        shared = options_of(restart, facts, options, name)
+        context = self.context or Context.default()
+        return self._add(NodeMember(name, self, shared, maker_of(node), context, arguments))
+
+    def _add(self, member: Member) -> Member:
+        if member.name in self._members or member.name == "system":
+            raise ValueError(f"{member.name}: this name is taken; each member has its own")
+        for name in (*member.options.after, *member.options.fails_with):
+            self.member(name)
+        self._members[member.name] = member
+        self.log.add_member(member.name)
+        if self._entered:
+            member.start()
+        return member
+
+    def member(self, name: str) -> Member:
+        """Return a member by its name.
+
+        Raises:
+            MemberNotFoundError: there is none (a LookupError).
+        """
+        if name not in self._members:
+            raise MemberNotFoundError(name, tuple(self._members))
+        return self._members[name]
+
+    # Lifetime
+
+    async def __aenter__(self) -> Self:
+        """Start the guardian, the node of the system, and the members that were added.
+
+        Raises:
+            RuntimeError: it was entered before.
+            TransportError: the context cannot connect.
+        """
+        if self._entered:
+            raise RuntimeError("System: cannot be entered twice; create another one")
+        self._entered = True
+        self.graph_node = Node(
+            f"aionode_system_{self.name}",
+            context=self.context,
+            use_global_arguments=False,
+            enable_rosout=False,
+            start_parameter_services=False,
+        )
+        self._control = Control(self, self.graph_node)
+        self.guard = Guard(self._note_guardian_lost)
+        self.guard.open()
+        try:
+            await self.graph_node.__aenter__()
+        except BaseException:
+            await to_the_end(self.guard.close())
+            raise
+        self.reader = OutputReader(self.log)
+        self.tasks = await asyncio.TaskGroup().__aenter__()
+        for member in list(self._members.values()):
+            member.start()
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Stop all members in reverse order, and return when nothing of them is left.
+
+        It goes on if it is cancelled. An exception from the body propagates unchanged.
+        """
+        try:
+            await to_the_end(self._stop_all(), exc)
+        finally:
+            try:
+                await self.graph_node.__aexit__(None, None, None)
+            finally:
+                await self.tasks.__aexit__(None, None, None)
+                self.log.close()
+
+    async def _stop_all(self) -> None:
+        self.closing = True
+        self._over.set()
+        for member in reversed(self._members.values()):
+            await member.stop()
+        if not await self.guard.close():
+            self.log.note("processes are left that could not be ended: they run as another user")
+        self.reader.close()
+        self._control.close()
+        if self.first_failure is not None:
+            self.log.note(exit_report(self.ends, self.first_failure))
+
+    def _note_guardian_lost(self) -> None:
+        self.log.note("the guardian of the system has ended; all processes were killed")
+        self.request_end()
+
+    async def ready(self) -> None:
+        """Return when all members are ready; those that were stopped are left out.
+
+        Cancelling is safe.
+
+        Raises:
+            NotReadyError: one is not: its `name`, `problem` and `last_lines` say why (a
+                TimeoutError).
+        """
+        waits = [one.run.ready for one in self._members.values() if one.state != "stopped"]
+        if waits:
+            done, _ = await asyncio.wait(waits, return_when=asyncio.FIRST_EXCEPTION)
+            for ready in waits:
+                if ready in done:
+                    ready.result()
+
+    async def wait(self) -> None:
+        """Return when the system is over.
+
+        That is when all members have ended for good, when one has that is `required`, or when
+        `request_end` was called. Cancelling is safe.
+        """
+        while not self._over.is_set():
+            if all(member.is_over() for member in self._members.values()):
+                return
+            await self._next_change()
+
+    async def _next_change(self) -> None:
+        if self._changed.is_set():
+            self._changed = asyncio.Event()
+        await self._changed.wait()
+
+    def request_end(self) -> None:
+        """Have `wait` return. It may be called at any time, and more than once."""
+        self._over.set()
+        self.note_change()
+
+    # Control
+
+    async def stop(self, name: str) -> None:
+        """Stop a member, and return when nothing of it is left; it is not restarted.
+
+        Raises:
+            MemberNotFoundError: there is none of this name (a LookupError).
+        """
+        await self.member(name).stop()
+
+    async def restart(self, name: str) -> None:
+        """Stop a member and start it again, or start one that has ended.
+
+        It returns when the member is starting; `ready` waits until it is ready.
+
+        Raises:
+            MemberNotFoundError: there is none of this name (a LookupError).
+        """
+        await self.member(name).restart()
+
+    def status(self) -> dict[str, MemberStatus]:
+        """Return what each member does now, by its name, in the order of their starts."""
+        return {
+            name: member.status(self._usage.of(member.pid))
+            for name, member in self._members.items()
+        }
+
+    def health(self) -> SystemHealth:
+        """Return the health of the system now; it costs next to nothing."""
+        problems, ready = [], True
+        for name, member in self._members.items():
+            if member.state in {"ended", "stopped"} or member.is_running_and_ready():
+                continue
+            ready = False
+            state = "not ready" if member.state == "running" else member.state
+            problems.append(f"{name}: {state}{member.error and ': '}{member.error}")
+        return SystemHealth(
+            ok=not problems,
+            ready=ready,
+            problems=tuple(problems),
+            members={name: member.state for name, member in self._members.items()},
+        )
+
+    @property
+    def first_failure(self) -> MemberEnd | None:
+        """How the first member ended that failed for good; None if none has."""
+        return self._first_failure
+
+    @property
+    def exit_status(self) -> int:
+        """The exit status of the first member that failed for good; 0 if none has."""
+        return 0 if self._first_failure is None else self._first_failure.status
+
+    # What members need
+
+    def environment(self) -> dict[str, str]:
+        """Return the environment of the processes: they join the domain of the system's context."""
+        domain_id = self.graph_node.context.domain_id
+        return {**os.environ, "ROS_DOMAIN_ID": str(domain_id)}
+
+    def note_change(self) -> None:
+        """Wake `wait`: a member has changed its state."""
+        self._changed.set()
+
+    def note_end(self, member: Member, end: MemberEnd, *, for_good: bool) -> None:
+        """Record the end of a run that nobody asked for, and let others follow it."""
+        if self.closing:
+            return
+        if len(self.ends) < MAX_ENDS:
+            self.ends.append(end)
+        if for_good and end.failed and self._first_failure is None:
+            self._first_failure = end
+        if for_good and member.options.required:
+            self.log.note(f"{member.name} is required: the system ends")
+            self.request_end()
+        if end.failed:
+            for other in self._members.values():
+                if member.name in other.options.fails_with:
+                    self.tasks.create_task(self._follow(other, member))
+
+    async def _follow(self, member: Member, failed: Member) -> None:
+        """Stop a member that fails with another one, and start it when that runs again."""
+        if member.is_over():
+            return
+        self.log.note(f"{member.name} is stopped: it fails with {failed.name}")
+        await member.stop()
+        while not (failed.is_over() or failed.is_running_and_ready() or self.closing):
+            await self._next_change()
+        if not self.closing and failed.is_running_and_ready():
+            await member.restart()

@@ -1,0 +1,35 @@
+"""How much of the machine each process takes, by psutil where it is installed."""
+
+from __future__ import annotations
+
+import importlib
+from contextlib import suppress
+from typing import Any
+
+__all__ = ["UsageMeter"]
+
+
+class UsageMeter:
+    """Measures processes; the share of a core is that since the last look."""
+
+    def __init__(self) -> None:
+        self._psutil: Any = None
+        with suppress(ImportError):
+            self._psutil = importlib.import_module("psutil")  # the optional extra `system`
+        self._processes: dict[int, Any] = {}
+
+    def of(self, pid: int | None) -> tuple[float | None, int | None]:
+        """Return the share of a core in percent, and the resident memory in bytes.
+
+        Both are None without psutil, and for a process that has ended. The share is 0 at first.
+        """
+        if self._psutil is None or pid is None:
+            return None, None
+        try:
+            process = self._processes.get(pid)
+            if process is None or not process.is_running():
+                process = self._processes[pid] = self._psutil.Process(pid)
+            return process.cpu_percent(), process.memory_info().rss
+        except self._psutil.Error:
+            self._processes.pop(pid, None)
+            return None, None

@@ -1,0 +1,297 @@
+"""Programs in a system: what is started, restarted, stopped, and left behind."""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from aionode import Context, Node
+from aionode.errors import MemberNotFoundError, NotReadyError
+from aionode.system import NodeExists, ServiceReady, System, SystemLog, TopicPublished
+from tests.support.waiting import until
+
+FOREVER = ["sleep", "1000"]
+
+
+@pytest.fixture
+def output() -> io.StringIO:
+    """What the system under test prints."""
+    return io.StringIO()
+
+
+@pytest.fixture
+def system(output: io.StringIO) -> System:
+    """A system whose nodes have no network."""
+    return System("tested", context=Context(transport="local"), log=SystemLog(output))
+
+
+def alive(pid: int | None) -> bool:
+    """Return whether there is such a process, which is no zombie."""
+    try:
+        state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except FileNotFoundError:
+        return False
+    return state != "Z"
+
+
+async def test_a_program_runs_until_the_block_is_left(system: System) -> None:
+    """That is the promise of `async with`."""
+    async with system:
+        system.process("sleeper", FOREVER)
+        await system.ready()
+        status = system.status()["sleeper"]
+        assert status.state == "running"
+        assert alive(status.pid)
+
+    assert not alive(status.pid)
+    assert system.status()["sleeper"].state == "stopped"
+    assert system.exit_status == 0
+
+
+async def test_no_grandchild_is_left_even_one_that_forked_twice(
+    system: System, tmp_path: Path
+) -> None:
+    """It has another parent and another session than the program that started it."""
+    child, orphan = tmp_path / "child", tmp_path / "orphan"
+    script = f"sleep 1000 & echo $! >{child}; (setsid sh -c 'echo $$ >{orphan}; exec sleep 999' &)"
+    async with system:
+        system.process("forking", ["sh", "-c", f"{script}; exec sleep 998"], term_after_sec=0.1)
+        await system.ready()
+        await until(lambda: orphan.exists() and orphan.read_text())
+        pids = [int(file.read_text()) for file in (child, orphan)]
+        assert all(map(alive, pids))
+
+    assert not any(map(alive, pids))
+
+
+async def test_what_a_program_leaves_behind_ends_with_it(system: System, tmp_path: Path) -> None:
+    """A restart would find the old process's port or device in use."""
+    orphan = tmp_path / "orphan"
+    script = (
+        f"(setsid sh -c 'echo $$ >{orphan}; exec sleep 999' &); while ! [ -s {orphan} ]; do :; done"
+    )
+    async with system:
+        system.process("forking", ["sh", "-c", script], term_after_sec=0.1)
+        await system.wait()
+
+        assert not alive(int(orphan.read_text()))
+
+
+async def test_a_program_that_is_killed_is_restarted_on_failure(system: System) -> None:
+    """Its signal is a failure."""
+    async with system:
+        system.process("sleeper", FOREVER, restart="on-failure", min_delay_sec=0.0)
+        await system.ready()
+        first = system.status()["sleeper"].pid
+        assert first is not None
+        os.kill(first, signal.SIGKILL)
+        await until(lambda: system.status()["sleeper"].restarts == 1)
+        await until(lambda: system.status()["sleeper"].state == "running")
+
+        assert system.status()["sleeper"].pid != first
+        assert system.exit_status == 0
+
+
+async def test_restarts_have_a_limit(system: System) -> None:
+    """A program that fails at each start is given up, and its status is that of the system."""
+    async with system:
+        system.process(
+            "failing", ["sh", "-c", "exit 3"], restart="always", max_restarts=2, min_delay_sec=0.0
+        )
+        await system.wait()
+
+        status = system.status()["failing"]
+        assert (status.state, status.restarts, status.exit_status) == ("failed", 2, 3)
+        assert system.exit_status == 3
+
+
+async def test_members_stop_in_reverse_order_each_after_the_one_before(
+    system: System, tmp_path: Path
+) -> None:
+    """A commander that ends has to be heard by the driver that it commands."""
+    ends = tmp_path / "ends"
+    code = (
+        "import signal, sys, time\n"
+        "signal.signal(signal.SIGINT, lambda *_: sys.exit(0))\n"
+        "print('up', flush=True)\n"
+        "try: signal.pause()\n"
+        f"finally: time.sleep(0.05); open({str(ends)!r}, 'a').write(sys.argv[1] + ' ')\n"
+    )
+    async with system:
+        for name in ("first", "second", "third"):
+            system.process(name, [sys.executable, "-S", "-c", code, name])
+        names = ("first", "second", "third")
+        await until(lambda: all(system.log.last_lines(name) == ["up"] for name in names))
+
+    assert ends.read_text() == "third second first "
+
+
+async def test_a_program_that_ignores_signals_is_killed(system: System) -> None:
+    """SIGINT, then SIGTERM, then SIGKILL."""
+    script = "trap '' INT TERM; echo deaf; while :; do sleep 1; done"
+    async with system:
+        system.process("deaf", ["sh", "-c", script], term_after_sec=0.1, kill_after_sec=0.1)
+        await until(lambda: system.log.last_lines("deaf"))
+
+    assert system.status()["deaf"].exit_status == 128 + signal.SIGKILL
+
+
+async def test_ready_names_what_is_missing_and_shows_the_last_lines(system: System) -> None:
+    """An error that says "timeout" alone helps nobody."""
+    async with system:
+        system.process(
+            "driver",
+            ["sh", "-c", "echo no device; exec sleep 1000"],
+            ready=[TopicPublished("/odom", timeout_sec=0.2), ServiceReady("reset", 0.2)],
+        )
+        with pytest.raises(NotReadyError) as caught:
+            await system.ready()
+
+    assert "a publisher of /odom (waited 0.2 s)" in caught.value.problem
+    assert "service /reset" in caught.value.problem
+    assert caught.value.last_lines == ("no device",)
+
+
+async def test_ready_fails_at_once_for_a_program_that_has_ended(system: System) -> None:
+    """What is awaited cannot come any more."""
+    async with system:
+        system.process("driver", ["sh", "-c", "exit 4"], ready=NodeExists("/driver"))
+        with pytest.raises(NotReadyError, match="ended with exit status 4"):
+            await system.ready()
+
+
+async def test_a_program_that_is_not_there_fails_and_says_so(
+    system: System, output: io.StringIO
+) -> None:
+    """A typo is named, and the others run."""
+    async with system:
+        system.process("typo", ["no-such-program"])
+        await system.wait()
+
+    assert system.exit_status == 127
+    assert "no-such-program: could not be started" in output.getvalue()
+
+
+async def test_a_member_starts_after_those_that_it_needs_are_ready(system: System) -> None:
+    """A node whose driver never comes is not started at all."""
+    async with system:
+        system.process("driver", FOREVER, ready=NodeExists("/driver", 0.1))
+        system.process("planner", FOREVER, after="driver")
+        await until(lambda: system.status()["planner"].state == "failed")
+
+        assert system.status()["planner"].pid is None
+        assert "driver" in system.status()["planner"].error
+
+
+async def test_a_required_member_ends_the_system(system: System, output: io.StringIO) -> None:
+    """The report says who ended first, how, and what it printed last."""
+    async with system:
+        system.process("sleeper", FOREVER)
+        system.process("brain", ["sh", "-c", "echo out of memory; exit 9"], required=True)
+        await system.wait()
+
+    assert system.exit_status == 9
+    assert "the first to fail was brain: it ended with exit status 9" in output.getvalue()
+    assert "  out of memory" in output.getvalue()
+
+
+async def test_a_member_stops_and_starts_with_the_one_it_fails_with(system: System) -> None:
+    """A commander of a driver that has failed knows nothing of the new one."""
+    async with system:
+        system.process("driver", FOREVER, restart="on-failure", min_delay_sec=0.0)
+        system.process("commander", FOREVER, fails_with="driver")
+        await system.ready()
+        first = system.status()["commander"].pid
+        os.kill(system.status()["driver"].pid or 0, signal.SIGKILL)
+        await until(
+            lambda: (
+                system.status()["commander"].restarts == 1
+                and system.status()["commander"].state == "running"
+            )
+        )
+
+        assert system.status()["commander"].pid != first
+
+
+async def test_one_member_is_stopped_and_restarted_by_name(system: System) -> None:
+    """The others go on."""
+    async with system:
+        for name in ("a", "b"):
+            system.process(name, FOREVER)
+        await system.ready()
+        before = {name: status.pid for name, status in system.status().items()}
+        await system.restart("b")
+        await system.ready()
+        await system.stop("a")
+        after = system.status()
+
+        assert (after["a"].state, after["b"].state) == ("stopped", "running")
+        assert not alive(before["a"])
+        assert after["b"].pid != before["b"]
+        assert system.health().ok
+        with pytest.raises(MemberNotFoundError, match="the system has a, b"):
+            await system.stop("c")
+
+
+async def test_health_says_who_is_not_well(system: System) -> None:
+    """It is what /healthz answers."""
+    async with system:
+        system.process("good", FOREVER)
+        system.process("bad", ["sh", "-c", "exit 1"])
+        await until(lambda: system.status()["bad"].state == "failed")
+        health = system.health()
+
+    assert not health.ok
+    assert health.problems == ("bad: failed: ended with exit status 1",)
+
+
+class Beacon(Node):
+    """A node of a system."""
+
+    def __init__(self) -> None:
+        super().__init__("own_name")
+        self.declare_parameter("text", "")
+
+
+async def test_a_node_runs_as_tasks_with_its_parameters_and_name(system: System) -> None:
+    """One class can be there twice, under two names."""
+    made: list[Beacon] = []
+
+    def make() -> Beacon:
+        made.append(Beacon())
+        return made[-1]
+
+    async with system:
+        system.node("left", make, parameters={"text": "1.0"}, namespace="robot")
+        system.node("right", make)
+        await system.ready()
+
+        assert [node.get_fully_qualified_name() for node in made] == ["/robot/left", "/right"]
+        assert made[0].get_parameter("text").value == "1.0"
+        assert system.status()["left"].pid == os.getpid()
+        made[1].destroy_node()
+        await until(lambda: system.status()["right"].state == "ended")
+
+
+async def test_a_node_that_fails_is_restarted(system: System) -> None:
+    """As a process is, by the same policy."""
+    made: list[Beacon] = []
+
+    def make() -> Beacon:
+        made.append(Beacon())
+        if len(made) == 1:
+            made[0].create_timer(0.01, lambda: 1 // 0)
+        return made[-1]
+
+    async with system:
+        system.node("beacon", make, restart="on-failure", min_delay_sec=0.0)
+        await until(lambda: len(made) == 2)
+        await system.ready()
+
+        assert system.status()["beacon"].restarts == 1
+        assert any("ZeroDivisionError" in line for line in system.log.last_lines("beacon"))
