@@ -22,7 +22,7 @@ from __future__ import annotations
 import asyncio
 import math
 from collections import deque
-from typing import TYPE_CHECKING, Any, TypeVar, overload
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, overload
 
 from aionode.clock import ClockType, MachineTime, Time
 from aionode.errors import EntityDestroyedError
@@ -139,14 +139,6 @@ class ApproximateMatcher(Matcher):
                 yield from self._combinations(candidates, longer)
 
 
-def stamp_of(msg: Any) -> Time | None:
-    """Return the stamp in a message's header, or None if it has none."""
-    stamp = getattr(getattr(msg, "header", None), "stamp", None)
-    if stamp is None or isinstance(stamp, Time):
-        return stamp
-    return Time.from_msg(stamp)
-
-
 class Stamps:
     """Finds the stamp of each message; logs once if a message has none.
 
@@ -154,22 +146,42 @@ class Stamps:
         allow_headerless: Whether a message without a header gets the current time.
     """
 
+    _from_msg: ClassVar[Callable[[Any], Any]] = Time.from_msg
+
     def __init__(self, *, allow_headerless: bool) -> None:
         self._allow_headerless = allow_headerless
         self._time = MachineTime()
 
-    def of(self, msg: Any) -> Time | None:
+    def of(self, msg: Any) -> Any:
         """Return the stamp of a message; None if the message cannot be used."""
-        stamp = stamp_of(msg)
-        if stamp is None and self._allow_headerless:
-            return Time(nanoseconds=self._time.system_ns(), clock_type=ClockType.ROS_TIME)
+        stamp = getattr(getattr(msg, "header", None), "stamp", None)
+        if hasattr(stamp, "nanoseconds"):
+            return stamp
         if stamp is None:
+            return self._without(msg)
+        try:
+            return self._from_msg(stamp)
+        except ValueError:  # any node can send it, and must not end this one
             logger.warning(
-                f"{type(msg).__name__} has no header with a stamp, and is ignored; "
-                "allow_headerless=True uses the time of arrival instead",
+                f"{type(msg).__name__} has a stamp before the year 1970, sec={stamp.sec}, and is "
+                "ignored; so are further ones. `aionode topic info -v` names the publishers",
                 once=True,
             )
-        return stamp
+            return None
+
+    def _without(self, msg: Any) -> Any:
+        """Return what stands for the stamp of a message that has none."""
+        if self._allow_headerless:
+            return self._now()
+        logger.warning(
+            f"{type(msg).__name__} has no header with a stamp, and is ignored; "
+            "allow_headerless=True uses the time of arrival instead",
+            once=True,
+        )
+        return None
+
+    def _now(self) -> Any:
+        return Time(nanoseconds=self._time.system_ns(), clock_type=ClockType.ROS_TIME)
 
 
 # Callbacks, as in ROS 2

@@ -141,6 +141,21 @@ def test_a_message_without_a_header_can_count_with_its_arrival() -> None:
     assert found == []
 
 
+def test_a_stamp_before_1970_is_left_out_and_ends_nothing(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """Any node can send one; an exception would end the node that listens."""
+    left, right, found = pairs_of(TimeSynchronizer, 10)
+    wrong = stamped(1)
+    wrong.header.stamp.sec = -1
+    for message in (wrong, wrong, stamped(1)):
+        left.signalMessage(message)
+    right.signalMessage(stamped(1))
+
+    assert len(found) == 1
+    assert capsys.readouterr().err.count("has a stamp before the year 1970, sec=-1") == 1
+
+
 def test_a_cache_answers_by_stamp() -> None:
     """Intervals include both ends; the oldest message is pushed out."""
     source = SimpleFilter()

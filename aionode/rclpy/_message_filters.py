@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, ClassVar
 
 from aionode import message_filters
 from aionode.message_filters import Chain, SimpleFilter
@@ -27,12 +27,10 @@ DEPTH = 10
 class Stamps(message_filters.Stamps):
     """Finds the stamp of each message as time of rclpy."""
 
-    def of(self, msg: Any) -> Any:
-        """Return the stamp of a message; None if the message cannot be used."""
-        stamp = getattr(getattr(msg, "header", None), "stamp", None)
-        if stamp is not None:
-            return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
-        return ROSClock().now() if super().of(msg) is not None else None
+    _from_msg: ClassVar[Callable[[Any], Any]] = Time.from_msg
+
+    def _now(self) -> Any:
+        return ROSClock().now()
 
 
 class Subscriber(message_filters.Subscriber):

@@ -28,7 +28,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+Clock = message_class("rosgraph_msgs/msg/Clock")
 String = message_class("std_msgs/msg/String")
+TimeMsg = message_class("builtin_interfaces/msg/Time")
 AddTwoInts = service_class("example_interfaces/srv/AddTwoInts")
 GetParameters = service_class("rcl_interfaces/srv/GetParameters")
 Fibonacci = action_class("example_interfaces/action/Fibonacci")
@@ -56,6 +58,16 @@ def spin_until(node: Any, future: Any) -> Any:
     rclpy.spin_until_future_complete(node, future, timeout_sec=LIMIT_S)
     assert future.done()
     return future.result()
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_clock_message_that_holds_no_time_is_left_out() -> None:
+    """Any node can publish on /clock; an exception would end the executor of each that follows."""
+    node = rclpy.create_node("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
+    take = node._time_source.clock_callback
+    for sec, nanosec in ((1, 0), (-1, 0), (5, 10**9), (2, 0)):
+        take(Clock(clock=TimeMsg(sec=sec, nanosec=nanosec)))
+        assert node.get_clock().now().nanoseconds == (2 if sec == 2 else 1) * 10**9
 
 
 @pytest.mark.usefixtures("initialised")

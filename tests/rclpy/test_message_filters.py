@@ -47,6 +47,18 @@ def collected(filter_: Any) -> list[tuple[Any, ...]]:
     return found
 
 
+@pytest.mark.usefixtures("node")
+def test_a_stamp_before_1970_is_left_out() -> None:
+    """Any node can send one; an exception would end the executor."""
+    source = message_filters.SimpleFilter()
+    found = collected(message_filters.Cache(source))
+
+    source.signalMessage(PointStamped(header=Header(stamp=TimeMsg(sec=-1))))
+    source.signalMessage(stamped(1))
+
+    assert len(found) == 1
+
+
 def test_messages_of_one_stamp_come_together(node: Any) -> None:
     """From topics, by a subscriber that needs no QoS."""
     inputs = [message_filters.Subscriber(node, PointStamped, name) for name in ("left", "right")]
