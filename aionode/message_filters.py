@@ -22,7 +22,7 @@ from __future__ import annotations
 import asyncio
 import math
 from collections import deque
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar, overload
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 from aionode.clock import ClockType, MachineTime, Time
 from aionode.errors import EntityDestroyedError
@@ -146,8 +146,6 @@ class Stamps:
         allow_headerless: Whether a message without a header gets the current time.
     """
 
-    _from_msg: ClassVar[Callable[[Any], Any]] = Time.from_msg
-
     def __init__(self, *, allow_headerless: bool) -> None:
         self._allow_headerless = allow_headerless
         self._time = MachineTime()
@@ -179,6 +177,9 @@ class Stamps:
             once=True,
         )
         return None
+
+    def _from_msg(self, stamp: Any) -> Any:
+        return Time.from_msg(stamp)
 
     def _now(self) -> Any:
         return Time(nanoseconds=self._time.system_ns(), clock_type=ClockType.ROS_TIME)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
-from typing import Any, ClassVar
+from collections.abc import Sequence
+from typing import Any
 
 from aionode import message_filters
 from aionode.message_filters import Chain, SimpleFilter
@@ -27,7 +27,8 @@ DEPTH = 10
 class Stamps(message_filters.Stamps):
     """Finds the stamp of each message as time of rclpy."""
 
-    _from_msg: ClassVar[Callable[[Any], Any]] = Time.from_msg
+    def _from_msg(self, stamp: Any) -> Any:
+        return Time.from_msg(stamp)
 
     def _now(self) -> Any:
         return ROSClock().now()

@@ -10,6 +10,7 @@ moment announces its last sequence number, and repeats this at growing intervals
 acknowledged. The terms are those of RTPS.
 
 A reader that vanishes without having answered for a while was frozen or cut off, and is waited for.
+One that was asked for long and has never answered is none: any program may announce it.
 A reader that has everything is not asked by heartbeats, so a KEEP_ALL writer probes it.
 """
 
@@ -79,6 +80,10 @@ UNANSWERED_EACH_TICK: Final = 10
 """So many readers that have never answered are asked at once, the others later: whoever announces
 thousands of them costs no more."""
 
+MUTE_TICKS: Final = 200
+"""A reader that has never answered, and lacked messages at so many ticks, about ten seconds, does
+not acknowledge. Ticks are counted, not time: those of a writer that stood still are late too."""
+
 NEVER: Final = 1 << 62
 
 
@@ -117,6 +122,9 @@ class WriterSide(Protocol):
     def lost(self, count: int) -> None:
         """Count messages that were dropped before every reader had them."""
 
+    def mute(self, reader: ReaderProxy) -> None:
+        """Take note that a reader, which is removed, has never answered."""
+
 
 class ReaderProxy:
     """A reader, as its writer sees it.
@@ -128,6 +136,7 @@ class ReaderProxy:
         end: The `Entry.end` of the last acknowledged message.
         answered: Whether it has ever sent an ACKNACK.
         heard_ns: When it last sent an ACKNACK.
+        asked_ticks: At how many ticks it lacked messages before it sent its first ACKNACK.
         heartbeat_ns: When the last heartbeat was sent to it.
         interval_ns: The time from one heartbeat to the next while it does not answer.
         away_until_ns: Until when its return is waited for; 0 while it is present.
@@ -138,6 +147,7 @@ class ReaderProxy:
     __slots__ = (
         "acked",
         "answered",
+        "asked_ticks",
         "away_until_ns",
         "end",
         "gid",
@@ -158,6 +168,7 @@ class ReaderProxy:
         self.heartbeat_ns = now_ns
         self.interval_ns = QUIET_NS
         self.answered = False
+        self.asked_ticks = 0
         self.away_until_ns = 0
         self.returned_ns = 0
         self.resent: dict[int, int] = {}
@@ -525,12 +536,14 @@ class WriterHistory:
         for reader in list(self.readers.values()):
             if reader.away_until_ns:
                 if now_ns >= reader.away_until_ns:
-                    del self.readers[reader.gid]
-                    self._lose(max(reader.acked + 1, self._jumped_to), self.sent)
-                    self._update_window()
-                    self._trim()
-                    self.pump()
+                    self._give_up(reader)
             elif reader.acked < self.sent:
+                if not reader.answered:
+                    reader.asked_ticks += 1
+                    if reader.asked_ticks > MUTE_TICKS:
+                        self._side.mute(reader)
+                        self._give_up(reader)
+                        continue
                 waited_ns = now_ns - reader.heartbeat_ns
                 if waited_ns >= HEARTBEAT_NS or (is_quiet and waited_ns >= reader.interval_ns):
                     if not reader.answered:
@@ -542,6 +555,14 @@ class WriterHistory:
                     reader.interval_ns = min(reader.interval_ns * 2, HEARTBEAT_NS)
                     self._side.heartbeat(reader, reader.acked + 1, self.sent)
         return bool(self.entries) or any(reader.away_until_ns for reader in self.readers.values())
+
+    def _give_up(self, reader: ReaderProxy) -> None:
+        """Wait for a reader no longer; it has lost what it lacks."""
+        del self.readers[reader.gid]
+        self._lose(max(reader.acked + 1, self._jumped_to), self.sent)
+        self._update_window()
+        self._trim()
+        self.pump()
 
     def probe(self) -> bool:
         """Ask readers that have everything for an answer; return whether to call again.

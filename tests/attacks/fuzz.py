@@ -37,15 +37,21 @@ STANDS_S = 0.5
 def victims(planted: tuple[str, ...]) -> tuple[Role, ...]:
     """Return a node to be lied to, which does all that lies are about, and its true peer."""
     talker, listener = pair(publish=clouds(), parameter_size=1000, curious=True)
-    if planted:
-        plain = msgspec.json.encode(talker).decode()
-        words = ("-m", "tests.attacks.planted", *planted, plain)
-        talker = msgspec.structs.replace(talker, command=words)
-    return talker, listener
+    if not planted:
+        return talker, listener
+    return with_defects(talker, planted), with_defects(listener, planted)
 
 
-def one_round(seed: int, kinds: list[str], planted: tuple[str, ...], seconds: float) -> list[str]:
-    """Lie for some time; return what was wrong."""
+def with_defects(role: Role, planted: tuple[str, ...]) -> Role:
+    """Return a role whose process has some defects: lies strike the one, the other, or both."""
+    words = ("-m", "tests.attacks.planted", *planted, msgspec.json.encode(role).decode())
+    return msgspec.structs.replace(role, command=words)
+
+
+def one_round(
+    seed: int, kinds: list[str], planted: tuple[str, ...], seconds: float
+) -> list[str] | None:
+    """Lie for some time; return what was wrong, or None if a busy machine let nothing begin."""
     attack = Attack(
         f"lies with seed {seed}",
         "member",
@@ -57,6 +63,8 @@ def one_round(seed: int, kinds: list[str], planted: tuple[str, ...], seconds: fl
     ((_, found),) = asyncio.run(attack.run(asyncio.Semaphore(1)))
     if not isinstance(found, Found):
         return [repr(found)]
+    if not found.tries:
+        return None
     gap_ms, grown = 1000 * found.outcome.own_gap_s, found.memory_most_bytes >> 20
     print(f"{found.tries} lies, longest gap {gap_ms:.0f} ms, most memory {grown} MiB", flush=True)  # noqa: T201 - a program
     return found.broken(STANDS_S, GROWS)
@@ -77,7 +85,8 @@ def fuzz(
     for number, kind in enumerate(cycle(kinds)):
         chosen = secrets.randbelow(10**6) if seed is None else seed
         problems = one_round(chosen, [kind], planted, round_s)
-        print(f"{kind}, seed {chosen}: {'; '.join(problems) or 'held'}", flush=True)  # noqa: T201 - a program
+        told = "did not begin" if problems is None else "; ".join(problems) or "held"
+        print(f"{kind}, seed {chosen}: {told}", flush=True)  # noqa: T201 - a program
         if problems:
             return f"--kinds {kind} --seed {chosen}: {'; '.join(problems)}"
         if (number + 1) * round_s >= seconds and (seed is None or number + 1 >= len(kinds)):

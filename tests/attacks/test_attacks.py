@@ -79,12 +79,10 @@ def test_names_of_attacks_are_unique() -> None:
 
 @pytest.mark.stress
 @pytest.mark.timeout(300)
-@pytest.mark.parametrize(
-    ("kind", "defect"), [("filters", "filters"), ("descriptions", "descriptions")]
-)
-def test_the_fuzzer_finds_a_planted_defect(kind: str, defect: str) -> None:
+@pytest.mark.parametrize("kind", ["filters", "descriptions", "submessages"])
+def test_the_fuzzer_finds_a_planted_defect(kind: str) -> None:
     """Within a minute of lies of that kind; and finds nothing where it is mended."""
     from tests.attacks.fuzz import fuzz
 
-    assert fuzz(60.0, [kind], (defect,))
+    assert fuzz(60.0, [kind], (kind,))
     assert not fuzz(10.0, [kind])

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -15,6 +16,8 @@ import pytest
 from aionode import rclpy
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
+from aionode.rclpy._impl import topics
+from aionode.rclpy._impl.topics import SubscriptionHandle
 from aionode.rclpy._rosidl import action_class, message_class, service_class
 from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
 from aionode.rclpy.executors import SingleThreadedExecutor
@@ -22,6 +25,7 @@ from aionode.rclpy.experimental.asyncio import AsyncNode
 from aionode.rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.task import Future
+from aionode.transport.base import SampleInfo
 from tests.support.peers import isolated_environment
 
 if TYPE_CHECKING:
@@ -58,6 +62,16 @@ def spin_until(node: Any, future: Any) -> Any:
     rclpy.spin_until_future_complete(node, future, timeout_sec=LIMIT_S)
     assert future.done()
     return future.result()
+
+
+def test_few_lifespans_of_publishers_are_remembered() -> None:
+    """Messages may come with any number of invented gids."""
+    handle: Any = object.__new__(SubscriptionHandle)
+    handle._lifespans, handle.io = {}, SimpleNamespace(call=lambda *_: 0)
+    for number in range(5000):
+        handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0))
+
+    assert len(handle._lifespans) == topics.REMEMBERED_PUBLISHERS
 
 
 @pytest.mark.usefixtures("initialised")

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from aionode.transport._reliability import (
     FLAPPING_NS,
     HEARTBEAT_NS,
+    MUTE_TICKS,
     RETURN_NS,
     UNANSWERED_EACH_TICK,
     WINDOW_BYTES,
@@ -61,6 +62,7 @@ class Wire:
         self.full: dict[bytes, list[tuple[int, WriterProxy]]] = {name: [] for name in self.names}
         self.room = dict.fromkeys(self.names, True)
         self.lost_count = 0
+        self.muted: list[bytes] = []
         self.refusals: list[int] = []
         self.beginnings: list[int] = []
         self.number = 0
@@ -93,6 +95,10 @@ class Wire:
     def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
         """Tell what will not come."""
         self.control.append(("gap", reader.gid, (first, last)))
+
+    def mute(self, reader: ReaderProxy) -> None:
+        """Record."""
+        self.muted.append(reader.gid)
 
     def lost(self, count: int) -> None:
         """Count."""
@@ -757,3 +763,48 @@ def test_readers_that_never_answer_are_asked_a_few_at_a_time() -> None:
     assert max(map(len, asked)) <= UNANSWERED_EACH_TICK + 1
     assert name in {each for some in asked for each in some}
     assert len({each for some in asked for each in some}) == 51
+
+
+@pytest.mark.parametrize("keep_all", [True, False])
+def test_a_reader_that_never_answers_is_waited_for_some_seconds_only(*, keep_all: bool) -> None:
+    """Any program may announce it, and say that it acknowledges; the others get everything."""
+    wire = Wire(2, keep_all=keep_all, depth=10_000)
+    liar, name = wire.names
+    wire.control = [each for each in wire.control if each[1] != liar]
+    count = 2 * WINDOW_BYTES // 1000
+    for _ in range(count):
+        wire.publish(1000)
+    held_at = []
+    for _ in range(MUTE_TICKS + 1):
+        while wire.topic[name]:
+            wire.bring_topic(name)
+        wire.control = [each for each in wire.control if each[1] != liar]
+        while wire.control:
+            wire.bring_control()
+        held_at.append(len(wire.heard[name]))
+        wire.clock.ns += 60_000_000
+        wire.history.tick()
+    wire.settle()
+
+    assert (held_at[-2] < count) is keep_all
+    assert wire.muted == [liar]
+    assert wire.heard[name] == list(range(1, count + 1))
+    assert wire.lost_count >= 512 * 1024 // 1200
+    assert liar not in wire.history.readers
+    assert wire.history.done
+
+
+def test_a_reader_that_has_answered_once_is_not_taken_for_mute() -> None:
+    """It is slow, or was frozen: KEEP_ALL waits for it."""
+    wire = Wire(1, keep_all=True, depth=100)
+    wire.settle()
+    wire.bring_control()
+    wire.bring_control()
+    wire.publish()
+    for _ in range(2 * MUTE_TICKS):
+        wire.control.clear()
+        wire.clock.ns += 60_000_000
+        wire.history.tick()
+
+    assert wire.muted == []
+    assert not wire.history.done

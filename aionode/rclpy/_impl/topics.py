@@ -34,6 +34,9 @@ Feed = list["Callable[[SampleInfo | None], None]"]
 Sample = tuple[Any, SampleInfo, int, int]
 """A message, where it comes from, when it arrived, and its number among those that were taken."""
 
+REMEMBERED_PUBLISHERS = 1024
+"""How many publishers are remembered; messages may come with any number of invented gids."""
+
 UNWEIGHED = 2
 """So many messages wait before their bytes count."""
 
@@ -382,6 +385,8 @@ class SubscriptionHandle(Destroyable):
         lifespan_ns = self._lifespans.get(sample_info.gid)
         if lifespan_ns is None:
             lifespan_ns = self.io.call(self._lifespan_of, sample_info.gid)
+            if len(self._lifespans) >= REMEMBERED_PUBLISHERS:
+                del self._lifespans[next(iter(self._lifespans))]
             self._lifespans[sample_info.gid] = lifespan_ns
         return bool(lifespan_ns) and now_ns() - sample_info.source_ns > lifespan_ns
 

@@ -33,6 +33,9 @@ BULK_BYTES: Final = 60_000
 its messages without the GIL.
 """
 
+REMEMBERED_PUBLISHERS: Final = 1024
+"""How many publishers have their messages counted."""
+
 GIVE_UP_TRIES: Final = 20
 """How often a publisher that is being destroyed tries to send one more message (0.1 s each)."""
 
@@ -335,7 +338,10 @@ class RclReader(RclDeclaration):
         payload = string_at(array.buffer, size)
         sequence = info.sequence
         if sequence == UNNUMBERED:
-            sequence = self._counts[gid] = self._counts.get(gid, 0) + 1
+            counts = self._counts
+            if gid not in counts and len(counts) >= REMEMBERED_PUBLISHERS:
+                del counts[next(iter(counts))]
+            sequence = counts[gid] = counts.get(gid, 0) + 1
         try:
             msg = self._decode(payload)
         except DecodeError as error:

@@ -26,6 +26,7 @@ from aionode.wire._key_expression import Side
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
+    from aionode.transport.zenoh._announced import AnnouncedLimit
 
 __all__ = ["Acknowledgements", "StatefulReader", "StatefulWriter"]
 
@@ -41,6 +42,14 @@ PROBE_S: Final = 1.0
 
 LIMIT: Final = 20_000
 """How many submessages wait for the loop; those that are dropped will be repeated."""
+
+
+GONE: Final = 1_000
+"""How many contexts that have gone are remembered: their endpoints have tokens of their own, which
+may still be there, and they may come back."""
+
+LONGEST_ID: Final = 32
+"""How many characters the id of a Zenoh session has at most."""
 
 
 class StatefulWriter(Protocol):
@@ -128,9 +137,10 @@ class Acknowledgements:
         waker: Wakes the event loop from Zenoh's threads.
         note_malformed: Called with the key of a malformed sample, and what it should be.
         on_participant: Called when another context is known to acknowledge.
+        announced: Limits how many contexts are kept; the others count as ones that do not.
 
     Attributes:
-        participants: The other contexts that acknowledge, those that have gone included.
+        participants: The other contexts that acknowledge, the last `GONE` that have gone included.
         present: Those of them whose tokens are there.
         writers: The publishers of this context that want acknowledgements, by key and gid.
         readers: The subscriptions of this context that acknowledge, by key and gid.
@@ -143,8 +153,11 @@ class Acknowledgements:
         waker: LoopWaker,
         note_malformed: Callable[[str, str], None],
         on_participant: Callable[[str], None],
+        announced: AnnouncedLimit,
     ) -> None:
         self.participants: set[str] = set()
+        self._gone: dict[str, None] = {}  # in order
+        self._announced = announced
         self.present: set[str] = set()
         self.writers: dict[tuple[str, bytes], StatefulWriter] = {}
         self.readers: dict[tuple[str, bytes], StatefulReader] = {}
@@ -187,6 +200,7 @@ class Acknowledgements:
         self._tokens.clear()
         self.participants.clear()
         self.present.clear()
+        self._gone.clear()
         self._ticks.clear()
         self._probes.clear()
 
@@ -266,15 +280,26 @@ class Acknowledgements:
                 reader.take_submessage(submessage)
 
     def _take_token(self, sample: zenoh.Sample) -> None:
-        participant = str(sample.key_expr).removeprefix(self._prefix).removesuffix(self._suffix)
-        if participant == self._participant:
+        key = str(sample.key_expr)
+        participant = key.removeprefix(self._prefix).removesuffix(self._suffix)
+        if participant == self._participant or len(participant) > LONGEST_ID:
             return
-        # A participant stays in the set when its token goes: its endpoints have tokens of their
-        # own, and it may come back.
-        if sample.kind == zenoh.SampleKind.DELETE:
+        if sample.kind != zenoh.SampleKind.DELETE:
+            self._note_present(participant, key)
+        elif participant in self.present:
             self.present.discard(participant)
+            self._announced.give_back(participant, key)
+            self._gone[participant] = None
+            if len(self._gone) > GONE:
+                oldest = next(iter(self._gone))
+                del self._gone[oldest]
+                self.participants.discard(oldest)
+
+    def _note_present(self, participant: str, key: str) -> None:
+        if participant in self.present or not self._announced.take(participant, key):
             return
         self.present.add(participant)
+        self._gone.pop(participant, None)
         if participant not in self.participants:
             self.participants.add(participant)
             self._on_participant(participant)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._session_state import Declaration, EndpointNames, SessionState
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 __all__ = ["BridgeDeclaration", "BridgeState"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
+
+MOST_NAMESPACES: Final = 100
+"""So many namespaces of bridges are served: each costs a look for each name of this context."""
 
 
 class SharedToken:
@@ -75,7 +78,7 @@ class BridgeState(SessionState):
     ) -> None:
         super().__init__(participant, domain_id, time_base, waker)
         self.acknowledgements = Unacknowledged(
-            participant, domain_id, waker, self.note_malformed, lambda _: None
+            participant, domain_id, waker, self.note_malformed, lambda _: None, self.announced
         )
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()
@@ -83,6 +86,7 @@ class BridgeState(SessionState):
         self._served: set[str] = set()  # all prefixes that there were; what is declared stays
         self._tokens: dict[str, SharedToken] = {}
         self._warned_of: set[str] = set()
+        self._is_full = False  # whether a bridge was left out
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
         """Make all endpoints: this is the first bridge."""
@@ -136,6 +140,15 @@ class BridgeState(SessionState):
 
     def add_bridge(self, zid: str, prefix: str) -> None:
         """Note a bridge, and declare what passes it. The state is connected."""
+        if prefix not in self._served and len(self._served) >= MOST_NAMESPACES:
+            if not self._is_full:
+                self._is_full = True
+                logger.warning(
+                    "bridges to DDS with more than %d namespaces were announced; those of others "
+                    "are left out, from now on without a word",
+                    MOST_NAMESPACES,
+                )
+            return
         self.prefixes[zid] = prefix
         if prefix not in self._served:
             self._served.add(prefix)

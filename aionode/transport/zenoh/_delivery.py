@@ -10,6 +10,7 @@ import zenoh
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 from aionode.transport._zenoh_config import BLOCK_US, FLUSH_S
 from aionode.transport.base import SampleInfo
+from aionode.transport.zenoh._handlers import BULK_PRIORITY, reason
 from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ __all__ = [
     "is_reliable",
     "is_transient",
     "sample_info_of",
+    "send_bulk",
     "withdraw",
 ]
 
@@ -69,6 +71,32 @@ def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
         return None
     fields = unpack_fields(extra.to_bytes())
     return None if fields is None else SampleInfo(fields[2], fields[0], fields[1])
+
+
+def send_bulk(
+    sender: zenoh.Session | zenoh.Publisher | ext.AdvancedPublisher,
+    key: str,
+    payload: bytes,
+    extra: bytes,
+) -> None:
+    """Send a message from a thread, with the priority of large ones if the session is open.
+
+    No caller waits, so an error, after the session closed, is logged.
+    """
+    try:
+        if isinstance(sender, zenoh.Session):
+            sender.put(
+                key,
+                payload,
+                attachment=extra,
+                congestion_control=DROP,
+                priority=BULK_PRIORITY,
+                allowed_destination=zenoh.Locality.REMOTE,
+            )
+        else:
+            sender.put(payload, attachment=extra)
+    except zenoh.ZError as error:
+        logger.debug("%s: not sent: %s", key, reason(error))
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:

@@ -27,13 +27,16 @@ class MatchedReaders:
     Attributes:
         participants: The context of each, by gid.
         acknowledging: Those that acknowledge, each with its context.
-        others: Those of contexts that do not acknowledge, whatever their reliability.
+        others: Those of contexts that do not acknowledge, whatever their reliability, and those
+            that never have, though their contexts say that they do.
     """
 
     def __init__(self, endpoint: EndpointInfo, state: SessionState) -> None:
         self.participants: dict[bytes, str] = {}
         self.acknowledging: dict[bytes, str] = {}
         self.others: set[bytes] = set()
+        self._mute: set[bytes] = set()
+        self._had_mute = False
         self._endpoint = endpoint
         self._state = state
 
@@ -45,18 +48,43 @@ class MatchedReaders:
             self.acknowledging.clear()
             for each in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self._endpoint.name):
                 self._add(each)
+            self._mute &= self.participants.keys()
         else:
             self.participants.pop(reader.gid, None)
             self.others.discard(reader.gid)
             self.acknowledging.pop(reader.gid, None)
             if present:
                 self._add(reader)
+            else:
+                self._mute.discard(reader.gid)
 
     def _add(self, reader: EndpointInfo) -> None:
         if not (self._state.reaches(reader.node) and self._endpoint.matches(reader)):
             return
         participant = self.participants[reader.gid] = reader.node.participant
-        if participant not in self._state.acknowledgements.participants:
+        acknowledges = participant in self._state.acknowledgements.participants
+        if not acknowledges or reader.gid in self._mute:
             self.others.add(reader.gid)
         elif reader.qos.resolved().reliability is ReliabilityPolicy.RELIABLE:
             self.acknowledging[reader.gid] = participant
+
+    def note_mute(self, gid: bytes) -> bool:
+        """Count a reader among the others, as it has never acknowledged anything.
+
+        Returns whether there never was such a reader before.
+        """
+        is_first, self._had_mute = not self._had_mute, True
+        if self.acknowledging.pop(gid, None) is not None:
+            self._mute.add(gid)
+            self.others.add(gid)
+        return is_first
+
+    def note_heard(self, gid: bytes) -> bool:
+        """Take note of an acknowledgement; return whether it is the first one of a mute reader.
+
+        Then all readers are to be found anew.
+        """
+        if gid not in self._mute:
+            return False
+        self._mute.discard(gid)
+        return True

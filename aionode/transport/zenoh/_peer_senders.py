@@ -37,6 +37,12 @@ sent less than Zenoh's queue holds."""
 LOOK_S: Final = 0.05
 """The interval of looks while it does not."""
 
+MOST_THREADS: Final = 200
+"""How many peers have a thread of their own at once; the others share `SHARED` of them. Whoever
+announces thousands of contexts that read nothing starts no more."""
+
+SHARED: Final = 8
+
 REMEMBERED: Final = 1_000
 """How many peers are remembered before idle ones are dropped."""
 
@@ -82,6 +88,9 @@ class PeerSenders:
         if peer is not None:
             peer.spent_bytes = 0
 
+    def _peer(self, participant: str) -> PeerSender:
+        return self._peers.setdefault(participant, PeerSender())
+
     def send(self, participants: Iterable[str], size_bytes: int, job: Callable[[], None]) -> None:
         """Run `job`, which sends to some peers: at once if it cannot block, else in a thread."""
         slow = ""
@@ -103,12 +112,13 @@ class PeerSenders:
 
     def submit(self, participant: str, size_bytes: int, job: Callable[[], None]) -> None:
         """Run `job`, which sends to a peer, in the thread for it."""
-        peer = self._peers.get(participant)
-        if peer is None:
-            peer = self._peers[participant] = PeerSender()
+        peer = self._peer(participant)
         if peer.send_thread is None:
             self._tidy()
-            peer.send_thread = SendThread("aionode-peer", self._waker)
+            if len(self.send_threads()) >= MOST_THREADS:
+                peer = self._peer(f"shared {hash(participant) % SHARED}")
+            if peer.send_thread is None:
+                peer.send_thread = SendThread("aionode-peer", self._waker)
         peer.send_thread.submit(
             partial(self._run, participant, peer, size_bytes, job, self._stopped)
         )

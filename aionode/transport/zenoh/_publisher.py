@@ -14,17 +14,18 @@ from zenoh import ext
 from aionode.clock import SilenceAlarm, perf_ns
 from aionode.errors import TransportError
 from aionode.qos import depth_of, is_unlimited, keeps_all
-from aionode.transport._reliability import WriterHistory
+from aionode.transport._reliability import MUTE_TICKS, WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
+from aionode.transport.zenoh._acknowledgements import TICK_S
 from aionode.transport.zenoh._delivery import (
     BULK_BYTES,
-    DROP,
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
     is_reliable,
     is_transient,
+    send_bulk,
     withdraw,
 )
 from aionode.transport.zenoh._handlers import (
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
+    from aionode.transport._reliability import ReaderProxy
     from aionode.transport.base import StopSender
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
@@ -455,22 +457,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
     def _send(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
-        """Send from a thread. No caller waits, so an error, after the session closed, is logged."""
-        session = self.state.session
-        try:
-            if session is None:
-                publisher.put(payload, attachment=extra)
-            else:
-                session.put(
-                    self._key,
-                    payload,
-                    attachment=extra,
-                    congestion_control=DROP,
-                    priority=BULK_PRIORITY,
-                    allowed_destination=zenoh.Locality.REMOTE,
-                )
-        except zenoh.ZError as error:
-            logger.debug("%s: not sent: %s", self._key, reason(error))
+        """Send from a thread."""
+        send_bulk(self.state.session or publisher, self._key, payload, extra)
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions of other contexts."""
@@ -511,11 +499,22 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def take_acknack(self, submessage: Submessage) -> None:
         """Handle an ACKNACK of one of its readers."""
+        if self._matched.note_heard(submessage.reader):
+            self._update()
         if self._history is not None:
             self._history.acknack(submessage.reader, submessage.first, submessage.ranges())
             self._progress()
             if self in self.state.lingering and self.is_done():
                 self.finish()
+
+    def mute(self, reader: ReaderProxy) -> None:
+        """Leave a reader that has never answered to Zenoh, as one of a ROS node, until it does."""
+        if self._matched.note_mute(reader.gid):
+            text = "%s: a reader in context %s has acknowledged nothing for %.3g s, and is left out"
+            logger.warning(text, self.endpoint.name, reader.participant, MUTE_TICKS * TICK_S)
+        if self._history is not None:
+            self._history.has_other_readers = True
+            self._update_route()
 
     def tick(self) -> bool:
         """Send heartbeats, and give up in the end; return whether to call again."""

@@ -87,6 +87,9 @@ ANSWER_S: Final = 1.0
 NODES_S: Final = 3.0
 """The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
 
+REMEMBERED: Final = 10_000
+"""How many lost sessions are remembered: others may open and close any number."""
+
 ATTEMPTS: Final = 4
 """How often the connection is cut for one participant; some are visible, but not reachable."""
 
@@ -190,8 +193,8 @@ class Recovery:
         now_s = self._changed_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
-            if now_s >= self._until_s:
-                self._lost.clear()  # the looks for those have ended
+            if now_s >= self._until_s or len(self._lost) >= REMEMBERED:
+                self._lost.clear()  # the looks for those have ended, or they are too many
             self._until_s = now_s + WATCH_S
             self._lost.add(zid)
             self._returned.discard(zid)
@@ -238,6 +241,8 @@ class Recovery:
         # more, no event tells of it.
         self._returned = silent
         if silent:
+            if len(self._cuts) >= REMEMBERED:
+                self._cuts.clear()
             self._cuts.update(silent)
             self._check_in(declared_s)
             logger.info(

@@ -3,8 +3,14 @@
 from __future__ import annotations
 
 import threading
+from collections import Counter
+from typing import Final
 
 __all__ = ["RequestRoom"]
+
+SHARE: Final = 3
+"""A client may have so many times as much as is left: three quarters of the room if it is alone. So
+there is always room for the first request of another one."""
 
 
 class RequestRoom:
@@ -21,16 +27,35 @@ class RequestRoom:
         self.limit_bytes = limit_bytes
         self._lock = threading.Lock()
         self._bytes = 0
+        self._of: Counter[str] = Counter()  # bytes, by client
+        self._requests: dict[int, tuple[str, int]] = {}  # client and bytes, by id of the object
 
-    def take(self, size_bytes: int) -> bool:
-        """Return whether there is room for a request, and count it if so."""
+    def take(self, request: object, client: str, size_bytes: int) -> bool:
+        """Return whether there is room for a request, and count it if so.
+
+        Args:
+            request: The request; it has to exist until its room is given back.
+            client: Whose it is: each has a share.
+            size_bytes: How large it is.
+        """
         with self._lock:
-            if self._bytes and self._bytes + size_bytes > self.limit_bytes:
+            left_bytes = self.limit_bytes - self._bytes
+            own_bytes = self._of.get(client, 0)
+            if self._bytes and (
+                size_bytes > left_bytes
+                or (own_bytes and own_bytes + size_bytes > SHARE * left_bytes)
+            ):
                 return False
             self._bytes += size_bytes
+            self._of[client] = own_bytes + size_bytes
+            self._requests[id(request)] = client, size_bytes
         return True
 
-    def give_back(self, size_bytes: int) -> None:
+    def give_back(self, request: object) -> None:
         """Count a request no more: it has ended."""
         with self._lock:
+            client, size_bytes = self._requests.pop(id(request), ("", 0))
             self._bytes -= size_bytes
+            self._of[client] -= size_bytes
+            if not self._of[client]:
+                del self._of[client]

@@ -61,11 +61,9 @@ UNANNOUNCED = 8
 """So many threads at most send answers to clients without a token, which have any ids they like."""
 
 TOO_MANY = (
-    "other requests are waiting already in this process, which take as many bytes as may wait "
-    "(AIONODE_QUEUE_BYTES)"
+    "other requests are waiting already in this process, which take as many bytes as may wait, or "
+    "those of this client take its share of them (AIONODE_QUEUE_BYTES)"
 )
-
-REMEMBERED_CLIENTS = 10_000
 
 FRESH_NS = 100_000_000
 """A request that is no older, by its stamp, shows that its client lives."""
@@ -111,12 +109,17 @@ class ZenohServer(Declaration):
         self._refused = 0
         self._note_refused = state.queue(self._report_refused, limit=1)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
-        self._clients: dict[bytes, str] = {}
+        self._clients: dict[bytes, str] = {}  # the context of each that has a token
+        self._unwatch: Callable[[], None] | None = None
         state.cancellations.listen(endpoint.name, self.cancel)
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the queryable."""
+        if self.state.graph is not None:
+            self._unwatch = self.state.graph.watch(
+                EndpointKind.CLIENT, self.endpoint.name, self._note_client
+            )
         self._queryable = session.declare_queryable(
             self.key,
             direct(self._arrive),
@@ -129,10 +132,20 @@ class ZenohServer(Declaration):
         queryable, self._queryable = self._queryable, None
         if queryable is not None:
             queryable.undeclare()
+        if self._unwatch is not None:
+            self._unwatch()
+            self._unwatch = None
+        self._clients.clear()
         for query in self._queue.take_out():
-            self.state.request_room.give_back(size_of(query))
+            self.state.request_room.give_back(query)
         for request in list(self.unanswered.values()):
             request.drop()
+
+    def _note_client(self, client: EndpointInfo, present: bool) -> None:
+        if present:
+            self._clients[client.gid] = client.node.participant
+        else:
+            self._clients.pop(client.gid, None)
 
     def close(self) -> None:
         """Withdraw the server for good."""
@@ -152,7 +165,8 @@ class ZenohServer(Declaration):
         sends: if that one reads no answers, it alone waits.
         """
         room = self.state.request_room
-        if len(self._queue) < ARRIVING_REQUESTS and room.take(size_of(query)):
+        client = self._clients.get(gid_in(query.attachment), "")
+        if len(self._queue) < ARRIVING_REQUESTS and room.take(query, client, size_of(query)):
             self._queue.put(query)
             return
         self._note_refused.put(None)
@@ -201,23 +215,9 @@ class ZenohServer(Declaration):
 
     def participant_of(self, client: bytes) -> str:
         """Return the context of a client; one of a few for clients without a token."""
-        participant = self._clients.get(client)
-        if participant is None:
-            graph = self.state.graph
-            for one in (
-                ()
-                if graph is None
-                else graph.endpoints(EndpointKind.CLIENT, name=self.endpoint.name)
-            ):
-                if one.gid == client:
-                    participant = one.node.participant
-                    if len(self._clients) >= REMEMBERED_CLIENTS:
-                        self._clients.clear()
-                    self._clients[client] = participant
-                    break
-            else:
-                return f"unannounced {client[0] % UNANNOUNCED if client else 0}"
-        return participant
+        return (
+            self._clients.get(client) or f"unannounced {client[0] % UNANNOUNCED if client else 0}"
+        )
 
     def refuse(self, query: zenoh.Query, sample_info: SampleInfo, problem: bytes) -> None:
         """End `query` with an error."""
@@ -231,13 +231,19 @@ class ZenohServer(Declaration):
         size_bytes: int,
     ) -> None:
         """End `query`, without waiting for a client that hangs."""
-        room, request_bytes = self.state.request_room, size_of(query)
+        room = self.state.request_room
 
         def send() -> None:
             answer(query, reply)
-            room.give_back(request_bytes)
+            room.give_back(query)
 
         self.state.peer_senders.send((self.participant_of(sample_info.gid),), size_bytes, send)
+
+
+def gid_in(extra: zenoh.ZBytes | None) -> bytes:
+    """Return the gid of the client in the attachment of a request; empty if there is none."""
+    fields = None if extra is None else attachment.unpack_fields(extra.to_bytes())
+    return b"" if fields is None else fields[2]
 
 
 def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:

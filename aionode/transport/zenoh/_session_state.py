@@ -137,7 +137,8 @@ class SessionState:
         self.peer_senders = PeerSenders(self.waker, self._look)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(
-            participant, domain_id, self.waker, self.note_malformed, self._acknowledges
+            *(participant, domain_id, self.waker, self.note_malformed, self._acknowledges),
+            self.announced,
         )
         self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()

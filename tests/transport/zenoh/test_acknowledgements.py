@@ -17,6 +17,7 @@ from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+from aionode.transport import _reliability as reliability
 from aionode.transport._reliability import WINDOW_BYTES
 from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.zenoh import _session_state as session_state
@@ -345,6 +346,39 @@ async def test_a_heartbeat_in_a_publishers_name_leads_no_acknowledgement_astray(
             assert reader._proxies[gid].participant == first.participant
         reader._proxies[gid].participant = "abc"  # as if the graph had not known the publisher yet
         publisher.publish(Int32(data=1))
+        await acknowledged(publisher)
+
+
+async def test_a_reader_that_never_acknowledges_is_left_to_zenoh_until_it_does(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A lie must not hold up a KEEP_ALL publisher; a reader that only began slowly loses little."""
+    monkeypatch.setattr(reliability, "MUTE_TICKS", 2)
+    async with (
+        two_contexts() as (first, second),
+        quiet_node("a", first) as a,
+        quiet_node("b", second) as b,
+    ):
+        publisher = a.create_publisher(Int32, "n", KEEP_ALL)
+        subscription = b.create_subscription(Int32, "n", None, KEEP_ALL)
+        reader = reader_of(subscription)
+        with monkeypatch.context() as patch:
+            patch.setattr(ZenohReader, "take_submessage", lambda *_: None)
+            await publisher.wait_for_subscribers()
+            history = writer_of(publisher)._history
+            assert history is not None
+            publisher.publish(Int32(data=1))
+            await until(lambda: not history.readers)
+            assert history.has_other_readers
+            assert publisher.stats.dropped == 1
+            assert "and is left out" in caplog.text
+            publisher.publish(Int32(data=2))
+            assert [(await subscription.receive()).data for _ in range(2)] == [1, 2]
+        answer = Submessage(SubmessageKind.ACKNACK, writer_of(publisher).gid, reader.gid, 3, 0, b"")
+        writer_of(publisher).take_acknack(answer)
+        assert reader.gid in history.readers
+        publisher.publish(Int32(data=3))
+        assert (await subscription.receive()).data == 3
         await acknowledged(publisher)
 
 

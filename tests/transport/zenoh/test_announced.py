@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
-import pytest
+from types import SimpleNamespace
 
+import pytest
+import zenoh  # noqa: TID251  # its kinds of samples
+
+from aionode.clock import MachineTime
 from aionode.context import Context
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.message import type_name
 from aionode.qos import QoSProfile
+from aionode.transport._loop_waker import LoopWaker
 from aionode.transport.zenoh import _announced as announced
 from aionode.transport.zenoh import _graph_watcher as graph_watcher
+from aionode.transport.zenoh._acknowledgements import GONE
 from aionode.transport.zenoh._announced import AnnouncedLimit
+from aionode.transport.zenoh._bridge_state import BridgeState
+from aionode.transport.zenoh._session_state import SessionState
 from aionode.wire._liveliness import endpoint_token
 from aionode.wire.typehash import type_hash
 from tests.support.peers import DOMAIN_ID, quiet_node, raw_session
@@ -49,6 +57,41 @@ def test_a_connected_participant_keeps_its_place() -> None:
     assert taken(limit, "late", 1) == 0
     assert taken(limit, "robot", 100) == 100
     assert taken(limit, "robot", 1000) < 1000
+
+
+def test_contexts_that_acknowledge_are_limited_present_or_gone() -> None:
+    """A token costs whoever declares it nothing."""
+    state = SessionState("a1", DOMAIN_ID, graph_bytes=LIMIT)
+    acknowledgements = state.acknowledgements
+
+    def take(participant: str, kind: zenoh.SampleKind) -> None:
+        key = acknowledgements.token_of(participant)
+        acknowledgements._take_token(SimpleNamespace(key_expr=key, kind=kind))  # type: ignore[arg-type]  # a stand-in
+
+    take("f" * 33, zenoh.SampleKind.PUT)  # no Zenoh session has such an id
+    for number in range(3000):
+        take(f"{number:x}", zenoh.SampleKind.PUT)
+    kept = len(acknowledgements.present)
+    assert 1500 < kept < LIMIT // announced.TOKEN_BYTES
+    for number in range(3000):
+        take(f"{number:x}", zenoh.SampleKind.DELETE)
+
+    assert acknowledgements.present == set()
+    assert len(acknowledgements.participants) == GONE
+    take("7", zenoh.SampleKind.PUT)
+    assert "7" in acknowledgements.present
+
+
+def test_namespaces_of_bridges_are_limited(caplog: pytest.LogCaptureFixture) -> None:
+    """Each costs a look for each name of this context, and is remembered for good."""
+    state = BridgeState("a1", DOMAIN_ID, MachineTime(), LoopWaker())
+    for number in range(150):
+        state.add_bridge(f"{number:x}", f"robot{number}/")
+    state.add_bridge("ff", "robot1/")
+
+    assert len(state._served) == 100
+    assert len(state.prefixes) == 101
+    assert caplog.text.count("more than 100 namespaces") == 1
 
 
 def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> None:

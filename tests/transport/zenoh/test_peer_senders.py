@@ -10,6 +10,7 @@ from functools import partial
 import pytest
 
 from aionode.transport._loop_waker import LoopWaker
+from aionode.transport.zenoh import _peer_senders as peer_senders
 from aionode.transport.zenoh._peer_senders import (
     ALLOWANCE_BYTES,
     OVERHEAD_BYTES,
@@ -55,6 +56,24 @@ class Sent:
 def waited(gate: threading.Event) -> None:
     """Hang until the gate is opened."""
     gate.wait()
+
+
+async def test_thousands_of_peers_that_read_nothing_share_a_few_threads(
+    peers: PeerSenders, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever announces them would else have this process start as many, until it cannot."""
+    monkeypatch.setattr(peer_senders, "MOST_THREADS", 3)
+    gate, sent = threading.Event(), Sent()
+    for number in range(100):
+        for job in (partial(waited, gate), sent):
+            peers.send([f"invented{number}"], ALLOWANCE_BYTES, job)
+    threads = len(peers.send_threads())
+    gate.set()
+    for send_thread in peers.send_threads():
+        await send_thread.flush()
+
+    assert threads <= 3 + peer_senders.SHARED
+    assert len(sent.threads) == 100
 
 
 async def test_a_peer_that_answers_is_sent_to_from_the_loop(peers: PeerSenders) -> None:

@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
+from aionode.context import Context
 from aionode.endpoints.client import Client
 from aionode.errors import RequestTimeoutError, ServiceError, ServiceUnavailableError
 from aionode.interfaces import get_service
@@ -23,6 +24,7 @@ from aionode.interfaces.rcl_interfaces.msg import Parameter
 from aionode.interfaces.rcl_interfaces.srv import SetParameters
 from aionode.message import from_builtins
 from aionode.transport.zenoh import _services as services
+from aionode.transport.zenoh._request_room import RequestRoom
 from aionode.transport.zenoh._services import error_payload, parse_error
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
@@ -157,21 +159,40 @@ async def test_ten_thousand_requests_wait_and_more_are_refused_with_the_reason(
         assert len(set(answers) - set(errors)) == waiting
 
 
+def test_no_client_takes_all_the_room_of_requests() -> None:
+    """Each may have three times as much as is left; a single request always fits."""
+    room = RequestRoom(1000)
+    requests = [object() for _ in range(3000)]
+
+    assert sum(room.take(each, "a", 1) for each in requests[:1000]) == 750
+    assert sum(room.take(each, "b", 1) for each in requests[1000:2000]) == 188
+    assert room.take(requests[2000], "c", 50)
+    assert not room.take(requests[2001], "d", 50)
+    for each in requests:
+        room.give_back(each)
+    assert room.take(requests[0], "a", 5000)
+
+
 async def test_requests_whose_answers_wait_to_be_sent_are_limited_in_bytes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A client that reads no answers cannot have any number of its requests kept."""
     async with (
         two_contexts(queue_bytes=65_536) as (first, second),
+        Context() as third,
         quiet_node("server", first) as server,
         quiet_node("client", second) as node,
+        quiet_node("other", third) as other_node,
     ):
         service = server.create_service(SetParameters, "set", lambda _: SetParameters.Response())
         (registration,) = (
             each for each in service._registrations if isinstance(each, services.ZenohServer)
         )
         client = node.create_client(SetParameters, "set")
+        other = other_node.create_client(SetParameters, "set")
         await client.wait_for_service()
+        await other.wait_for_service()
+        await until(lambda: len(registration._clients) == 2)
         unsent: list[Callable[[], None]] = []
         send = registration.state.peer_senders.send
         monkeypatch.setattr(
@@ -182,13 +203,17 @@ async def test_requests_whose_answers_wait_to_be_sent_are_limited_in_bytes(
         await until(lambda: len(unsent) + sum(call.done() for call in calls) == 20)
 
         refused = [call.exception() for call in calls if call.done()]
-        assert len(refused) == 14
+        assert len(refused) == 15
         assert all("requests are waiting already" in str(each) for each in refused)
+        taken = len(unsent)
+        other_call = other.call_async(request)  # there is room for the first one of another client
+        await until(lambda: len(unsent) + other_call.done() == taken + 1)
+        assert not other_call.done()
 
         monkeypatch.setattr(registration.state.peer_senders, "send", send)
         for job in unsent:
             job()
-        await asyncio.gather(*calls, return_exceptions=True)
+        await asyncio.gather(other_call, *calls, return_exceptions=True)
         assert await client.call(request) == SetParameters.Response()
 
 
