@@ -15,6 +15,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── DecodeError (ValueError)
     ├── EntityDestroyedError (RuntimeError)
     ├── EntityInactiveError (RuntimeError)
+    ├── ExecutableNotFoundError (LookupError)
     ├── ForkedProcessError (RuntimeError)
     ├── GoalError (RuntimeError)
     │   ├── GoalAbortedError
@@ -39,6 +40,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     │   ├── InvalidNodeNameException
     │   ├── InvalidServiceNameException
     │   └── InvalidTopicNameException
+    ├── PackageNotFoundError (LookupError)
     ├── ParameterException
     │   ├── InvalidParameterException (ValueError)
     │   ├── InvalidParameterTypeException (TypeError)
@@ -91,6 +93,7 @@ from aionode.errors._values import (
     GoalLostError,
     GoalRejectedError,
     GoalTransitionError,
+    IdlError,
     InvalidArgumentException,
     InvalidLogLevelError,
     InvalidNamespaceException,
@@ -119,6 +122,7 @@ from aionode.errors._values import (
     QueueFullError,
     TimeoutException,
     TransformException,
+    TypeDescriptionError,
     UnknownROSArgsError,
 )
 
@@ -134,6 +138,7 @@ __all__ = [
     "DecodeError",
     "EntityDestroyedError",
     "EntityInactiveError",
+    "ExecutableNotFoundError",
     "ExtrapolationException",
     "ForkedProcessError",
     "ForwardExtrapolationException",
@@ -169,6 +174,7 @@ __all__ = [
     "NodeNameNonExistentError",
     "NodeNotRunningError",
     "NotReadyError",
+    "PackageNotFoundError",
     "ParameterAlreadyDeclaredException",
     "ParameterException",
     "ParameterFileError",
@@ -501,25 +507,6 @@ def silence(servers: int) -> str:
     return f"{servers} matched server(s) did not reply"
 
 
-class IdlError(AionodeError, ValueError):
-    """An interface definition cannot be read.
-
-    Attributes:
-        file: Path of the file, or the name of the type if the text did not come from a file.
-        line: Line number, from 1; 0 if the problem is about the whole file.
-        column: Column number, from 1; 0 if the problem is about the whole line.
-        problem: What is wrong and what would be valid.
-    """
-
-    def __init__(self, file: str, line: int, column: int, problem: str) -> None:
-        self.file = file
-        self.line = line
-        self.column = column
-        self.problem = problem
-        place = ":".join(str(part) for part in (file, line, column) if part)
-        super().__init__(f"{place}: {problem}")
-
-
 class InterfaceNotFoundError(AionodeError, LookupError):
     """There is no message, service or action type of this name.
 
@@ -537,18 +524,54 @@ class InterfaceNotFoundError(AionodeError, LookupError):
         super().__init__(f"{name}: {self.problem}; {hint}")
 
 
-class TypeDescriptionError(AionodeError, ValueError):
-    """The description of a type, which a node sent, is invalid or exceeds a limit.
+class PackageNotFoundError(AionodeError, LookupError):
+    """There is no package of this name.
 
     Attributes:
-        name: The type that was asked for.
-        problem: What is wrong with its description.
+        name: The name that was looked up.
+        places: The workspace and the folders of installed packages that were looked at.
+        suggestions: Names of packages that are similar.
     """
 
-    def __init__(self, name: str, problem: str) -> None:
+    def __init__(self, name: str, places: tuple[str, ...], known: Sequence[str]) -> None:
         self.name = name
-        self.problem = problem
-        super().__init__(f"description of {brief(name)}: {problem}")
+        self.places = places
+        self.suggestions, hint = offered(name, "packages there", known)
+        super().__init__(
+            f"package {name!r}: not found in {', '.join(places) or 'any folder'}; {hint}; "
+            "--workspace FOLDER names the folder that holds it"
+        )
+
+
+class ExecutableNotFoundError(AionodeError, LookupError):
+    """A package has no executable of this name.
+
+    Attributes:
+        package: The name of the package.
+        name: The name that was looked up.
+        place: The folder of the package.
+        suggestions: Names of its executables that are similar.
+    """
+
+    def __init__(self, package: str, name: str, place: str, known: Sequence[str]) -> None:
+        self.package = package
+        self.name = name
+        self.place = place
+        self.suggestions, hint = offered(name, "its executables", known)
+        super().__init__(
+            f"package {package!r}: no executable {name!r} in {place}; {hint}; they are the scripts "
+            "of its setup.py, the programs of its CMakeLists.txt, and what was built"
+        )
+
+
+def offered(name: str, what: str, known: Sequence[str]) -> tuple[tuple[str, ...], str]:
+    """Return which names are close to one, and a text with them, or else with the first ten."""
+    import difflib  # only for an error
+
+    near = tuple(difflib.get_close_matches(name, known, 1))
+    more = f" and {len(known) - 10} more" if len(known) > 10 else ""
+    hint = f"did you mean {near[0]}?" if near else f"{what}: {', '.join(known[:10]) or 'none'}"
+    return near, hint if near else hint + more
 
 
 HOW_TO_FIND = (

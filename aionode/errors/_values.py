@@ -1,4 +1,4 @@
-"""The base of all errors, and those about names, parameters, publishing, goals, transforms."""
+"""The base of all errors, and those about names, parameters, definitions, goals, transforms."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ __all__ = [
     "GoalLostError",
     "GoalRejectedError",
     "GoalTransitionError",
+    "IdlError",
     "InvalidArgumentException",
     "InvalidLogLevelError",
     "InvalidNamespaceException",
@@ -45,6 +46,7 @@ __all__ = [
     "QueueFullError",
     "TimeoutException",
     "TransformException",
+    "TypeDescriptionError",
     "UnknownROSArgsError",
 ]
 
@@ -555,3 +557,36 @@ class InvalidArgumentException(TransformException, ValueError):
 
 class TimeoutException(TransformException, TimeoutError):
     """A transform did not become available in time; the text says why."""
+
+
+class IdlError(AionodeError, ValueError):
+    """An interface definition cannot be read.
+
+    Attributes:
+        file: Path of the file, or the name of the type if the text did not come from a file.
+        line: Line number, from 1; 0 if the problem is about the whole file.
+        column: Column number, from 1; 0 if the problem is about the whole line.
+        problem: What is wrong and what would be valid.
+    """
+
+    def __init__(self, file: str, line: int, column: int, problem: str) -> None:
+        self.file = file
+        self.line = line
+        self.column = column
+        self.problem = problem
+        place = ":".join(str(part) for part in (file, line, column) if part)
+        super().__init__(f"{place}: {problem}")
+
+
+class TypeDescriptionError(AionodeError, ValueError):
+    """The description of a type, which a node sent, is invalid or exceeds a limit.
+
+    Attributes:
+        name: The type that was asked for.
+        problem: What is wrong with its description.
+    """
+
+    def __init__(self, name: str, problem: str) -> None:
+        self.name = name
+        self.problem = problem
+        super().__init__(f"description of {brief(name)}: {problem}")

@@ -44,7 +44,12 @@ ALIASES: Final = {
 KINDS: Final = ("msg", "srv", "action")
 
 
-def install(*, interfaces: Iterable[str | Path] = (), prefer_ros: bool = False) -> None:
+def install(
+    *,
+    interfaces: Iterable[str | Path] = (),
+    workspace: str | Path | None = None,
+    prefer_ros: bool = False,
+) -> None:
     """Make `import rclpy` and `from std_msgs.msg import String` mean aionode's, in this process.
 
     Message packages are those of aionode, those of the given folders, and those that are installed
@@ -53,6 +58,8 @@ def install(*, interfaces: Iterable[str | Path] = (), prefer_ros: bool = False) 
 
     Args:
         interfaces: Folders with message packages (``my_msgs/msg/Words.msg``), which need no build.
+        workspace: The folder with the packages of the program, which need no build either; else
+            the workspace around the program.
         prefer_ros: Use ROS 2's own packages, and change nothing, if its rclpy is installed.
 
     Raises:
@@ -80,6 +87,10 @@ def install(*, interfaces: Iterable[str | Path] = (), prefer_ros: bool = False) 
         sys.meta_path.insert(0, FINDER)
     for folder in interfaces:
         add_folder(folder)
+    if workspace is not None:
+        from aionode.rclpy._workspace import use  # which looks for packages
+
+        use(workspace)
 
 
 def rclpy_of_ros() -> Path | None:
@@ -117,8 +128,10 @@ class AionodeFinder(MetaPathFinder):
         if package in ALIASES:
             own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
             return spec_from_loader(fullname, AliasLoader(own)) if exists(own) else None
-        if package == "aionode" or not has_interfaces(package):
+        if package == "aionode" or package in sys.stdlib_module_names:
             return None
+        if not has_interfaces(package):
+            return None if inside else of_workspace(package)
         if not inside:
             # A package may have Python modules beside its messages.
             ordinary = None if package in shipped_packages() else PathFinder.find_spec(package)
@@ -134,6 +147,21 @@ class AionodeFinder(MetaPathFinder):
             if module_name(*name.split("/")) == fullname:
                 return spec_from_loader(fullname, InterfaceLoader(name))
         return None
+
+
+def of_workspace(package: str) -> ModuleSpec | None:
+    """Return how the Python package of a package of the workspace is loaded.
+
+    What is installed or on PYTHONPATH comes first. A folder without Python is no package for that:
+    in a workspace, the folder around a Python package often has the same name.
+    """
+    ordinary = PathFinder.find_spec(package)
+    if ordinary is not None and ordinary.origin is not None:
+        return None
+    from aionode.rclpy._workspace import here  # only for what is not found otherwise
+
+    root = here().module_root(package)
+    return None if root is None else PathFinder.find_spec(package, [str(root)])
 
 
 def exists(module: str) -> bool:

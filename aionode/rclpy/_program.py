@@ -8,20 +8,22 @@ from importlib.machinery import ModuleSpec, SourceFileLoader
 from importlib.util import find_spec
 from pathlib import Path
 from types import CodeType, ModuleType, TracebackType
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 from aionode.errors import AionodeError
 
 __all__ = ["main"]
 
 USAGE = """\
-usage: python -m aionode.rclpy [--interfaces FOLDER] PROGRAM.py [ARGUMENT...]
-       python -m aionode.rclpy [--interfaces FOLDER] -m MODULE[:FUNCTION] [ARGUMENT...]
-       python -m aionode.rclpy [--interfaces FOLDER] --check (PROGRAM.py | FOLDER)...
+usage: python -m aionode.rclpy [OPTION...] PROGRAM.py [ARGUMENT...]
+       python -m aionode.rclpy [OPTION...] -m MODULE[:FUNCTION] [ARGUMENT...]
+       python -m aionode.rclpy [OPTION...] --check (PROGRAM.py | FOLDER)...
 
 Runs a program that imports rclpy, with aionode in the place of ROS 2.
 
   --interfaces FOLDER  message packages that the program uses; may be repeated
+  --workspace FOLDER   the packages that the program uses; else those around the program
+  --path FOLDER        where modules are looked for, in the place of the current folder
   -m MODULE            run a module, as python -m does; with :FUNCTION, call that function, as
                        the executable of a package does
   --check              run nothing: list what programs import, and whether it is there; the exit
@@ -30,6 +32,24 @@ Runs a program that imports rclpy, with aionode in the place of ROS 2.
 
 
 CHECK = "--check"
+FOLDERS = ("--interfaces", "--workspace", "--path")
+"""The options with a folder."""
+
+
+class Parsed(NamedTuple):
+    """The arguments of a command line.
+
+    Attributes:
+        folders: The folders of each option.
+        is_module: Whether a module is run, and no file.
+        name: The name of the module or file; ``--check`` if nothing is run.
+        arguments: What follows.
+    """
+
+    folders: dict[str, list[str]]
+    is_module: bool
+    name: str
+    arguments: list[str]
 
 
 def main(argv: Sequence[str]) -> None:
@@ -41,12 +61,14 @@ def main(argv: Sequence[str]) -> None:
     folders, is_module, name, arguments = parsed(argv)
     from aionode.rclpy._finder import install  # not to be loaded for a usage text
 
+    workspace = folders["--workspace"][-1] if folders["--workspace"] else None
     try:
-        install(interfaces=folders)
+        install(interfaces=folders["--interfaces"], workspace=workspace)
     except (AionodeError, OSError) as error:
         fail(str(error))
     if name == CHECK:
         list_imports(arguments)
+    sys.path[:1] = folders["--path"] or sys.path[:1]
     sys.excepthook = report
     code, module = (of_module if is_module else of_file)(name)
     sys.argv = [str(module.__file__), *arguments]
@@ -54,25 +76,25 @@ def main(argv: Sequence[str]) -> None:
     exec(code, vars(module))  # noqa: S102 (the program)
 
 
-def parsed(argv: Sequence[str]) -> tuple[list[str], bool, str, list[str]]:
-    """Return folders of interfaces, whether a module is run, its or the file's name, the rest."""
+def parsed(argv: Sequence[str]) -> Parsed:
+    """Return what the arguments say; a usage text ends the process."""
     given = list(argv)
-    folders: list[str] = []
+    folders: dict[str, list[str]] = {option: [] for option in FOLDERS}
     while given:
         first = given.pop(0)
         if first in {"-h", "--help"}:
             sys.stdout.write(USAGE)
             raise SystemExit(0)
-        if first == "--interfaces" and given:
-            folders.append(given.pop(0))
+        if first in FOLDERS and given:
+            folders[first].append(given.pop(0))
         elif first == CHECK and given:
-            return folders, False, CHECK, given
+            return Parsed(folders, False, CHECK, given)
         elif first == "-m" and given:
-            return folders, True, given[0], given[1:]
+            return Parsed(folders, True, given[0], given[1:])
         elif first.startswith("-"):
             break
         else:
-            return folders, False, first, given
+            return Parsed(folders, False, first, given)
     sys.stderr.write(USAGE)
     raise SystemExit(2)
 
@@ -105,7 +127,10 @@ def of_file(name: str) -> tuple[CodeType, ModuleType]:
     module = ModuleType("__main__")
     loader = SourceFileLoader("__main__", name)
     vars(module).update(__file__=name, __loader__=loader, __spec__=None, __builtins__=__builtins__)
-    return compile(source, name, "exec"), module
+    code = compile(source, name, "exec")
+    if only_defines_main(source):
+        fail(f"{name} defines main() and does not call it; --path FOLDER -m MODULE:main does")
+    return code, module
 
 
 def of_module(name: str) -> tuple[CodeType, ModuleType]:
@@ -119,13 +144,13 @@ def of_module(name: str) -> tuple[CodeType, ModuleType]:
         if spec is not None and spec.submodule_search_locations is not None:
             spec = find_spec(f"{name}.__main__")
     except ModuleNotFoundError as error:
-        fail(f"No module named {error.name}")
+        fail(no_module(error.name or name))
     code = code_of(spec)
     if spec is None or code is None:
-        fail(f"No module named {name}")
+        fail(no_module(name))
     if function:
         code = code_of_call(name, function)
-    elif only_defines_main(spec):
+    elif only_defines_main(source_of(spec)):
         fail(f"{name} defines main() and does not call it; -m {name}:main does")
     module = ModuleType("__main__")
     vars(module).update(
@@ -155,11 +180,37 @@ def code_of_call(module: str, function: str) -> CodeType:
     return compile(f"{source}sys.exit({function}())\n", f"{module}:{function}", "exec")
 
 
-def only_defines_main(spec: ModuleSpec) -> bool:
-    """Return whether a module defines a function ``main``, and does nothing when it is run."""
+def no_module(name: str) -> str:
+    """Return that there is no module, where it was looked for, and what is close to its name."""
+    import difflib  # for a text of an error alone
+    import pkgutil
+
+    from aionode.rclpy._workspace import here
+
+    above, _, last = name.rpartition(".")
+    folders = [sys.path[0]] if not above else getattr(sys.modules.get(above), "__path__", ())
+    known = {one.name for one in pkgutil.iter_modules(folders)}
+    if not above:
+        known.update(here().sources())
+    near = difflib.get_close_matches(last, known, 1)
+    dot = f"{above}." if above else ""
+    hint = f"; did you mean {dot}{near[0]}?" if near else ""
+    places = [str(Path(sys.path[0] or ".").resolve()), "PYTHONPATH"]
+    workspace = here().workspace
+    places += [] if workspace is None else [f"the packages of {workspace}"]
+    return f"No module named {name}, looked for in {', '.join(places)}{hint}"
+
+
+def source_of(spec: ModuleSpec) -> bytes:
+    """Return the source of a module; nothing where that cannot be had."""
     loader: Any = spec.loader
     source = loader.get_source(spec.name) if hasattr(loader, "get_source") else None
-    if source is None or "main" not in source:
+    return (source or "").encode()
+
+
+def only_defines_main(source: bytes) -> bool:
+    """Return whether a program defines a function ``main``, and does nothing when it is run."""
+    if b"main" not in source or b"__main__" in source:
         return False
     import ast  # which takes as long as a small program does
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,8 @@ import pytest
 
 from aionode._node_source import node_maker
 from aionode.cli._main import main
-from aionode.errors import CommandError
+from aionode.cli._support.programs import Programs
+from aionode.errors import CommandError, ExecutableNotFoundError, PackageNotFoundError
 
 SOURCE = """
 from aionode import Node
@@ -109,3 +111,75 @@ def test_an_option_before_the_arguments_is_an_error(
 
     assert status == 2
     assert "No such option '-p': arguments of nodes follow --ros-args." in capsys.readouterr().err
+
+
+@pytest.fixture
+def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A workspace, which is the current folder, with a package of rclpy and of aionode."""
+    package = tmp_path / "src" / "my_robot"
+    (package / "my_robot").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_robot</name></package>")
+    (package / "setup.cfg").write_text(
+        "[options.entry_points]\nconsole_scripts =\n  mover = my_robot.mover:main\n"
+    )
+    (package / "my_robot" / "__init__.py").write_text("")
+    (package / "my_robot" / "mover.py").write_text("import rclpy\n\n\ndef main(): ...\n")
+    (package / "my_robot" / "cli_run_nodes_of_package.py").write_text(SOURCE)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("sys.path", list(sys.path))
+    return tmp_path
+
+
+def test_a_package_and_its_executable_are_a_program(workspace: Path) -> None:
+    """As with `ros2 run`, but without a build; the rest are its own arguments."""
+    command = Programs(["msgs"], None).command(["my_robot", "mover", "-x", "--ros-args"])
+
+    package = workspace / "src" / "my_robot"
+    assert command is not None
+    assert command[1:] == [
+        *("-m", "aionode.rclpy", "--workspace", str(package.parent), "--interfaces", "msgs"),
+        *("--path", str(package), "-m", "my_robot.mover:main", "-x", "--ros-args"),
+    ]
+
+
+@pytest.mark.parametrize("place", [".", "src", "src/my_robot", "src/my_robot/my_robot"])
+def test_a_function_of_a_program_of_rclpy_runs_as_one(
+    place: str, workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Wherever the user is in the workspace, and not as a function that makes a node."""
+    monkeypatch.chdir(workspace / place)
+
+    command = Programs([], None).command(["my_robot.mover:main", "fast"])
+
+    package = str(workspace / "src" / "my_robot")
+    assert command is not None
+    assert command[3:] == ["--path", package, "-m", "my_robot.mover:main", "fast"]
+
+
+def test_classes_of_nodes_are_found_in_packages(workspace: Path) -> None:
+    """A package whose nodes have moved to aionode starts as before."""
+    specs = ["my_robot.cli_run_nodes_of_package:Talker"]
+
+    assert Programs([], None).command(specs) is None
+    folders = Programs([], None).module_folders(specs)
+    assert folders == [str(workspace / "src" / "my_robot")]
+
+
+@pytest.mark.parametrize(
+    ("args", "error", "says"),
+    [
+        (["my_robto", "mover"], PackageNotFoundError, "did you mean my_robot?"),
+        (["my_robot", "movre"], ExecutableNotFoundError, "did you mean mover?"),
+        (["my_robot"], CommandError, "name an executable of this package; it has: mover"),
+        (["my_robot", "-x"], CommandError, "name an executable of this package; it has: mover"),
+    ],
+)
+@pytest.mark.usefixtures("workspace")
+def test_an_executable_that_is_missing_is_named(
+    args: list[str], error: type[Exception], says: str
+) -> None:
+    """With what is close to it."""
+    with pytest.raises(error) as caught:
+        Programs([], None).command(args)
+
+    assert says in str(caught.value)

@@ -15,6 +15,7 @@ from aionode.rclpy._ament_index_python import (
     PackageNotFoundError,
     get_package_share_directory,
     get_packages_with_prefixes,
+    get_resource,
     get_resource_types,
 )
 from aionode.rclpy._rosidl import action_class, message_class, service_class
@@ -176,4 +177,12 @@ def test_without_a_prefix_path_there_is_no_index(monkeypatch: pytest.MonkeyPatch
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
 
     with pytest.raises(OSError, match="'AMENT_PREFIX_PATH' is not set or empty"):
+        get_resource("packages", "my_robot")
+
+
+def test_without_a_prefix_path_a_package_is_not_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Programs go on with another folder then; ROS, whose variable is always set, says the same."""
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+
+    with pytest.raises(PackageNotFoundError, match="package 'my_robot' not found, searching"):
         get_package_share_directory("my_robot")

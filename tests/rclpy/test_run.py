@@ -138,6 +138,59 @@ def test_an_executable_of_an_installed_package_runs_by_its_path(folder: Path) ->
     assert (done.stderr, done.returncode) == ("hi\n", 1)
 
 
+TALKER = """\
+import sys
+
+from ament_index_python.packages import get_package_share_directory
+from my_tools.words import WORDS
+
+
+def main():
+    print(WORDS, sys.argv[1:], get_package_share_directory("my_robot"))
+    return 3
+"""
+
+
+def test_an_executable_of_a_package_runs_without_a_build(folder: Path) -> None:
+    """Its package has its data, and imports from the other packages of the workspace."""
+    for name in ("my_robot", "my_tools"):
+        package = folder / "src" / name
+        (package / name).mkdir(parents=True)
+        (package / "package.xml").write_text(f"<package><name>{name}</name></package>")
+        (package / name / "__init__.py").write_text("")
+    robot = folder / "src" / "my_robot"
+    robot.joinpath("my_robot", "talker.py").write_text(TALKER)
+    robot.joinpath("setup.py").write_text(
+        "setup(entry_points={'console_scripts': ['talker = my_robot.talker:main']})\n"
+    )
+    folder.joinpath("src", "my_tools", "my_tools", "words.py").write_text("WORDS = 'hi'\n")
+
+    done = run(folder, "run", "my_robot", "talker", "-x", module="aionode")
+
+    assert (done.stdout, done.stderr, done.returncode) == (f"hi ['-x'] {robot}\n", "", 3)
+
+
+def test_a_program_that_only_defines_main_does_not_end_as_if_it_had_run(folder: Path) -> None:
+    """It is the module of an executable, which calls the function."""
+    (folder / "mover.py").write_text("import rclpy\n\n\ndef main():\n    pass\n")
+
+    done = run(folder, "mover.py")
+
+    assert done.returncode == 2
+    assert "mover.py defines main() and does not call it" in done.stderr
+
+
+def test_a_module_that_is_not_there_is_named_with_what_is_close(folder: Path) -> None:
+    """And with the places where it was looked for."""
+    done = run(folder, "-m", "progam")
+
+    assert done.returncode == 2
+    assert done.stderr == (
+        f"aionode.rclpy: No module named progam, looked for in {folder}, PYTHONPATH; "
+        "did you mean program?\n"
+    )
+
+
 def test_a_traceback_shows_the_program_alone(folder: Path) -> None:
     """What runs the program is of no interest to its author."""
     done = run(folder, "program.py", "fail")

@@ -1,13 +1,17 @@
-"""Where installed packages are."""
+"""Where packages are: those of the workspace, and the installed ones."""
 
 from __future__ import annotations
 
+import os
 import re
 import warnings
 from pathlib import Path
 
-from aionode.rclpy._ament_index_python.resources import get_resource, get_resources
-from aionode.rclpy._ament_index_python.search_paths import get_search_paths
+from aionode import errors
+from aionode._packages import Packages
+from aionode.rclpy._ament_index_python.constants import AMENT_PREFIX_PATH_ENV_VAR
+from aionode.rclpy._ament_index_python.resources import get_resources
+from aionode.rclpy._workspace import here
 
 __all__ = [
     "PackageNotFoundError",
@@ -22,34 +26,34 @@ PACKAGE_NAME = re.compile(r"[a-zA-Z0-9][a-zA-Z0-9_-]+")
 
 
 class PackageNotFoundError(KeyError):
-    """There is no installed package of that name."""
+    """There is no package of that name."""
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """Return the prefix of each installed package, by its name."""
-    return get_resources("packages")
+    """Return the prefix of each package, by its name; see `get_package_prefix`."""
+    packages = here()
+    installed = get_resources("packages") if AMENT_PREFIX_PATH_ENV_VAR in os.environ else {}
+    return installed | {name: str(folder) for name, folder in packages.sources().items()}
 
 
 def get_package_prefix(package_name: str) -> str:
-    """Return the folder into which a package was installed.
+    """Return the folder into which a package was installed; its source folder in a workspace.
 
     Raises:
-        PackageNotFoundError: It is in none of the folders of AMENT_PREFIX_PATH.
+        PackageNotFoundError: There is no such package; the error says what is close.
         ValueError: Its name is not valid.
-        OSError: AMENT_PREFIX_PATH is not set.
     """
-    if not PACKAGE_NAME.fullmatch(package_name):
-        raise ValueError(f"'{package_name}' is not a valid package name")
-    try:
-        return get_resource("packages", package_name)[1]
-    except LookupError:
-        problem = f"package '{package_name}' not found, searching: {get_search_paths()}"
-        raise PackageNotFoundError(problem) from None
+    source = checked(package_name).sources().get(package_name)
+    return str(source or installed(package_name))
 
 
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
-    """Return the folder with the data of a package, with a warning if it does not exist."""
-    path = Path(get_package_prefix(package_name), "share", package_name)
+    """Return the folder with the data of a package, with a warning if it does not exist.
+
+    Of a package of the workspace, which needs no build, that is its source folder.
+    """
+    source = checked(package_name).sources().get(package_name)
+    path = source or installed(package_name) / "share" / package_name
     if print_warning and not path.exists():
         warning = f"Share directory for {package_name} ({path}) does not exist."
         warnings.warn(warning, stacklevel=2)
@@ -62,3 +66,20 @@ def get_package_share_path(package_name: str, print_warning: bool = True) -> Pat
     if print_warning and not path.exists():
         warnings.warn(f"Share path for {package_name} ({path}) does not exist.", stacklevel=2)
     return path
+
+
+def checked(package_name: str) -> Packages:
+    """Return the packages that are known, if the name of one is valid."""
+    if not PACKAGE_NAME.fullmatch(package_name):
+        raise ValueError(f"'{package_name}' is not a valid package name")
+    return here()
+
+
+def installed(package_name: str) -> Path:
+    """Return the folder into which a package was installed, by ROS's tools or by pip."""
+    try:
+        return here().prefix(package_name)
+    except errors.PackageNotFoundError as error:
+        problem = f"package '{package_name}' not found, searching: {list(error.places)}"
+        hint = f"; did you mean {error.suggestions[0]}?" if error.suggestions else ""
+        raise PackageNotFoundError(problem + hint) from None

@@ -1,0 +1,88 @@
+"""What a package can start: its executables, from its source folder or where it is installed."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from aionode._packages._setup_files import entry_points, scripts
+
+__all__ = [
+    "Executable",
+    "executables_in",
+    "installed_executables",
+    "is_python",
+    "module_root",
+]
+
+
+class Executable(NamedTuple):
+    """A program of a package.
+
+    Attributes:
+        package: The name of its package.
+        name: Its name.
+        target: Its file, or the function that it calls: ``module:function``.
+        root: The folder with the Python modules of its package, if the target is a function.
+    """
+
+    package: str
+    name: str
+    target: str
+    root: Path | None = None
+
+    def command(self, *options: str) -> list[str]:
+        """Return the command that starts it; its own arguments follow.
+
+        Args:
+            *options: Options of ``python -m aionode.rclpy``, which an executable in Python gets.
+        """
+        python = [sys.executable, "-m", "aionode.rclpy", *options]
+        if self.root is not None:
+            return [*python, "--path", str(self.root), "-m", self.target]
+        return [*python, self.target] if is_python(Path(self.target)) else [self.target]
+
+
+def executables_in(folder: Path, package: str) -> dict[str, Executable]:
+    """Return the executables of a package from its source folder, by their names."""
+    found = {
+        name: Executable(package, name, str(file))
+        for name, file in scripts(folder, package).items()
+    }
+    for name, target in entry_points(folder).items():
+        root = module_root(folder, target.partition(":")[0].partition(".")[0])
+        found[name] = Executable(package, name, target, root or folder)
+    return dict(sorted(found.items()))
+
+
+def installed_executables(prefix: Path, package: str) -> dict[str, Executable]:
+    """Return the executables of a package that is installed below a folder, by their names."""
+    folder = prefix / "lib" / package
+    files = sorted(folder.iterdir()) if folder.is_dir() else []
+    return {
+        file.name: Executable(package, file.name, str(file))
+        for file in files
+        if file.is_file() and os.access(file, os.X_OK)
+    }
+
+
+def module_root(folder: Path, module: str) -> Path | None:
+    """Return the folder below a package's that a Python module lies in, if the package has it."""
+    for root in (folder, folder / "src"):
+        if (root / module / "__init__.py").is_file() or (root / f"{module}.py").is_file():
+            return root
+    return None
+
+
+def is_python(file: Path) -> bool:
+    """Return whether Python runs a file, by its name or its first line."""
+    if file.suffix == ".py":
+        return True
+    try:
+        with file.open("rb") as opened:
+            first = opened.readline(200)
+    except OSError:
+        return False
+    return first.startswith(b"#!") and b"python" in first

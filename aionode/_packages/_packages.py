@@ -1,0 +1,141 @@
+"""The packages that a program can name, and what they can start."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from aionode._packages._executables import (
+    Executable,
+    executables_in,
+    installed_executables,
+    module_root,
+)
+from aionode._packages._workspace import packages_in
+from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
+
+__all__ = ["Packages"]
+
+MARKER = Path("share", "ament_index", "resource_index", "packages")
+"""Where an installed package has a file of its name, below its prefix."""
+
+
+class Packages:
+    """The packages of a workspace, and the installed ones.
+
+    Args:
+        workspace: The folder that holds packages, or a package itself; of a folder with ``src``,
+            that alone. Without one, only installed packages are known.
+
+    Raises:
+        FileNotFoundError: There is no such folder.
+    """
+
+    def __init__(self, workspace: Path | None = None) -> None:
+        if workspace is not None and not workspace.is_dir():
+            raise FileNotFoundError(f"{workspace}: no such folder; a workspace is a folder")
+        self.workspace = None if workspace is None else source_folder(workspace.resolve())
+
+    def sources(self) -> dict[str, Path]:
+        """Return the source folders of the packages of the workspace, by name."""
+        return {} if self.workspace is None else packages_in(self.workspace)
+
+    def share(self, name: str) -> Path:
+        """Return the folder with the data of a package: its source folder, or ``share/NAME``.
+
+        Raises:
+            PackageNotFoundError: There is no such package; the error says what is close.
+        """
+        source = self.sources().get(name)
+        return source or self.prefix(name) / "share" / name
+
+    def prefix(self, name: str) -> Path:
+        """Return the folder into which a package is installed.
+
+        Raises:
+            PackageNotFoundError: It is not installed.
+        """
+        for prefix in prefixes():
+            if (prefix / MARKER / name).is_file():
+                return prefix
+        raise self.not_found(name)
+
+    def names(self) -> list[str]:
+        """Return the names of all packages."""
+        folders = [prefix / MARKER for prefix in prefixes()]
+        installed = {
+            file.name for folder in folders if folder.is_dir() for file in folder.iterdir()
+        }
+        return sorted(installed.union(self.sources()))
+
+    def executables(self, name: str) -> dict[str, Executable]:
+        """Return what a package can start, by name; what is installed comes after its source.
+
+        Raises:
+            PackageNotFoundError: There is no such package.
+        """
+        source = self.sources().get(name)
+        prefix = next((one for one in prefixes() if (one / MARKER / name).is_file()), None)
+        if source is None and prefix is None:
+            raise self.not_found(name)
+        installed = {} if prefix is None else installed_executables(prefix, name)
+        return installed | ({} if source is None else executables_in(source, name))
+
+    def executable(self, package: str, name: str) -> Executable:
+        """Return an executable of a package.
+
+        Raises:
+            PackageNotFoundError: There is no such package.
+            ExecutableNotFoundError: The package has no executable of this name.
+        """
+        known = self.executables(package)
+        if name not in known:
+            place = str(self.sources().get(package) or self.prefix(package) / "lib" / package)
+            raise ExecutableNotFoundError(package, name, place, tuple(known))
+        return known[name]
+
+    def command(self, package: str, name: str, options: Sequence[str] = ()) -> list[str]:
+        """Return the command that starts an executable of a package; its arguments follow.
+
+        A program in Python runs under aionode's rclpy, any other one as it is.
+
+        Args:
+            package: The name of the package.
+            name: The name of the executable.
+            options: Options of ``python -m aionode.rclpy``, which a program in Python gets.
+
+        Raises:
+            PackageNotFoundError: There is no such package.
+            ExecutableNotFoundError: The package has no executable of this name.
+        """
+        found = self.executable(package, name)
+        if package in self.sources():
+            options = ("--workspace", str(self.workspace), *options)
+        return found.command(*options)
+
+    def module_root(self, module: str) -> Path | None:
+        """Return the folder to import a Python module from that a package of the workspace has."""
+        sources = self.sources()
+        folders = [sources[module]] if module in sources else []
+        folders += [folder for name, folder in sources.items() if name != module]
+        return next(filter(None, (module_root(folder, module) for folder in folders)), None)
+
+    def not_found(self, name: str) -> PackageNotFoundError:
+        """Return the error for a package that is not there."""
+        places = [] if self.workspace is None else [str(self.workspace)]
+        places += map(str, prefixes())
+        return PackageNotFoundError(name, tuple(places), self.names())
+
+
+def source_folder(workspace: Path) -> Path:
+    """Return the folder of a workspace in which packages lie."""
+    inner = workspace / "src"
+    return inner if inner.is_dir() and not (workspace / "package.xml").is_file() else workspace
+
+
+def prefixes() -> list[Path]:
+    """Return the folders into which packages are installed: those of ROS, then Python's own."""
+    named = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    return [Path(one) for one in (*named, sys.prefix) if one and Path(one).is_dir()]

@@ -1,0 +1,103 @@
+"""Finds the packages of a workspace: the folders with a ``package.xml``."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections import deque
+from functools import cache
+from pathlib import Path
+from typing import Final
+
+__all__ = ["MANIFEST", "MAX_FOLDERS", "package_folder", "packages_in", "workspace_of"]
+
+MANIFEST: Final = "package.xml"
+
+MAX_DEPTH: Final = 6
+"""How many folders below the workspace a package is looked for."""
+
+MAX_FOLDERS: Final = 10_000
+"""How many folders are looked at: a workspace has some hundreds, a home folder any number."""
+
+IGNORED: Final = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
+"""A folder with one of these files is left out by ROS's tools, with all below it."""
+
+BUILT: Final = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
+"""Folders that hold copies of packages, or none."""
+
+NAME: Final = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+
+
+def package_folder(place: Path) -> Path | None:
+    """Return the folder of the package that a file or folder lies in, if it lies in one."""
+    place = place.resolve()
+    folders = (folder for folder in (place, *place.parents) if (folder / MANIFEST).is_file())
+    return next(folders, None)
+
+
+def workspace_of(place: Path) -> Path | None:
+    """Return the folder whose packages belong together with a file or folder, if there is one.
+
+    That is a folder ``src`` in it or around it, else the repository around it, else the package
+    that it lies in.
+    """
+    place = place.resolve()
+    if place.is_file():
+        place = place.parent
+    own = package_folder(place)
+    if own is None and (place / "src").is_dir():
+        return place / "src"
+    start = own or place
+    around = (start, *start.parents)
+    sources = next((folder for folder in around if folder.name == "src"), None)
+    return sources or next((one for one in around if (one / ".git").exists()), own)
+
+
+@cache
+def packages_in(workspace: Path) -> dict[str, Path]:
+    """Return the folders of the packages below a folder, or of that folder itself, by their names.
+
+    As with ROS's tools, no package lies within another one. Of two packages of one name, the one
+    in the outer folder counts, then the first by the names of the folders. The answer is kept for
+    the life of the process.
+    """
+    found: dict[str, Path] = {}
+    waiting = deque([(workspace, 0)])
+    for _ in range(MAX_FOLDERS):
+        if not waiting:
+            break
+        folder, depth = waiting.popleft()
+        files, folders = content(folder)
+        if not IGNORED.isdisjoint(files):
+            continue
+        if MANIFEST in files:
+            found.setdefault(package_name(folder), folder)
+        elif depth < MAX_DEPTH:
+            waiting.extend((folder / name, depth + 1) for name in folders)
+    return found
+
+
+def content(folder: Path) -> tuple[set[str], list[str]]:
+    """Return the names of the files in a folder, and of the folders that may hold packages."""
+    files: set[str] = set()
+    folders: list[str] = []
+    try:
+        with os.scandir(folder) as entries:
+            for entry in entries:
+                if not entry.is_dir():
+                    files.add(entry.name)
+                elif not entry.name.startswith(".") and entry.name not in BUILT:
+                    folders.append(entry.name)
+    except OSError:  # a folder that may not be read holds no package for this user
+        return set(), []
+    return files, sorted(folders)
+
+
+def package_name(folder: Path) -> str:
+    """Return the name in the ``package.xml`` of a folder; that of the folder if it has none."""
+    try:
+        text = (folder / MANIFEST).read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return folder.name
+    match = NAME.search(text)
+    return match[1] if match else folder.name

@@ -1,0 +1,203 @@
+"""Packages of a workspace and installed ones: where they lie, what they start, by which command."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from aionode._packages import Packages, workspace_of
+from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
+
+SETUP = """\
+import os
+from setuptools import setup
+
+raise SystemExit("not to be executed")
+package_name = 'my_robot'
+SCRIPTS = [f'{package_name}_mover = {package_name}.mover:main', 'stopper=my_robot.stopper:stop [x]']
+setup(
+    name=package_name,
+    data_files=[
+        (os.path.join('lib', package_name), ['scripts/dance.py']),
+        (os.path.join('share', package_name), glob('launch/*')),
+    ],
+    entry_points={'console_scripts': SCRIPTS + ['late = my_robot.late:main']},
+)
+"""
+
+CMAKE = """\
+project(cpp_robot)
+# install(PROGRAMS scripts/old.py DESTINATION lib/cpp_robot)
+install(PROGRAMS
+  scripts/plan.py
+  "scripts/drive.sh"
+  DESTINATION lib/${PROJECT_NAME}
+)
+install(PROGRAMS scripts/plan.py DESTINATION lib/${PROJECT_NAME} RENAME planner)
+"""
+
+
+def write(folder: Path, files: dict[str, str]) -> None:
+    """Write files below a folder."""
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+
+
+@pytest.fixture
+def workspace(tmp_path: Path) -> Path:
+    """A workspace as colcon knows it: sources, and a stale copy in its build folder."""
+    write(
+        tmp_path / "src",
+        {
+            "team/robot/package.xml": "<package><name>my_robot</name></package>",
+            "team/robot/setup.py": SETUP,
+            "team/robot/scripts/dance.py": "",
+            "team/robot/my_robot/__init__.py": "",
+            "team/robot/my_robot/mover.py": "",
+            "cpp_robot/package.xml": "<package><name> cpp_robot </name></package>",
+            "cpp_robot/CMakeLists.txt": CMAKE,
+            "cpp_robot/scripts/plan.py": "",
+            "cpp_robot/scripts/drive.sh": "#!/bin/sh\n",
+            "cfg_robot/package.xml": "<package><name>cfg_robot</name></package>",
+            "cfg_robot/setup.cfg": "[options.entry_points]\nconsole_scripts=\n go=cfg_robot:go\n",
+            "cfg_robot/src/cfg_robot/__init__.py": "",
+            "toml_robot/package.xml": "<package><name>toml_robot</name></package>",
+            "toml_robot/pyproject.toml": "[project.scripts]\ngo = 'toml_robot:go'\n",
+            "left_out/COLCON_IGNORE": "",
+            "left_out/robot/package.xml": "<package><name>left_out</name></package>",
+            "cpp_robot/inner/package.xml": "<package><name>inner</name></package>",
+            "build/my_robot/package.xml": "<package><name>built</name></package>",
+        },
+    )
+    return tmp_path
+
+
+def test_the_packages_of_a_workspace_are_those_that_colcon_finds(workspace: Path) -> None:
+    """Not what is ignored, built, or inside of another package."""
+    known = Packages(workspace).sources()
+
+    assert sorted(known) == ["cfg_robot", "cpp_robot", "my_robot", "toml_robot"]
+    assert known["my_robot"] == workspace / "src" / "team" / "robot"
+    assert Packages(workspace).share("cpp_robot") == workspace / "src" / "cpp_robot"
+
+
+def test_executables_are_read_from_setup_files_and_nothing_is_executed(workspace: Path) -> None:
+    """A setup.py is read as text: it may do anything when it runs."""
+    packages = Packages(workspace)
+
+    targets = {one.name: one.target for one in packages.executables("my_robot").values()}
+    assert targets == {
+        "dance.py": str(workspace / "src/team/robot/scripts/dance.py"),
+        "late": "my_robot.late:main",
+        "my_robot_mover": "my_robot.mover:main",
+        "stopper": "my_robot.stopper:stop",
+    }
+    assert sorted(packages.executables("cpp_robot")) == ["drive.sh", "plan.py", "planner"]
+    assert list(packages.executables("cfg_robot")) == ["go"]
+    assert list(packages.executables("toml_robot")) == ["go"]
+
+
+def test_the_command_of_an_executable_has_all_that_its_process_needs(workspace: Path) -> None:
+    """It runs in any folder: of launch files, too, which start many of them."""
+    packages = Packages(workspace)
+    own = [sys.executable, "-m", "aionode.rclpy", "--workspace", str(workspace / "src")]
+
+    assert packages.command("my_robot", "stopper") == [
+        *own,
+        "--path",
+        str(workspace / "src/team/robot"),
+        "-m",
+        "my_robot.stopper:stop",
+    ]
+    root = str(workspace / "src/cfg_robot/src")
+    assert packages.command("cfg_robot", "go") == [*own, "--path", root, "-m", "cfg_robot:go"]
+    plan = str(workspace / "src/cpp_robot/scripts/plan.py")
+    assert packages.command("cpp_robot", "planner", ["--interfaces", "x"]) == [
+        *own,
+        "--interfaces",
+        "x",
+        plan,
+    ]
+    drive = str(workspace / "src/cpp_robot/scripts/drive.sh")
+    assert packages.command("cpp_robot", "drive.sh") == [drive]
+
+
+def test_installed_executables_come_after_those_of_the_source(
+    workspace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What was built and sourced has the compiled ones, and perhaps stale copies of the others."""
+    prefix = tmp_path / "install"
+    marker = "share/ament_index/resource_index/packages"
+    write(prefix, {f"{marker}/cpp_robot": "", f"{marker}/far_robot": ""})
+    write(
+        prefix, {"lib/cpp_robot/compiled": "", "lib/cpp_robot/planner": "", "lib/cpp_robot/x": ""}
+    )
+    write(prefix, {"lib/far_robot/far": "#!/usr/bin/python3\n"})
+    for name in ("cpp_robot/compiled", "cpp_robot/planner", "far_robot/far"):
+        (prefix / "lib" / name).chmod(0o755)
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
+    packages = Packages(workspace)
+
+    assert sorted(packages.executables("cpp_robot")) == [
+        "compiled",
+        "drive.sh",
+        "plan.py",
+        "planner",
+    ]
+    assert packages.command("cpp_robot", "compiled") == [str(prefix / "lib/cpp_robot/compiled")]
+    assert packages.command("cpp_robot", "planner")[-1].endswith("src/cpp_robot/scripts/plan.py")
+    far = str(prefix / "lib/far_robot/far")
+    assert Packages().command("far_robot", "far") == [sys.executable, "-m", "aionode.rclpy", far]
+    assert packages.share("far_robot") == prefix / "share" / "far_robot"
+
+
+def test_what_is_missing_is_named_with_its_places_and_what_is_close(workspace: Path) -> None:
+    """A typing error is the usual reason."""
+    packages = Packages(workspace)
+
+    with pytest.raises(PackageNotFoundError) as no_package:
+        packages.command("my_robto", "mover")
+    with pytest.raises(ExecutableNotFoundError) as no_executable:
+        packages.command("my_robot", "dance")
+    with pytest.raises(ExecutableNotFoundError, match=r"its executables: drive\.sh, plan\.py, pl"):
+        packages.command("cpp_robot", "zzz")
+    with pytest.raises(FileNotFoundError, match=r"nowhere: no such folder"):
+        Packages(workspace / "nowhere")
+
+    assert str(no_package.value).startswith(
+        f"package 'my_robto': not found in {workspace / 'src'}, {sys.prefix}; "
+        "did you mean my_robot?"
+    )
+    assert str(no_executable.value).startswith(
+        f"package 'my_robot': no executable 'dance' in {workspace / 'src/team/robot'}; "
+        "did you mean dance.py?"
+    )
+
+
+def test_the_workspace_is_around_the_place(workspace: Path, tmp_path: Path) -> None:
+    """In a workspace, a package, a repository of packages, and in none of them."""
+    write(tmp_path, {"repo/.git/HEAD": "", "repo/one/package.xml": "", "alone/package.xml": ""})
+    write(tmp_path, {"plain/tool.py": ""})
+
+    places = {
+        ".": "src",
+        "src/team/robot/my_robot/mover.py": "src",
+        "src/team": "src",
+        "repo/one": "repo",
+        "repo": "repo",
+        "alone": "alone",
+    }
+    for place, expected in places.items():
+        assert workspace_of(workspace / place) == workspace / expected
+    assert workspace_of(workspace / "plain" / "tool.py") is None
+
+
+def test_a_folder_that_leads_back_to_itself_ends(tmp_path: Path) -> None:
+    """Links in a workspace may point anywhere."""
+    write(tmp_path, {"src/robot/package.xml": "<name>robot</name>"})
+    (tmp_path / "src" / "again").symlink_to(tmp_path)
+
+    assert list(Packages(tmp_path).sources()) == ["robot"]
