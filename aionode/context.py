@@ -8,7 +8,9 @@ import ctypes
 import dataclasses
 import math
 import os
+import random
 import threading
+import uuid
 import weakref
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
@@ -126,6 +128,9 @@ class Context:
             above all, which count about 2.2 kB each. One process may have an eighth of that. What
             is more is left out, and a warning says so. By default ``AIONODE_GRAPH_BYTES``, or 64
             MiB, about 30,000 endpoints.
+        seed: For tests without network: the ids of the context, of its endpoints and of its goals
+            are drawn with this seed, and so are the same in every run. Callbacks that block the
+            loop are not reported, as this depends on the machine. By default ids are unique.
 
     Attributes:
         ros_distro: The distribution of ROS 2 that it belongs to.
@@ -133,12 +138,14 @@ class Context:
         graph: The nodes and endpoints known now.
         time_base: Where the time comes from.
         participant: Id of this context in the graph, in hexadecimal.
+        seed: The seed of its ids; None if they are unique.
 
     Raises:
         ConfigurationError: an argument, or the environment variable used instead, is invalid (a
             ValueError).
         TypeError: `spin_us` is not a number.
-        ValueError: `transport` is an unknown name, or `spin_us` negative.
+        ValueError: `transport` is an unknown name, `spin_us` negative, or `seed` given with
+            a network.
     """
 
     _default: ClassVar[Context | None] = None
@@ -163,6 +170,7 @@ class Context:
         ros_distro: str | None = None,
         queue_bytes: int | None = None,
         graph_bytes: int | None = None,
+        seed: int | None = None,
     ) -> None:
         if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
             raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
@@ -171,7 +179,11 @@ class Context:
         self._spin_ns = int(spin_us * 1e3)
         self._stop_spinning: Callable[[], None] | None = None
         self.ros_distro = choose_distribution(os.environ, ros_distro)
-        self.participant = new_participant()
+        self.seed = seed
+        self._random = None if seed is None else random.Random(seed)  # noqa: S311  # ids, not secrets
+        self.participant = (
+            new_participant() if self._random is None else f"f{self._random.getrandbits(124):031x}"
+        )
         self.graph = Graph(self.participant)
         MismatchReport(self.graph, self.participant)
         DuplicateReport(self.graph, self.participant)
@@ -189,6 +201,11 @@ class Context:
             transport = transport_of(os.environ)
         self._is_on_zenoh = transport == "zenoh"
         self._transports = self._make_transports(transport, link)
+        if seed is not None and transport in {"zenoh", "rcl"}:
+            raise ValueError(
+                f"Context: seed={seed} gives it ids that other contexts may have, which a network "
+                'does not allow; use transport="local", or leave out the seed'
+            )
         self._usage: Usage | None = None  # of arguments that were set for this context alone
         self._nodes: dict[ContextNode, None] = {}  # from construction until destroyed
         self._next_id = 0  # of a node or endpoint
@@ -288,6 +305,12 @@ class Context:
     @arguments.setter
     def arguments(self, arguments: Arguments) -> None:
         self._usage = Usage(arguments)
+
+    def new_uuid(self) -> bytes:
+        """Return the 16 bytes of a random UUID, drawn with the seed if there is one."""
+        if self._random is None:
+            return uuid.uuid4().bytes
+        return uuid.UUID(int=self._random.getrandbits(128), version=4).bytes
 
     def ok(self) -> bool:
         """Whether the context can be used, that is `shutdown` was not called."""

@@ -89,6 +89,7 @@ BOTH_LOOPS = (
     "tests/test_concurrency.py",
     "tests/test_context.py",
     "tests/test_runner.py",
+    "tests/testing/",
     "tests/transport/ipc/",
     "tests/transport/rcl/",
     "tests/transport/test_",

@@ -14,8 +14,9 @@ import uvloop
 from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import EntityDestroyedError, TransportError
+from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
-from aionode.testing import local_context, settle
+from aionode.testing import ManualClock, local_context, settle
 from aionode.transport.local import LocalTransport
 
 if TYPE_CHECKING:
@@ -302,3 +303,37 @@ def test_how_long_to_spin_is_a_number_of_microseconds() -> None:
         Context(transport="local", spin_us=-1)
     with pytest.raises(TypeError, match="spin_us=True is not a number of microseconds"):
         Context(transport="local", spin_us=True)
+
+
+async def test_contexts_with_the_same_seed_draw_the_same_ids() -> None:
+    """Ids are part of what nodes publish, which is to be the same in every run of a test."""
+    contexts = [local_context(seed=seed) for seed in (1, 1, 2)]
+
+    first, same, other = [(one.participant, one.new_uuid(), one.new_uuid()) for one in contexts]
+
+    assert first == same
+    assert first != other
+    assert len(set(first)) == 3
+
+
+def test_a_seed_is_refused_for_a_context_with_a_network() -> None:
+    """Two processes with the same ids would take each other's messages for their own."""
+    with pytest.raises(ValueError, match="seed=1 gives it ids that other contexts may have"):
+        Context(seed=1)
+
+
+async def test_a_manual_clock_lets_queues_take_turns_whatever_the_machine_does() -> None:
+    """How many messages a callback gets in a turn must not depend on how fast it is."""
+    clock = ManualClock()
+    seen: list[str] = []
+    async with local_context(clock=clock) as context, Node("node", context=context) as node:
+        for topic in "ab":
+            node.create_subscription(String, topic, lambda msg: seen.append(msg.data), 10)
+        publishers = [node.create_publisher(String, topic, 10) for topic in "ab"]
+        await settle()
+        for publisher in publishers:
+            for _ in range(3):
+                publisher.publish(String(data=publisher.topic_name))
+        await settle()
+
+    assert seen == ["/a", "/b"] * 3

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
@@ -93,7 +94,10 @@ class NodeBase:
             names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
         )
         self._callbacks = Callbacks(
-            node=full_name, logger=self._logger, budget_ns=round(callback_budget_ms * 1e6)
+            node=full_name,
+            logger=self._logger,
+            budget_ns=round(callback_budget_ms * 1e6) if context.seed is None else sys.maxsize,
+            slice_ns=context.time_base.slice_ns,
         )
         self._affinity = context._affinity
         self._node_shutdown = Shutdown(self._entities, self._callbacks, self._leave)

@@ -14,6 +14,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 from weakref import WeakKeyDictionary
 
+from aionode._concurrency import SLICE_NS
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -39,7 +41,14 @@ class Alarm(Protocol):
 
 
 class TimeBase(ABC):
-    """A source of time, and of callbacks at a certain time."""
+    """A source of time, and of callbacks at a certain time.
+
+    Attributes:
+        slice_ns: For how long a queue is drained before others get their turn, by `perf_ns`; 0 for
+            one item a turn, so that the order of callbacks does not depend on their speed.
+    """
+
+    slice_ns = SLICE_NS
 
     @abstractmethod
     def system_ns(self) -> int:

@@ -79,7 +79,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         self.stats = CallbackStats()
         self._registrations: list[Registration] = []  # one for each transport
         self._message_queue: MessageQueue[Request] = MessageQueue(
-            WAITING_REQUESTS, self.stats, keep_all=True
+            WAITING_REQUESTS, self.stats, keep_all=True, slice_ns=setup.callbacks.slice_ns
         )
         size_of = memory_size(srv_type.Request)
         if size_of is not None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Coroutine
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode._concurrency import SLICE_NS, checkpoint
+from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.endpoints._core.callback_runner import (
@@ -265,7 +265,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         if perf_ns() >= self._turn_ends_ns:
             # With a full queue this never waits, so nothing else would run.
             await checkpoint()
-            self._turn_ends_ns = perf_ns() + SLICE_NS
+            self._turn_ends_ns = perf_ns() + self._reader.slice_ns
         while not self._reader:
             self._refuse_if_destroyed("read messages")
             await self._reader.wait()

@@ -21,7 +21,7 @@ class EventSource(Generic[EventT]):
     """Hands each event to all that iterate over them."""
 
     def __init__(self) -> None:
-        self._readers: set[Reader[EventT]] = set()
+        self._readers: dict[Reader[EventT], None] = {}  # in order, to wake them in order
         self._ended = False
 
     def emit(self, event: EventT) -> None:
@@ -39,7 +39,7 @@ class EventSource(Generic[EventT]):
     async def iterate(self) -> AsyncIterator[EventT]:
         """Iterate over the events from the first step of the iteration on."""
         reader: Reader[EventT] = Reader()
-        self._readers.add(reader)
+        self._readers[reader] = None
         try:
             while True:
                 while reader.events:
@@ -49,7 +49,7 @@ class EventSource(Generic[EventT]):
                 reader.woken.clear()
                 await reader.woken.wait()
         finally:
-            self._readers.discard(reader)
+            del self._readers[reader]
 
 
 class Reader(Generic[EventT]):

@@ -19,17 +19,19 @@ from aionode.context import Context
 from aionode.testing._faults import FaultyTransport
 from aionode.testing._manual_clock import ManualClock
 from aionode.testing._quiescence import settle
+from aionode.testing._stepped_loop import SteppedLoop
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
 
-__all__ = ["FaultyTransport", "ManualClock", "local_context", "settle"]
+__all__ = ["FaultyTransport", "ManualClock", "SteppedLoop", "local_context", "settle"]
 
 
-def local_context(*, clock: TimeBase | None = None) -> Context:
+def local_context(*, clock: TimeBase | None = None, seed: int | None = None) -> Context:
     """Return a context without network, whose nodes reach only each other.
 
     Args:
         clock: Where its time comes from, such as a `ManualClock`; the machine by default.
+        seed: Makes the ids of nodes, endpoints and goals the same in every run.
     """
-    return Context(transport="local", clock=clock)
+    return Context(transport="local", clock=clock, seed=seed)

@@ -10,7 +10,7 @@ from aionode.clock._values import time_at
 from aionode.testing._quiescence import settle
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Awaitable, Callable
 
 __all__ = ["ManualClock"]
 
@@ -24,6 +24,8 @@ class ManualClock(TimeBase):
     Args:
         start: The initial time; 0 by default.
     """
+
+    slice_ns = 0  # callbacks run in the same order, however fast the machine is
 
     def __init__(self, start: Time | None = None) -> None:
         self._now_ns = 0 if start is None else start.nanoseconds
@@ -67,6 +69,22 @@ class ManualClock(TimeBase):
         await settle()
         self._move(self._now_ns + span_ns(seconds, "jump"))
         await settle()
+
+    async def _walk_to(self, end_ns: int, settled: Callable[[], Awaitable[None]]) -> None:
+        """Let time pass until `end_ns`, if that is later, after everything has settled.
+
+        Args:
+            end_ns: The time in nanoseconds.
+            settled: Returns when no callback can run; called only after something was due.
+        """
+        while (next_ns := self._timer_heap.first_ns()) is not None and next_ns <= end_ns:
+            self._move(next_ns)
+            await settled()
+        if self._now_ns < end_ns:
+            is_due = bool(self._overdue)
+            self._move(end_ns)
+            if is_due:
+                await settled()
 
     def _move(self, now_ns: int) -> None:
         self._now_ns = now_ns

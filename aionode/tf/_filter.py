@@ -7,7 +7,7 @@ from collections import Counter, deque
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from weakref import finalize, ref
 
-from aionode._concurrency import SLICE_NS, checkpoint
+from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.tf._buffer_core import time_ns_of
 from aionode.tf._texts import seconds_text
@@ -71,7 +71,7 @@ class Filtered(Generic[MsgT]):
         if perf_ns() >= self._turn_ends_ns:
             # With messages that are all ready this never waits, so nothing else would run.
             await checkpoint()
-            self._turn_ends_ns = perf_ns() + SLICE_NS
+            self._turn_ends_ns = perf_ns() + subscription._reader.slice_ns
         while True:
             while subscription._reader and not self._ready:
                 self._take(subscription._take())

@@ -284,7 +284,7 @@ class LocalServer(Registration):
         self.srv_type = srv_type
         self.serve = serve
         self._servers = servers
-        self.unanswered: set[LocalRequest] = set()
+        self.unanswered: dict[LocalRequest, None] = {}  # in order, to give them up in order
 
     def close(self) -> None:
         """Leave every client, and give up what was not answered."""
@@ -308,13 +308,13 @@ class LocalRequest(Request):
         self._server = server
         self._call = call
         self._snapshot = snapshotter(server.srv_type.Response)
-        server.unanswered.add(self)
+        server.unanswered[self] = None
 
     def _finish(self) -> bool:
         """Mark the request as answered; return whether this is the first time."""
         if self not in self._server.unanswered:
             return False
-        self._server.unanswered.discard(self)
+        del self._server.unanswered[self]
         return True
 
     def reply(self, response: Any) -> None:

@@ -317,6 +317,7 @@ class Callbacks:
         waiting: The callbacks that have started and are suspended; ``str()`` of each names it.
             Each adds itself when it starts and removes itself when it ends.
         thread_time: For how long the node's thread has run.
+        slice_ns: For how long a queue is drained before others get their turn; of the time base.
     """
 
     node: str
@@ -324,6 +325,7 @@ class Callbacks:
     budget_ns: int
     waiting: set[object] = field(default_factory=set)
     thread_time: ThreadTime = field(default_factory=ThreadTime)
+    slice_ns: int = SLICE_NS
 
     def make_runner(
         self,
@@ -484,7 +486,7 @@ async def _consume_concurrently(
                 task.add_done_callback(running.discard)
             if perf_ns() >= turn_ends_ns:
                 await checkpoint()
-                turn_ends_ns = perf_ns() + SLICE_NS
+                turn_ends_ns = perf_ns() + message_queue.slice_ns
 
 
 # Reports

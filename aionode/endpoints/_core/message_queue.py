@@ -43,6 +43,7 @@ class MessageQueue(InlineCall, Generic[T]):
         depth: How many items it holds at most.
         keep_all: Whether it refuses the newest item when full.
         stats: Where dropped items are counted.
+        slice_ns: For how long `consume` goes on before others get their turn; of the time base.
         limit_bytes: How many bytes its items have at most, if they are weighed.
         weighed_from: From how many items on `make_room` decides whether one more fits.
         own_from: The same for messages of this process, of which a busy program makes many: the
@@ -66,15 +67,24 @@ class MessageQueue(InlineCall, Generic[T]):
         "keep_all",
         "limit_bytes",
         "own_from",
+        "slice_ns",
         "stats",
         "weighed_from",
     )
 
-    def __init__(self, depth: int, stats: CallbackStats, *, keep_all: bool = False) -> None:
+    def __init__(
+        self,
+        depth: int,
+        stats: CallbackStats,
+        *,
+        keep_all: bool = False,
+        slice_ns: int = SLICE_NS,
+    ) -> None:
         super().__init__()
         self.depth = depth
         self.keep_all = keep_all
         self.stats = stats
+        self.slice_ns = slice_ns
         self.items: deque[tuple[int, T]] = deque()
         # The sizes of the newest items, as many as were weighed, and their sum. What was taken from
         # the queue is found out when the next one is weighed: taking costs nothing.
@@ -262,14 +272,14 @@ class MessageQueue(InlineCall, Generic[T]):
                 rest = await self._wait_for_rest(inline=inline)
                 if rest is not None:
                     await rest
-            turn_ends_ns = perf_ns() + SLICE_NS
+            turn_ends_ns = perf_ns() + self.slice_ns
             while self.items:
                 rest = self.handle_items(handle, turn_ends_ns)
                 if rest is not None:
                     await rest
                 if self.items and perf_ns() >= turn_ends_ns:
                     await checkpoint()
-                    turn_ends_ns = perf_ns() + SLICE_NS
+                    turn_ends_ns = perf_ns() + self.slice_ns
 
     def handle_items(
         self,

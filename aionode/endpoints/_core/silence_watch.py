@@ -19,7 +19,7 @@ import asyncio
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode._concurrency import SLICE_NS, checkpoint
+from aionode._concurrency import checkpoint
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.node_tasks import create_own_task
@@ -391,7 +391,7 @@ class SilenceWatch:
             self._note_handed()
             if perf_ns() >= turn_ends_ns:
                 await checkpoint()
-                turn_ends_ns = perf_ns() + SLICE_NS
+                turn_ends_ns = perf_ns() + reader.slice_ns
 
     def _go_on(self, tasks: asyncio.TaskGroup, rest: Coroutine[Any, Any, None] | None) -> None:
         """Have the rest of a callback run, unless the callback has ended the last publisher."""

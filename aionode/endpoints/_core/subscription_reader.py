@@ -100,7 +100,9 @@ class SubscriptionReader(MessageQueue[Any]):
         wants_info: bool,
     ) -> None:
         keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL
-        super().__init__(depth_of(endpoint.qos), stats, keep_all=keep_all)
+        super().__init__(
+            depth_of(endpoint.qos), stats, keep_all=keep_all, slice_ns=time_base.slice_ns
+        )
         self.endpoint = endpoint
         self.raw = raw
         self.wants_info = wants_info

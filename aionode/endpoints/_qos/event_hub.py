@@ -50,7 +50,9 @@ class EventHandler(Entity):
     ) -> None:
         super().__init__(f"events of the {subject}")
         self._stats = CallbackStats()
-        self._queue: MessageQueue[tuple[str, Any]] = MessageQueue(EVENTS_KEPT, self._stats)
+        self._queue: MessageQueue[tuple[str, Any]] = MessageQueue(
+            EVENTS_KEPT, self._stats, slice_ns=callbacks.slice_ns
+        )
         for name, callback in event_callbacks.items():
             accepts(callback, 1, subject=f"{subject}, event callback {name}", wanted="(event)")
         self._runners = {

@@ -6,7 +6,6 @@ import asyncio
 from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
-from uuid import uuid4
 
 from aionode._concurrency import checkpoint
 from aionode.endpoints._core.callback_runner import accepts, consume
@@ -121,11 +120,14 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._check = checker(self.action_type.Goal)
         self._graph = node.graph
         self._participant = node.context.participant
+        self._new_uuid = node.context.new_uuid
         # Goals from when they are sent until they end, by id.
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
-        self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
+        self._accepted: MessageQueue[Any] = MessageQueue(
+            UNLIMITED, CallbackStats(), keep_all=True, slice_ns=node.context.time_base.slice_ns
+        )
         # One for each task that waits for an answer; set when the client is destroyed.
-        self._waits: set[asyncio.Future[None]] = set()
+        self._waits: dict[asyncio.Future[None], None] = {}  # in order, to wake them in order
         self._futures = Futures(self)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
         self._expect_at_end = node._expect_at_end
@@ -345,8 +347,10 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._check(goal)
         if feedback_callback is not None:
             accepts(feedback_callback, 1, subject=self._subject, wanted="(feedback_message)")
+        if goal_uuid is None:
+            goal_uuid = uuid_message(self._new_uuid())
         handle: ClientGoalHandle[ResultT, FeedbackT] = ClientGoalHandle(
-            self, uuid_message(uuid4().bytes) if goal_uuid is None else goal_uuid, feedback_callback
+            self, goal_uuid, feedback_callback
         )
         # Registered first, because feedback may be faster than the answer.
         self._goals.setdefault(handle._key, handle)
@@ -391,11 +395,11 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 wait.set_result(None)
 
         answer.add_done_callback(end)
-        self._waits.add(wait)
+        self._waits[wait] = None
         try:
             await wait
         finally:
-            self._waits.discard(wait)
+            self._waits.pop(wait, None)
             answer.remove_done_callback(end)
         if self.destroyed:
             raise self._end_of_wait()

@@ -26,6 +26,9 @@ class ActionContext(Protocol):
     def time_base(self) -> TimeBase:
         """Where the time comes from."""
 
+    def new_uuid(self) -> bytes:
+        """Return the 16 bytes of a new id for a goal."""
+
 
 class ActionNode(Protocol):
     """What an action needs of an `aionode.Node`.

@@ -190,13 +190,12 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
         self._max_goals = checked_max_goals(max_goals, self._subject)
         timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
-        self._goals: AlarmedGoalStore = AlarmedGoalStore(
-            self._time_base, self._max_goals, timeout_ns
-        )
+        self._goals = AlarmedGoalStore(self._time_base, self._max_goals, timeout_ns)
         self._status_pace = StatusPace(self._send_status, self._goals)
         self._early_cancels = EarlyCancels(self._time_base)
-        self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), keep_all=True)
-        self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, keep_all=True)
+        kept: dict[str, Any] = {"keep_all": True, "slice_ns": self._callbacks.slice_ns}
+        self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), **kept)
+        self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, **kept)
         self._hand_over = self._callbacks.make_runner(
             self._call_handle_accepted, self, CallbackStats(), on_error=on_error, offload=False
         )

@@ -12,7 +12,7 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
-from aionode.endpoints._core import callback_runner, message_queue
+from aionode.endpoints._core import callback_runner
 from aionode.endpoints._core.callback_runner import CallbackContext
 from aionode.endpoints._core.thread_time import ThreadTime
 from aionode.endpoints.stats import Distribution
@@ -367,13 +367,10 @@ def test_an_empty_distribution_is_zero() -> None:
 # Fairness
 
 
-async def test_a_full_queue_lets_others_run_in_between(
-    node: Node, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_a_full_queue_lets_others_run_in_between(node: Node) -> None:
     """A callback that is always ready does not occupy the loop."""
-    monkeypatch.setattr(message_queue, "SLICE_NS", 0)
     order: list[str] = []
-    listen(node, lambda msg: order.append("topic"))
+    listen(node, lambda msg: order.append("topic"))._reader.slice_ns = 0
     send(node, 10)
 
     async def other() -> None:
