@@ -80,6 +80,15 @@ class Worker:
         self._put += 1
         self._jobs.put(job)
 
+    def submit_past_loop(self, job: Job) -> None:
+        """As `submit`, from any thread; `busy` does not tell of this job."""
+
+        def run() -> None:
+            job()
+            self._done -= 1  # only the loop counts what is put, and only this thread what is done
+
+        self._jobs.put(run)
+
     def end(self) -> None:
         """Let the thread end after its jobs."""
         self._jobs.put(None)
@@ -143,6 +152,12 @@ class SendThread:
     ) -> SendQueue:
         """Return a bounded queue that this thread empties."""
         return SendQueue(self, self._waker, limit, limit_bytes, keep_all=keep_all, lost=lost)
+
+    def submit_past_loop(self, job: Job) -> None:
+        """Run `job` after those before it, of which there has to be one; from any thread."""
+        worker = self._worker
+        if worker is not None:
+            worker.submit_past_loop(job)
 
     def close(self) -> None:
         """Let the thread end after the jobs that it has; returns at once."""

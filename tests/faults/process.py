@@ -217,6 +217,8 @@ class Process:
             self.publishes.clear()
         elif word == "go on":
             self.publishes.set()
+        elif word == "join":
+            self.join()
         else:
             asyncio.get_running_loop().remove_reader(sys.stdin)
             self.publishes.set()
@@ -281,9 +283,14 @@ class Process:
             node.create_service(GetParameters, role.serve, answer)
         if role.act:
             node.create_action_server(Fibonacci, role.act, count)
-        wheels = Wheels(node, self.report, self.reporter.tell)
-        for wheel in role.wheels:
-            wheels.attach(wheel)
+        self.wheels = Wheels(node, self.report, self.reporter.tell)
+        if not role.joins:
+            self.join()
+
+    def join(self) -> None:
+        """Let the wheels obey."""
+        for wheel in self.role.wheels:
+            self.wheels.attach(wheel)
 
     def hear(self, node: Node, hear: Hear) -> None:
         """Subscribe."""

@@ -32,9 +32,9 @@ REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
 
 Output = Literal["file", "full", "unread", "terminal"]
 
-Word = Literal["pause", "go on", "quiet"]
-"""What a process is told in a line on its stdin: to publish nothing until it is to go on, or to
-publish, call and send goals no more."""
+Word = Literal["pause", "go on", "quiet", "join"]
+"""What a process is told in a line on its stdin: to publish nothing until it is to go on, to
+publish, call and send goals no more, or to have its wheels join."""
 
 
 class Publish(msgspec.Struct, frozen=True):
@@ -108,6 +108,7 @@ class Role(msgspec.Struct, frozen=True):
         control: Whether it has no node, and does nothing but watch its event loop.
         mover: What it asks to move, in a program of its own.
         wheels: The wheels that it has.
+        joins: Whether these wheels obey nothing before it is told to have them join.
         moves: The wheels that it moves, as long as it runs.
         rclpy: Whether it is a program of plain rclpy: of aionode's, or of what `python` has.
         python: The interpreter that runs it; empty for that of the harness.
@@ -137,6 +138,7 @@ class Role(msgspec.Struct, frozen=True):
     control: bool = False
     mover: Mover | None = None
     wheels: tuple[Wheel, ...] = ()
+    joins: bool = False
     moves: tuple[Wheel, ...] = ()
     rclpy: bool = False
     python: str = ""

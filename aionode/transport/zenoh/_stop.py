@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import SilenceAlarm
     from aionode.transport._reliability import ReaderProxy, WriterHistory
-    from aionode.transport._send_thread import SendQueue
+    from aionode.transport._send_thread import SendQueue, SendThread
 
 __all__ = ["ZenohStop"]
 
@@ -48,11 +48,15 @@ class StoppableWriter(Protocol):
     _expiry: SilenceAlarm | None
     _large: SendQueue
     _patient: SendQueue | None
+    _patient_sender: SendThread
 
     def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None: ...
     def _keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None: ...
     def _abandon_queues(self) -> None: ...
     def _has_unacknowledging(self) -> bool: ...
+    def _send_patiently(
+        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
+    ) -> None: ...
     def _watch(self) -> None: ...
     def _put_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
@@ -150,6 +154,10 @@ class ZenohStop(StopSender):
         self._begin(sequence, source_ns)
         self.repeat()
         writer = self._writer
+        if writer._transient and writer._publisher is not None:
+            # What was put so is not kept for late readers, who would get the last command.
+            keep = partial(writer._send_patiently, writer._publisher, self._payload, self._extra)
+            writer._patient_sender.submit_past_loop(keep)
         if writer._history is not None:
             for reader in list(writer._history.readers.values()):
                 if not reader.away_until_ns:

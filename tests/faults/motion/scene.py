@@ -15,7 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import msgspec
 
-from tests.faults.faults import until_ready, wait
+from tests.faults.faults import wait
 from tests.faults.harness import Case, Child, Stage, staged
 from tests.faults.motion.case import Motion, Stopped, stopped
 from tests.faults.motion.words import Handed
@@ -278,6 +278,9 @@ class Scene:
         kind = self._place.wheels
         role = Role("wheels", wheels=wheels, rclpy=kind == "rclpy", ros=kind == "ros")
         await self._add(stage, role)
+        late = tuple(play.motion.wheel for play in plays if play.motion.joins_late)
+        if late:  # it takes long to start, and has to join while the fault lasts
+            await self._add(stage, Role("late", wheels=late, joins=True))
         for play in plays:
             for role in play.movers:
                 await self._add(stage, role)
@@ -298,8 +301,7 @@ class Scene:
         for play in plays:
             await play.stood.wait()
         await asyncio.sleep(LATE_S)
-        await self._add(stage, Role("late", wheels=tuple(play.motion.wheel for play in plays)))
-        await until_ready(stage, "late", limit_s=READY_LIMIT_S)
+        stage.children["late"].tell("join")
 
     async def _move_again(
         self, stage: Stage, plays: Sequence[Play], outcomes: Sequence[Stopped]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import asyncio
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AsyncExitStack, asynccontextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -9,8 +11,9 @@ import pytest
 
 from aionode import Context, Node
 from aionode.clock import perf_ns
+from aionode.errors import LeaseExpiredError
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._stop import REPEAT_NS
 
@@ -94,6 +97,32 @@ async def test_a_destroyed_publisher_still_puts_it_again() -> None:
         both.left.destroy_node()
         await context.transports[1].close()
         assert perf_ns() - began_ns < REPEAT_NS + 1_000_000_000
+
+
+async def test_a_late_reader_gets_the_stop_of_a_blocked_loop() -> None:
+    """Wheels that join a transient local topic meanwhile do not begin with the last command."""
+    latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+    async def first_of_late_reader() -> int:
+        async with Context(link=False) as context, Node("late", context=context) as late:
+            while not lease.is_sent:
+                await late.get_clock().sleep(0.01)
+            return (await anext(late.create_subscription(Int32, "speed", None, latched))).data
+
+    async with Context(link=False) as context, Node("left", context=context) as left:
+        lease = left.create_publisher(Int32, "speed", latched).lease(stop=STOP, ttl_sec=0.05)
+
+        async def drive() -> None:
+            async with lease:
+                lease.publish(Int32(data=1))
+                with ThreadPoolExecutor(1) as thread:  # the loop stands still until it has heard
+                    heard.append(thread.submit(asyncio.run, first_of_late_reader()).result(20))
+
+        heard: list[int] = []
+        with pytest.raises(LeaseExpiredError):
+            await drive()
+
+    assert heard == [STOP.data]
 
 
 @pytest.mark.parametrize("drops", [0, 1])
