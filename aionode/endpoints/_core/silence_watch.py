@@ -7,7 +7,7 @@ What holds, whatever happens in whichever order:
 2. When it is called, no callback of the subscription runs any more, and nothing is queued.
 3. A message that was published before `on_silence` is called is never handed to the callback after
    that. It may come late for any reason: it waited in a queue or a socket, here or there, or is
-   sent again.
+   sent again. Nor is one that a transient local publisher has kept for `silence_sec` or longer.
 4. Nothing that was queued is handed to the callback while `on_silence` is due. So the time is
    compared whenever a message arrives or is taken from the queue, not only when the alarm rings:
    an event loop that stood still finds queue, socket and alarm in any order.
@@ -25,6 +25,7 @@ from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints._core.publication_times import PublicationTimes
 from aionode.errors import brief
+from aionode.qos import DurabilityPolicy
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
@@ -145,6 +146,8 @@ class SilenceWatch:
         self._steady_ns = steady.steady_ns
         self._system_ns = time_base.system_ns
         self._clock = silence.clock
+        durability = entity._endpoint.qos.resolved().durability
+        self._gets_history = durability is DurabilityPolicy.TRANSIENT_LOCAL
         self._alarm = SilenceAlarm(steady, silence.silence_ns, self._on_alarm, silence.clock)
         self._times = PublicationTimes()
         self._enabled = True
@@ -219,7 +222,11 @@ class SilenceWatch:
                 arrived_ns = published_ns
             else:
                 self._fire()
-        if self._due or (self._called_ns is not None and published_ns < self._called_ns):
+        if (
+            self._due
+            or (self._called_ns is not None and published_ns < self._called_ns)
+            or (self._gets_history and self._is_history(published_ns, now_ns))
+        ):
             self._reader.stats.dropped += 1
             return False
         self._hear(gid, arrived_ns)
@@ -236,6 +243,11 @@ class SilenceWatch:
             and published_ns - self._newest_ns < self._silence_ns
             and now_ns - published_ns < self._silence_ns
         )
+
+    def _is_history(self, published_ns: int, now_ns: int) -> bool:
+        """Whether a message was kept for late readers until its topic was silent."""
+        by_ros_time = self._clock is not None and self._clock.ros_time_is_active
+        return not by_ros_time and now_ns - published_ns >= self._silence_ns
 
     def _hear(self, gid: bytes, arrived_ns: int) -> None:
         heard = self._heard

@@ -154,13 +154,30 @@ async def test_a_message_that_a_filter_rejects_is_none(
     assert driven.log == [1, "stop"]
 
 
-async def test_a_kept_message_arms_it(
+async def test_a_message_that_was_kept_through_a_silence_moves_nothing(
     wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
 ) -> None:
-    """A late joiner gets the last command, however old, and stops `silence_sec` after it."""
+    """Its mover may be blocked or frozen, and the wheels that are there stand still already."""
     publisher = teleop.create_publisher(Int32, "n", LATCHED)
+    await clock.advance(1)  # a message without a time counts as published when it arrives
     send(publisher, 1)
-    await clock.advance(1000)
+    await clock.advance(0.3)
+    subscription = wheels.create_subscription(
+        Int32, "n", driven.drive, LATCHED, on_silence=driven.stop
+    )
+    await clock.advance(1)
+    assert driven.log == []
+    assert subscription.stats.dropped == 1
+
+
+async def test_a_message_that_was_kept_since_a_moment_arms_it(
+    wheels: Node, teleop: Node, clock: ManualClock, driven: Driven
+) -> None:
+    """A late joiner gets the last command, and stops `silence_sec` after it."""
+    publisher = teleop.create_publisher(Int32, "n", LATCHED)
+    await clock.advance(1)  # a message without a time counts as published when it arrives
+    send(publisher, 1)
+    await clock.advance(0.2)
     wheels.create_subscription(Int32, "n", driven.drive, LATCHED, on_silence=driven.stop)
     await clock.advance(0.299)
     assert driven.log == [1]
