@@ -7,6 +7,8 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
 ::
 
     AionodeError
+    ├── BagError (ValueError)
+    ├── BagWriteError (OSError)
     ├── CallbackCancelledError (RuntimeError)
     ├── CallbackSignatureError (TypeError, RuntimeError)
     ├── CommandError (RuntimeError)
@@ -80,6 +82,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from aionode.errors import _values
+from aionode.errors._bag import BagError, BagWriteError
 from aionode.errors._values import (
     AionodeError,
     BackwardExtrapolationException,
@@ -129,6 +132,8 @@ from aionode.errors._values import (
 __all__ = [
     "AionodeError",
     "BackwardExtrapolationException",
+    "BagError",
+    "BagWriteError",
     "CallbackCancelledError",
     "CallbackSignatureError",
     "CommandError",
@@ -197,9 +202,7 @@ __all__ = [
 ]
 
 # Used by other modules of aionode to write error texts; not public.
-brief = _values.brief
-escaped = _values.escaped
-shortened = _values.shortened
+brief, escaped, shortened = _values.brief, _values.escaped, _values.shortened
 
 
 class EntityDestroyedError(AionodeError, RuntimeError):

@@ -33,7 +33,12 @@ BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action
 
 
 def define(
-    typename: str, text: str, *, types: Mapping[str, type[Interface]] | None = None
+    typename: str,
+    text: str,
+    *,
+    types: Mapping[str, type[Interface]] | None = None,
+    uses: Mapping[str, str] | None = None,
+    reuse: bool = False,
 ) -> type[Any]:
     r"""Return the class that a definition describes.
 
@@ -45,12 +50,17 @@ def define(
         typename: Its ROS name, such as ``tutorial/msg/Words``.
         text: The text of a ``.msg``, ``.srv`` or ``.action`` file, according to the name.
         types: Message classes that it may use besides those of aionode.interfaces, by ROS name.
+        uses: Definitions of messages that it may use, by ROS name, in place of those of
+            aionode.interfaces.
+        reuse: Whether a type of aionode.interfaces that has the same definition is returned, and
+            used, in place of a new one.
 
     Raises:
         IdlError: The text is not valid, or uses an unknown type.
         TypeError: `typename` is not a valid name of a ROS type.
     """
-    builder = Builder({typename: parse(typename, text)}, reuse=False)
+    texts = {name: parse(name, used) for name, used in (uses or {}).items()}
+    builder = Builder(texts | {typename: parse(typename, text)}, reuse=reuse)
     builder.built.update(types or {})
     return builder.build(typename)
 

@@ -1,0 +1,54 @@
+"""Bags: recordings of topics, as files that ROS 2, Foxglove and this module read and write.
+
+`open` reads a bag: MCAP and sqlite3 files of any version of rosbag2, split and compressed ones too.
+`BagWriter` writes one as rosbag2 does. It needs the extra ``bag``: ``pip install aionode[bag]``.
+
+::
+
+    with bag.open("run") as run:
+        for record in run.read(topics=["/scan"]):
+            print(record.time, record.message.ranges)
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
+    from aionode.bag._record import Record, TopicInfo
+    from aionode.bag._writer import BagWriter
+
+__all__ = ["Bag", "BagWriter", "Record", "TopicInfo", "open"]
+
+PLACES = {
+    "Bag": "_bag",
+    "BagWriter": "_writer",
+    "Record": "_record",
+    "TopicInfo": "_record",
+    "open": "_bag",
+}
+"""The module of each public name, imported on first use: few programs need all of them."""
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name on first use.
+
+    Raises:
+        AttributeError: there is no such name.
+        ImportError: the extra ``bag`` is not installed.
+    """
+    if name not in PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        value = getattr(import_module(f"{__name__}.{PLACES[name]}"), name)
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith("aionode"):
+            raise
+        raise ModuleNotFoundError(
+            f"aionode.bag: {error.name} is not installed; pip install 'aionode[bag]'",
+            name=error.name,
+        ) from error
+    globals()[name] = value
+    return value

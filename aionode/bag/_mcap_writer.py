@@ -1,0 +1,473 @@
+"""Writes one MCAP file: the chunks are made here, all other records by the library `mcap`.
+
+The library copies each message several times. Here the bytes of a message are handed to the system
+as they are, and small ones are joined once. Checksums, compression and writing let other threads
+run, so a writer belongs in a thread of its own.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import struct
+import zlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final
+
+import lz4.frame
+import zstandard
+from mcap.data_stream import RecordBuilder
+from mcap.opcode import Opcode
+from mcap.records import (
+    Channel,
+    ChunkIndex,
+    DataEnd,
+    Footer,
+    Header,
+    McapRecord,
+    Metadata,
+    MetadataIndex,
+    Schema,
+    Statistics,
+    SummaryOffset,
+)
+
+from aionode.errors import BagWriteError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Sequence
+    from pathlib import Path
+
+__all__ = ["COMPRESSIONS", "MAGIC", "ChunkWriter", "McapWriter", "record_bytes"]
+
+MAGIC: Final = b"\x89MCAP0\r\n"
+LIBRARY: Final = "aionode"
+COMPRESSIONS: Final = ("zstd", "lz4", "none")
+CHUNK_BYTES: Final = 1 << 20
+"""A chunk is written once it is larger than this; a reader has to decompress a whole one."""
+
+LARGE_BYTES: Final = 64 << 10
+"""Messages from this size on are not copied, and are tried for compression first."""
+
+WORTH_SAVING: Final = 0.95
+"""A chunk with large messages is compressed if a sample of the last one shrinks to less."""
+
+MESSAGE_HEADER: Final = struct.Struct("<BQHIQQ")
+CHUNK_HEADER: Final = struct.Struct("<BQQQQI")
+INDEX_HEADER: Final = struct.Struct("<BQHI")
+FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
+MOST_PARTS: Final = 512
+"""How many pieces one `writev` takes: systems have a limit, which is 1024 on Linux."""
+
+
+def record_bytes(*records: McapRecord) -> bytes:
+    """Return records of the library as bytes."""
+    builder = RecordBuilder()
+    for record in records:
+        record.write(builder)
+    return bytes(builder.end())  # type: ignore[no-untyped-call]  # of the library
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """What is known of a chunk after it was written.
+
+    Attributes:
+        index: Its entry in the summary.
+        counts: How many messages it has, by channel.
+    """
+
+    index: ChunkIndex
+    counts: dict[int, int]
+
+    @property
+    def end(self) -> int:
+        """Where the records end that belong to it."""
+        index = self.index
+        return index.chunk_start_offset + index.chunk_length + index.message_index_length
+
+
+class ChunkWriter:
+    """Collects the messages of one chunk."""
+
+    def __init__(self) -> None:
+        self.parts: list[bytes] = []
+        self.size = 0
+        self.start_ns = 2**64 - 1
+        self.end_ns = 0
+        self.entries: dict[int, list[int]] = {}
+        """For each channel the time and the offset of each message, in one list."""
+        self.largest: bytes = b""
+
+    def add_record(self, data: bytes) -> None:
+        """Add a schema or a channel."""
+        self.parts.append(data)
+        self.size += len(data)
+
+    def add(self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: bytes) -> None:
+        """Add a message. Its bytes are kept, and must not change."""
+        size = len(raw)
+        entries = self.entries.get(channel)
+        if entries is None:
+            entries = self.entries[channel] = []
+        entries += (log_ns, self.size)
+        self.parts += (
+            MESSAGE_HEADER.pack(
+                Opcode.MESSAGE, 22 + size, channel, sequence & 0xFFFFFFFF, log_ns, publish_ns
+            ),
+            raw,
+        )
+        self.size += MESSAGE_HEADER.size + size
+        self.start_ns = min(self.start_ns, log_ns)
+        self.end_ns = max(self.end_ns, log_ns)
+        if size >= LARGE_BYTES:
+            self.largest = raw
+
+    def joined(self) -> list[bytes]:
+        """Return the bytes of the chunk, with small pieces joined and large messages as given."""
+        if not self.largest:
+            return [b"".join(self.parts)]
+        pieces: list[bytes] = []
+        small: list[bytes] = []
+        for part in self.parts:
+            if len(part) < LARGE_BYTES:
+                small.append(part)
+            else:
+                pieces += (b"".join(small), part)
+                small = []
+        return [*pieces, b"".join(small)]
+
+
+class McapWriter:
+    """One MCAP file of profile ros2, open for writing.
+
+    Args:
+        path: The file, which must not exist.
+        compression: ``zstd``, ``lz4`` or ``none``.
+        chunk_bytes: The size from which on a chunk is written.
+
+    Attributes:
+        size: How many bytes are in the file, or wait for it.
+        counts: How many messages were added, by channel.
+        spans: The chunks that are in the file.
+
+    Raises:
+        OSError: the file cannot be made.
+    """
+
+    def __init__(
+        self, path: Path, *, compression: str = "zstd", chunk_bytes: int = CHUNK_BYTES
+    ) -> None:
+        self.path = path
+        self.compression = "" if compression == "none" else compression
+        self.spans: list[Span] = []
+        self.counts: dict[int, int] = {}
+        self._compress = compressor(compression)
+        self._chunk_bytes = chunk_bytes
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+        self._metadata: list[MetadataIndex] = []
+        self._chunk = ChunkWriter()
+        self._first_offset = 0
+        self._offset = 0
+        self._fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
+        try:
+            self._write([MAGIC, record_bytes(Header("ros2", LIBRARY))])
+        except BagWriteError:
+            self.abandon()
+            raise
+        self._first_offset = self._offset
+
+    @property
+    def size(self) -> int:
+        """How many bytes are in the file, or wait for it."""
+        return self._offset + self._chunk.size
+
+    @property
+    def message_count(self) -> int:
+        """How many messages were added."""
+        return sum(self.counts.values())
+
+    @property
+    def start_ns(self) -> int:
+        """The earliest time of a message; 2**64 - 1 without one."""
+        return min(
+            [span.index.message_start_time for span in self._filled()] + [self._chunk.start_ns]
+        )
+
+    @property
+    def end_ns(self) -> int:
+        """The latest time of a message; 0 without one."""
+        return max([span.index.message_end_time for span in self._filled()] + [self._chunk.end_ns])
+
+    def _filled(self) -> list[Span]:
+        return [span for span in self.spans if span.counts]
+
+    def add_channel(
+        self, topic: str, encoding: str, metadata: dict[str, str], schema: tuple[str, str, str]
+    ) -> int:
+        """Add a channel, and its schema if that is new; return its number.
+
+        Args:
+            topic: The name of the topic.
+            encoding: How its messages are encoded.
+            metadata: What is known of it besides.
+            schema: The name of its type, the format of the definition, and the definition.
+        """
+        name, schema_encoding, text = schema
+        data = text.encode()
+        schema_id = next(
+            (
+                known.id
+                for known in self._schemas.values()
+                if (known.name, known.encoding, known.data) == (name, schema_encoding, data)
+            ),
+            0,
+        )
+        if not schema_id:
+            schema_id = len(self._schemas) + 1
+            new = Schema(id=schema_id, name=name, encoding=schema_encoding, data=data)
+            self._schemas[schema_id] = new
+            self._chunk.add_record(record_bytes(new))
+        channel = Channel(
+            id=len(self._channels) + 1,
+            topic=topic,
+            message_encoding=encoding,
+            metadata=metadata,
+            schema_id=schema_id,
+        )
+        self._channels[channel.id] = channel
+        self.counts[channel.id] = 0
+        self._chunk.add_record(record_bytes(channel))
+        return channel.id
+
+    def add_message(
+        self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: bytes
+    ) -> None:
+        """Add a message, and write the chunk if it is full.
+
+        Raises:
+            BagWriteError: the file cannot grow.
+        """
+        self._chunk.add(channel, sequence, log_ns, publish_ns, raw)
+        self.counts[channel] += 1
+        if self._chunk.size >= self._chunk_bytes:
+            self.flush()
+
+    def add_metadata(self, name: str, values: dict[str, str]) -> None:
+        """Write a metadata record.
+
+        Raises:
+            BagWriteError: the file cannot grow.
+        """
+        self.flush()
+        data = record_bytes(Metadata(name=name, metadata=values))
+        index = MetadataIndex(offset=self._offset, length=len(data), name=name)
+        self._write([data])
+        self._metadata.append(index)
+
+    def flush(self) -> None:
+        """Write the chunk in work, so that a process that is killed does not lose it.
+
+        Raises:
+            BagWriteError: the file cannot grow; it ends with the chunk before.
+        """
+        chunk = self._chunk
+        if not chunk.size:
+            return
+        pieces, compression = chunk.joined(), self.compression
+        crc = 0
+        for piece in pieces:
+            crc = zlib.crc32(piece, crc)
+        if compression and (not chunk.largest or self._saves(chunk.largest)):
+            pieces = self._compress(pieces, chunk.size)
+        else:
+            compression = ""
+        stored = sum(map(len, pieces))
+        name = compression.encode()
+        length = CHUNK_HEADER.size - 9 + 4 + len(name) + 8 + stored
+        start_ns = chunk.start_ns if chunk.entries else 0
+        header = CHUNK_HEADER.pack(
+            Opcode.CHUNK, length, start_ns, chunk.end_ns, chunk.size, crc
+        ) + struct.pack(f"<I{len(name)}sQ", len(name), name, stored)
+        began = self._offset
+        offsets: dict[int, int] = {}
+        at = began + 9 + length
+        indexes: list[bytes] = []
+        for channel, entries in chunk.entries.items():
+            offsets[channel] = at
+            indexes.append(index_record(channel, entries))
+            at += len(indexes[-1])
+        self._write([header, *pieces, b"".join(indexes)])
+        self._chunk = ChunkWriter()
+        index = ChunkIndex(
+            chunk_length=9 + length,
+            chunk_start_offset=began,
+            compression=compression,
+            compressed_size=stored,
+            message_end_time=chunk.end_ns,
+            message_index_length=at - began - 9 - length,
+            message_index_offsets=offsets,
+            message_start_time=start_ns,
+            uncompressed_size=chunk.size,
+        )
+        counts = {channel: len(entries) // 2 for channel, entries in chunk.entries.items()}
+        self.spans.append(Span(index, counts))
+
+    def _saves(self, raw: bytes) -> bool:
+        """Return whether compression makes a large message smaller, by a sample of its middle."""
+        middle = len(raw) // 2
+        sample = bytes(raw[middle - LARGE_BYTES // 2 : middle + LARGE_BYTES // 2])
+        stored = sum(map(len, self._compress([sample], len(sample))))
+        return stored < WORTH_SAVING * len(sample)
+
+    def sync(self) -> None:
+        """Wait until the disk has what was written, so that a power cut does not lose it."""
+        os.fdatasync(self._fd)
+
+    def close(self) -> None:
+        """Write what waits and the summary, and close the file.
+
+        On a full disk, chunks are taken back from the end until the summary has room.
+
+        Raises:
+            BagWriteError: messages were lost since the file could not grow. It has a summary all
+                the same, unless not even that could be written; `counts` tells what it has.
+        """
+        failure: BagWriteError | None = None
+        try:
+            self.flush()
+        except BagWriteError as error:
+            failure = error
+            self._forget_chunk()
+        while True:
+            try:
+                self._write(self._summary())
+                break
+            except BagWriteError as error:
+                failure = failure or error
+                if not self._take_back():
+                    break
+        with contextlib.suppress(OSError):
+            self.sync()
+        self.abandon()
+        if failure is not None:
+            raise failure
+
+    def abandon(self) -> None:
+        """Close the file as it is, without a summary. Closing it again has no effect."""
+        fd, self._fd = self._fd, -1
+        if fd >= 0:
+            os.close(fd)
+
+    def _forget_chunk(self) -> None:
+        """Count the messages of the chunk in work as lost."""
+        for channel, entries in self._chunk.entries.items():
+            self.counts[channel] -= len(entries) // 2
+        self._chunk = ChunkWriter()
+
+    def _take_back(self) -> bool:
+        """Remove the last chunk from the file; return whether there was one."""
+        if not self.spans:
+            return False
+        span = self.spans.pop()
+        for channel, count in span.counts.items():
+            self.counts[channel] -= count
+        self._offset = span.index.chunk_start_offset
+        self._metadata = [entry for entry in self._metadata if entry.offset < self._offset]
+        os.ftruncate(self._fd, self._offset)
+        return True
+
+    def _summary(self) -> list[bytes]:
+        """Return all that follows the last chunk."""
+        data_end = record_bytes(DataEnd(data_section_crc=0))
+        start = self._offset + len(data_end)
+        groups: list[tuple[Opcode, Iterable[McapRecord]]] = [
+            (Opcode.SCHEMA, self._schemas.values()),
+            (Opcode.CHANNEL, self._channels.values()),
+            (Opcode.STATISTICS, [self._statistics()]),
+            (Opcode.CHUNK_INDEX, [span.index for span in self.spans]),
+            (Opcode.METADATA_INDEX, self._metadata),
+        ]
+        pieces: list[bytes] = []
+        offsets: list[bytes] = []
+        at = start
+        for opcode, records in groups:
+            data = record_bytes(*records)
+            if data:
+                offset = SummaryOffset(group_opcode=opcode, group_start=at, group_length=len(data))
+                offsets.append(record_bytes(offset))
+                pieces.append(data)
+                at += len(data)
+        summary = b"".join([*pieces, *offsets])
+        footer = record_bytes(Footer(summary_start=start, summary_offset_start=at, summary_crc=0))
+        crc = zlib.crc32(footer[:-4], zlib.crc32(summary))
+        return [data_end, summary, footer[:-4] + struct.pack("<I", crc), MAGIC]
+
+    def _statistics(self) -> Statistics:
+        count = self.message_count
+        return Statistics(
+            attachment_count=0,
+            channel_count=len(self._channels),
+            channel_message_counts=dict(self.counts),
+            chunk_count=len(self.spans),
+            message_count=count,
+            message_end_time=self.end_ns if count else 0,
+            message_start_time=self.start_ns if count else 0,
+            metadata_count=len(self._metadata),
+            schema_count=len(self._schemas),
+        )
+
+    def _write(self, pieces: Sequence[bytes]) -> None:
+        """Write pieces at the end of the file, all or none.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        try:
+            for first in range(0, len(pieces), MOST_PARTS):
+                write_all(self._fd, pieces[first : first + MOST_PARTS])
+        except OSError as error:
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._fd, self._offset)
+                os.lseek(self._fd, self._offset, os.SEEK_SET)
+            raise BagWriteError(
+                str(self.path), os.strerror(error.errno or 0), is_full=error.errno in FULL
+            ) from error
+        self._offset += sum(map(len, pieces))
+
+
+def write_all(fd: int, pieces: Sequence[bytes]) -> None:
+    """Write all pieces, in as many calls as the system needs."""
+    waiting = [memoryview(piece) for piece in pieces if piece]
+    while waiting:
+        written = os.writev(fd, waiting)
+        while waiting and written >= len(waiting[0]):
+            written -= len(waiting.pop(0))
+        if written:
+            waiting[0] = waiting[0][written:]
+
+
+def index_record(channel: int, entries: list[int]) -> bytes:
+    """Return the record that says where the messages of a channel are in a chunk."""
+    size = 8 * len(entries)
+    header = INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + size, channel, size)
+    return header + struct.pack(f"<{len(entries)}Q", *entries)
+
+
+def compressor(compression: str) -> Callable[[list[bytes], int], list[bytes]]:
+    """Return what compresses the pieces of a chunk, whose size is its second argument."""
+    if compression == "lz4":
+        return lambda pieces, _: [lz4.frame.compress(b"".join(pieces))]
+    if compression == "none":
+        return lambda pieces, _: pieces
+    context = zstandard.ZstdCompressor(level=1)
+
+    def compress(pieces: list[bytes], size: int) -> list[bytes]:
+        if len(pieces) == 1:
+            return [context.compress(pieces[0])]
+        stream: Any = context.compressobj(size=size)
+        return [*(stream.compress(piece) for piece in pieces), stream.flush()]
+
+    return compress

@@ -1,0 +1,147 @@
+"""``metadata.yaml``: what rosbag2 writes beside the files of a bag."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Final
+
+import yaml
+
+from aionode.bag._qos import profiles_from, to_builtins
+from aionode.bag._record import TopicInfo
+from aionode.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+__all__ = [
+    "FILE_NAME",
+    "FilePart",
+    "metadata_of",
+    "metadata_text",
+    "read_metadata",
+    "topics_in",
+    "write_metadata",
+]
+
+FILE_NAME: Final = "metadata.yaml"
+ROOT: Final = "rosbag2_bagfile_information"
+VERSION: Final = 9
+NEVER_NS: Final = 2**63 - 1
+"""The start of a bag without messages, as rosbag2 writes it."""
+
+FilePart = tuple[str, int, int, int]
+"""One file of a bag: its name, the times of its first and last message in nanoseconds, and how many
+messages it has."""
+
+
+def metadata_of(
+    topics: Iterable[TopicInfo],
+    files: Sequence[FilePart],
+    *,
+    custom_data: Mapping[str, str],
+    ros_distro: str,
+    storage: str = "mcap",
+) -> dict[str, Any]:
+    """Return the metadata of a bag, version 9."""
+    filled = [part for part in files if part[3]]
+    start = min((part[1] for part in filled), default=NEVER_NS)
+    end = max((part[2] for part in filled), default=NEVER_NS)
+    return {
+        "version": VERSION,
+        "storage_identifier": storage,
+        "duration": {"nanoseconds": end - start},
+        "starting_time": {"nanoseconds_since_epoch": start},
+        "message_count": sum(part[3] for part in files),
+        "topics_with_message_count": [
+            {"topic_metadata": topic_metadata(topic), "message_count": topic.message_count}
+            for topic in topics
+        ],
+        "compression_format": "",
+        "compression_mode": "",
+        "relative_file_paths": [part[0] for part in files],
+        "files": [
+            {
+                "path": name,
+                "starting_time": {"nanoseconds_since_epoch": first if count else NEVER_NS},
+                "duration": {"nanoseconds": last - first if count else 0},
+                "message_count": count,
+            }
+            for name, first, last, count in files
+        ],
+        "custom_data": dict(custom_data),
+        "ros_distro": ros_distro,
+    }
+
+
+def topic_metadata(topic: TopicInfo) -> dict[str, Any]:
+    """Return what the metadata say of one topic."""
+    return {
+        "name": topic.name,
+        "type": topic.type,
+        "serialization_format": topic.serialization_format,
+        "offered_qos_profiles": [to_builtins(qos) for qos in topic.qos],
+        "type_description_hash": topic.type_hash,
+    }
+
+
+def metadata_text(metadata: Mapping[str, Any]) -> str:
+    """Return metadata as the text of ``metadata.yaml``."""
+    text: str = yaml.safe_dump({ROOT: dict(metadata)}, sort_keys=False)
+    return text
+
+
+def write_metadata(folder: Path, metadata: Mapping[str, Any]) -> None:
+    """Write ``metadata.yaml``; the one before stays until the new one is whole.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    waiting = folder / f".{FILE_NAME}"
+    with waiting.open("w", encoding="utf-8") as file:
+        file.write(metadata_text(metadata))
+        file.flush()
+        os.fsync(file.fileno())
+    waiting.replace(folder / FILE_NAME)
+
+
+def read_metadata(folder: Path) -> dict[str, Any]:
+    """Return the metadata of a bag, whatever its version.
+
+    Raises:
+        BagError: the file is missing, or is none.
+    """
+    path = folder / FILE_NAME
+    try:
+        content = yaml.load(path.read_bytes(), getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506  # a safe loader
+        metadata: dict[str, Any] = content[ROOT]
+        metadata["relative_file_paths"] = [str(name) for name in metadata["relative_file_paths"]]
+        metadata["storage_identifier"] = str(metadata["storage_identifier"])
+    except FileNotFoundError as error:
+        raise BagError(
+            str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` writes one"
+        ) from error
+    except (OSError, yaml.YAMLError, KeyError, TypeError) as error:
+        problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {error})"
+        raise BagError(str(folder), problem, "`aionode bag reindex` writes a new one") from error
+    return metadata
+
+
+def topics_in(metadata: Mapping[str, Any]) -> list[TopicInfo]:
+    """Return the topics that the metadata of a bag list.
+
+    Raises:
+        KeyError, TypeError, ValueError: they are not what rosbag2 writes.
+    """
+    return [
+        TopicInfo(
+            name=entry["topic_metadata"]["name"],
+            type=entry["topic_metadata"]["type"],
+            type_hash=entry["topic_metadata"].get("type_description_hash", "") or "",
+            qos=profiles_from(entry["topic_metadata"].get("offered_qos_profiles") or []),
+            message_count=int(entry["message_count"]),
+            serialization_format=entry["topic_metadata"]["serialization_format"],
+        )
+        for entry in metadata["topics_with_message_count"]
+    ]

@@ -1,0 +1,114 @@
+"""QoS profiles as bags have them: YAML, with names since version 9 and with numbers before."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+import yaml
+
+from aionode.clock import CONST_INFINITE_NS, Duration
+from aionode.errors import InvalidQoSProfileException
+from aionode.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+__all__ = ["profile_from", "profiles_from", "profiles_to_yaml", "to_builtins"]
+
+POLICIES: Final = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+    "liveliness": LivelinessPolicy,
+}
+DURATIONS: Final = ("deadline", "lifespan", "liveliness_lease_duration")
+FOXY_INFINITE: Final = {"sec": 2147483647, "nsec": 4294967295}
+"""The infinite time of DDS, which Foxy wrote."""
+
+
+def to_builtins(qos: QoSProfile) -> dict[str, Any]:
+    """Return a profile as rosbag2 writes it since version 9."""
+    full = qos.resolved()
+    durations = {name: seconds_of(getattr(full, name)) for name in DURATIONS}
+    return {
+        "history": full.history.short_key,
+        "depth": full.depth,
+        "reliability": full.reliability.short_key,
+        "durability": full.durability.short_key,
+        "deadline": durations["deadline"],
+        "lifespan": durations["lifespan"],
+        "liveliness": full.liveliness.short_key,
+        "liveliness_lease_duration": durations["liveliness_lease_duration"],
+        "avoid_ros_namespace_conventions": full.avoid_ros_namespace_conventions,
+    }
+
+
+def seconds_of(value: Duration) -> dict[str, int]:
+    """Return a duration as seconds and nanoseconds."""
+    sec, nsec = divmod(value.nanoseconds, 10**9)
+    return {"sec": sec, "nsec": nsec}
+
+
+def profiles_to_yaml(profiles: Iterable[QoSProfile]) -> str:
+    """Return profiles as the text of a YAML list; empty if there are none."""
+    listed = [to_builtins(qos) for qos in profiles]
+    return yaml.safe_dump(listed, sort_keys=False) if listed else ""
+
+
+def profiles_from(value: object) -> tuple[QoSProfile, ...]:
+    """Return the profiles of a topic, given as a list or as YAML text.
+
+    Raises:
+        ValueError: there is no list of profiles in it.
+    """
+    if isinstance(value, str):
+        try:
+            value = yaml.safe_load(value) or []
+        except yaml.YAMLError as error:
+            raise ValueError(f"offered_qos_profiles is not valid YAML: {error}") from error
+    if value is None:
+        return ()
+    if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+        raise ValueError("offered_qos_profiles is not a list of profiles")
+    return tuple(profile_from(item) for item in value)
+
+
+def profile_from(item: Mapping[str, Any]) -> QoSProfile:
+    """Return the profile that a mapping describes; what it leaves out has its default.
+
+    Raises:
+        ValueError: a value is no such policy, depth or duration.
+    """
+    fields: dict[str, Any] = {}
+    try:
+        for name, kind in POLICIES.items():
+            if name in item:
+                value = item[name]
+                fields[name] = kind(value) if isinstance(value, int) else kind[value.upper()]
+        for name in DURATIONS:
+            if name in item:
+                fields[name] = duration_from(item[name])
+        depth = int(item.get("depth", 10))
+        if depth == 0 and fields.get("history") is HistoryPolicy.KEEP_LAST:
+            del fields["history"]  # the default of the middleware, as depth 0 means
+        fields["depth"] = depth
+        fields["avoid_ros_namespace_conventions"] = bool(
+            item.get("avoid_ros_namespace_conventions", False)
+        )
+        return QoSProfile(**fields)
+    except (KeyError, TypeError, AttributeError, InvalidQoSProfileException) as error:
+        raise ValueError(f"{dict(item)} is no QoS profile: {error}") from error
+
+
+def duration_from(value: Mapping[str, int]) -> Duration:
+    """Return a duration; an infinite one is cut to the longest that there is."""
+    if dict(value) == FOXY_INFINITE:
+        return Duration(nanoseconds=CONST_INFINITE_NS)
+    ns = int(value.get("sec", 0)) * 10**9 + int(value.get("nsec", 0))
+    return Duration(nanoseconds=min(ns, CONST_INFINITE_NS))

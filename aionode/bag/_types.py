@@ -1,0 +1,124 @@
+"""Definitions of types, as bags have them, and the classes that they describe."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from typing import Any, Final
+
+from aionode.errors import AionodeError, IdlError, InterfaceNotFoundError
+from aionode.interfaces import get_interface
+from aionode.message import type_name
+from aionode.wire.typehash import referenced_types, type_hash
+
+__all__ = ["class_of", "definition_of", "known_class"]
+
+SEPARATOR: Final = "=" * 80
+SECTION: Final = re.compile(r"^={20,}\s*\nMSG: (\S+)[^\n]*\n?", re.MULTILINE)
+LONG_NAME: Final = re.compile(r"\b([a-z]\w*)/(?:msg|srv|action)/([A-Z]\w*)")
+PARTS: Final = {
+    "_Event": lambda cls: cls.Event,
+    "_Request": lambda cls: cls.Request,
+    "_Response": lambda cls: cls.Response,
+    "_FeedbackMessage": lambda cls: cls.Impl.FeedbackMessage,
+    "_SendGoal": lambda cls: cls.Impl.SendGoalService,
+    "_GetResult": lambda cls: cls.Impl.GetResultService,
+}
+"""How to get the types that belong to a service or an action, by the ends of their names."""
+
+
+def known_class(typename: str) -> Any:
+    """Return the class of a type that aionode or the program has; hidden types too.
+
+    Raises:
+        InterfaceNotFoundError: there is none.
+    """
+    base, bar, part = typename.rpartition("_")
+    if f"{bar}{part}" in PARTS and "/msg/" not in typename:
+        return PARTS[f"{bar}{part}"](known_class(base))
+    return get_interface(typename)
+
+
+@cache
+def definition_of(cls: type[Any]) -> str:
+    """Return the definition of a message class and of all that it uses, in format ros2msg."""
+    sections = (
+        f"{SEPARATOR}\nMSG: {short_name(type_name(part))}\n{own_text(part)}"
+        for part in referenced_types(cls)
+    )
+    return own_text(cls) + "".join(sections)
+
+
+def own_text(cls: type[Any]) -> str:
+    """Return the definition of one message, which names the parts of services by full name."""
+    from aionode.idl import definition_text  # only recordings of types by class need it
+
+    package = type_name(cls).split("/")[0]
+    return re.sub(r"^(srv|action)/", rf"{package}/\1/", definition_text(cls), flags=re.MULTILINE)
+
+
+def short_name(typename: str) -> str:
+    """Return the name of a type as rosbag2 writes it in definitions."""
+    return typename.replace("/msg/", "/")
+
+
+def class_of(typename: str, wanted_hash: str, encoding: str, definition: str) -> Any:
+    """Return the class of a type: ours if it is the same, or else one made of its definition.
+
+    Raises:
+        InterfaceNotFoundError: the type is not known here, and its definition cannot be used.
+    """
+    try:
+        known = known_class(typename)
+    except InterfaceNotFoundError:
+        known = None
+    if known is not None and (not definition or wanted_hash == type_hash(known)):
+        return known
+    problem = "the bag has no definition of it, and aionode does not know it"
+    if definition:
+        try:
+            return made_class(typename, encoding, definition)
+        except (IdlError, AionodeError, TypeError, ValueError, KeyError) as error:
+            problem = f"the definition in the bag cannot be used: {error}"
+    if known is not None and not wanted_hash:
+        return known
+    raise InterfaceNotFoundError(typename, problem=problem)
+
+
+@cache
+def made_class(typename: str, encoding: str, definition: str) -> Any:
+    """Return the class that a definition describes, or an equal one of aionode."""
+    from aionode.idl import define  # most bags have known types
+
+    if encoding == "ros2idl":
+        definition = as_ros2msg(typename, definition)
+    elif encoding != "ros2msg":
+        raise ValueError(f"its format is {encoding!r}, not ros2msg or ros2idl")
+    pieces = SECTION.split(definition)
+    uses = {
+        plain(name): with_plain_names(text)
+        for name, text in zip(pieces[1::2], pieces[2::2], strict=True)
+    }
+    return define(plain(typename), with_plain_names(pieces[0]), uses=uses, reuse=True)
+
+
+def plain(typename: str) -> str:
+    """Return a name that a message may have: parts of services and actions have others."""
+    parts = typename.split("/")
+    return f"{parts[0]}/msg/{parts[-1].replace('_', '')}"
+
+
+def with_plain_names(text: str) -> str:
+    """Return a definition whose types have such names."""
+    return LONG_NAME.sub(lambda match: plain(match[0]).replace("/msg/", "/"), text)
+
+
+def as_ros2msg(typename: str, definition: str) -> str:
+    """Return a definition in IDL as one in format ros2msg."""
+    from rosbags.typesys import Stores, get_types_from_idl, get_typestore
+
+    store = get_typestore(Stores.EMPTY)
+    body = re.sub(r"^={20,}\s*\nIDL: [^\n]*\n", "", definition, flags=re.MULTILINE)
+    store.register(get_types_from_idl(body))
+    text: str = store.generate_msgdef(typename, ros_version=2)[0]
+    return text

@@ -1,0 +1,339 @@
+"""Writes a bag: a folder with MCAP files and their metadata, as rosbag2 does."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections import deque
+from copy import copy
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Self
+
+from aionode._distribution import choose_distribution
+from aionode.bag._mcap_writer import COMPRESSIONS, McapWriter
+from aionode.bag._metadata import FilePart, metadata_of, metadata_text, write_metadata
+from aionode.bag._qos import profiles_to_yaml
+from aionode.bag._record import Record, TopicInfo
+from aionode.bag._types import definition_of
+from aionode.errors import BagError, BagWriteError
+from aionode.message import type_name
+from aionode.qos import QoSProfile
+from aionode.wire import cdr
+from aionode.wire.typehash import type_hash
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+    from os import PathLike
+    from types import TracebackType
+
+    from aionode.clock import Time
+
+__all__ = ["BagWriter", "topic_info"]
+
+RESERVE: Final = ".reserve"
+RESERVE_BYTES: Final = 64 << 10
+"""Space that is kept free for the summary and the metadata of a bag on a full disk."""
+
+DEFAULT_QOS: Final = QoSProfile(depth=10)
+
+
+def topic_info(
+    name: str,
+    msg_type: Any,
+    qos: Iterable[QoSProfile] = (DEFAULT_QOS,),
+) -> TopicInfo:
+    """Return the entry of a topic whose messages are of a known class."""
+    return TopicInfo(
+        name=name,
+        type=type_name(msg_type),
+        type_hash=type_hash(msg_type),
+        qos=tuple(qos),
+        encoding="ros2msg",
+        definition=definition_of(msg_type),
+        _class=msg_type,
+    )
+
+
+class BagWriter:
+    """A bag that is open for writing; ``with`` closes it.
+
+    A call may wait for the disk: a program with an event loop uses a `Recorder`, or a thread.
+
+    Args:
+        path: The folder, which must not exist.
+        compression: ``zstd``, ``lz4`` or ``none``.
+        max_bytes: The size from which on a new file begins; 0 for one file.
+        max_duration_ns: The time after which a new file begins, in nanoseconds; 0 for one file.
+        max_messages: How many messages a file takes; 0 for no limit.
+        max_files: How many files are kept: older ones are removed; 0 for all.
+        custom_data: What else the metadata say.
+        on_split: Called with the names of the file that was closed and of the new one.
+
+    Attributes:
+        path: The folder.
+        topics: The topics, with counts.
+
+    Raises:
+        BagError: the folder exists, or there is no such compression.
+        OSError: it cannot be made.
+    """
+
+    def __init__(
+        self,
+        path: str | PathLike[str],
+        *,
+        compression: str = "zstd",
+        max_bytes: int = 0,
+        max_duration_ns: int = 0,
+        max_messages: int = 0,
+        max_files: int = 0,
+        custom_data: Mapping[str, str] | None = None,
+        on_split: Callable[[str, str], None] | None = None,
+    ) -> None:
+        if compression not in COMPRESSIONS:
+            choices = ", ".join(COMPRESSIONS)
+            raise BagError(str(path), f"no compression {compression!r}", f"use one of {choices}")
+        self.path = Path(path)
+        self.topics: list[TopicInfo] = []
+        self.custom_data = dict(custom_data or {})
+        self._compression = compression
+        self._limits = (max_bytes, max_duration_ns, max_messages)
+        self._max_files = max_files
+        self._on_split = on_split
+        self._closed: list[tuple[FilePart, dict[int, int]]] = []
+        self._channels: dict[int, int] = {}
+        self._numbers: dict[tuple[str, str, str], int] = {}
+        self._latched: dict[int, deque[Record]] = {}
+        self._file_number = 0
+        self._is_open = True
+        try:
+            self.path.mkdir(parents=True)
+        except FileExistsError as error:
+            raise BagError(
+                str(path), "this output folder already exists", "give another name, or remove it"
+            ) from error
+        (self.path / RESERVE).write_bytes(b"#" * RESERVE_BYTES)
+        self._file = self._new_file()
+        self._write_metadata()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    @property
+    def message_count(self) -> int:
+        """How many messages the bag has, or waits to write."""
+        return sum(topic.message_count for topic in self.topics)
+
+    @property
+    def file_name(self) -> str:
+        """The name of the file in work."""
+        return self._file.path.name
+
+    def add_topic(self, topic: TopicInfo, *, latched_depth: int = 0) -> int:
+        """Add a topic, or find it again, and return its number.
+
+        Args:
+            topic: Its name and type.
+            latched_depth: How many of its last messages each further file begins with, as for
+                subscriptions that come late.
+        """
+        number = self._numbers.get(topic.key)
+        if number is None:
+            number = self._numbers[topic.key] = len(self.topics)
+            self.topics.append(copy(topic))
+            self.topics[number].message_count = 0
+            if latched_depth:
+                self._latched[number] = deque(maxlen=latched_depth)
+        return number
+
+    def write(
+        self,
+        topic: int,
+        time_ns: int,
+        raw: bytes,
+        *,
+        publish_time_ns: int | None = None,
+        sequence: int = 0,
+    ) -> None:
+        """Add a message.
+
+        Args:
+            topic: The number of its topic.
+            time_ns: When it was received, in nanoseconds since 1970.
+            raw: Its CDR bytes, which are kept and must not change.
+            publish_time_ns: When it was published; the same if not given.
+            sequence: Its number, given by its publisher.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        if self._is_full(time_ns):
+            self.split(time_ns)
+        sent_ns = time_ns if publish_time_ns is None else publish_time_ns
+        latched = self._latched.get(topic)
+        if latched is not None:
+            latched.append(Record(self.topics[topic], time_ns, sent_ns, sequence, raw))
+        channel = self._channels.get(topic)
+        if channel is None:
+            channel = self._open_channel(topic)
+        if not self._count_in_file:
+            self._file_start_ns = time_ns
+        self._count_in_file += 1
+        self.topics[topic].message_count += 1
+        self._file.add_message(channel, sequence, time_ns, sent_ns, raw)
+
+    def write_message(self, topic: str, message: Any, time: Time) -> None:
+        """Add a message by its topic's name and its class; see `write`."""
+        number = self.add_topic(topic_info(topic, type(message)))
+        self.write(number, time.nanoseconds, cdr.encode(message))
+
+    def write_record(self, record: Record) -> None:
+        """Add a record of another bag; see `write`."""
+        self.write(
+            self.add_topic(record.info),
+            record.time_ns,
+            record.raw,
+            publish_time_ns=record.publish_time_ns,
+            sequence=record.sequence,
+        )
+
+    def flush(self) -> None:
+        """Write what waits, so that a process that is killed does not lose it.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        self._file.flush()
+
+    def sync(self) -> None:
+        """Write what waits, and wait until the disk has it, so that a power cut does not lose it.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        self._file.flush()
+        self._file.sync()
+
+    def split(self, time_ns: int) -> None:
+        """End the file, and begin the next one with the latched messages, at `time_ns`.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        closed = self.file_name
+        self._close_file()
+        self._channels.clear()
+        self._file_number += 1
+        self._file = self._new_file()
+        self._remove_oldest()
+        for number, records in self._latched.items():
+            for record in records:
+                channel = self._channels.get(number) or self._open_channel(number)
+                self._file.add_message(
+                    channel, record.sequence, time_ns, record.publish_time_ns, record.raw
+                )
+                self.topics[number].message_count += 1
+        self._write_metadata()
+        if self._on_split is not None:
+            self._on_split(closed, self.file_name)
+
+    def close(self) -> None:
+        """Write what waits, the summary and the metadata. Closing it again has no effect.
+
+        Raises:
+            BagWriteError: messages were lost since the disk was full or failed; the bag can be read
+                all the same.
+        """
+        if not self._is_open:
+            return
+        self._is_open = False
+        with contextlib.suppress(OSError):
+            (self.path / RESERVE).unlink()
+        try:
+            self._close_file()
+        finally:
+            self._count_again()
+            with contextlib.suppress(OSError):
+                self._write_metadata()
+
+    def _is_full(self, time_ns: int) -> bool:
+        """Return whether a message of this time belongs to the next file."""
+        max_bytes, max_duration_ns, max_messages = self._limits
+        if self._count_in_file == 0:
+            return False
+        return bool(
+            (max_bytes and self._file.size >= max_bytes)
+            or (max_messages and self._count_in_file >= max_messages)
+            or (max_duration_ns and time_ns - self._file_start_ns >= max_duration_ns)
+        )
+
+    def _open_channel(self, number: int) -> int:
+        """Add a topic to the file in work."""
+        topic = self.topics[number]
+        metadata = {"offered_qos_profiles": profiles_to_yaml(topic.qos)}
+        if topic.type_hash:
+            metadata["topic_type_hash"] = topic.type_hash
+        schema = (topic.type, topic.encoding or "unknown", topic.definition)
+        channel = self._file.add_channel(topic.name, topic.serialization_format, metadata, schema)
+        self._channels[number] = channel
+        return channel
+
+    def _new_file(self) -> McapWriter:
+        """Open the next file, which says in a metadata record what the bag is."""
+        name = f"{self.path.name}_{self._file_number}.mcap"
+        self._count_in_file = 0
+        self._file_start_ns = 0
+        return McapWriter(self.path / name, compression=self._compression)
+
+    def _close_file(self) -> None:
+        """Close the file in work, and note what it has."""
+        file = self._file
+        try:
+            with contextlib.suppress(BagWriteError):  # `close` raises it again
+                file.add_metadata("rosbag2", {"serialized_metadata": self._file_metadata()})
+            file.close()
+        finally:
+            counts = {number: file.counts[channel] for number, channel in self._channels.items()}
+            part = (file.path.name, file.start_ns, file.end_ns, sum(counts.values()))
+            self._closed.append((part, counts))
+
+    def _remove_oldest(self) -> None:
+        """Remove files beyond the limit, and what they had from the counts."""
+        while self._max_files and len(self._closed) >= self._max_files:
+            part, counts = self._closed.pop(0)
+            (self.path / part[0]).unlink(missing_ok=True)
+            for number, count in counts.items():
+                self.topics[number].message_count -= count
+
+    def _count_again(self) -> None:
+        """Set the counts of the topics to what the files have."""
+        for number, topic in enumerate(self.topics):
+            topic.message_count = sum(counts.get(number, 0) for _, counts in self._closed)
+
+    def _file_metadata(self) -> str:
+        """Return the metadata of the file in work, as text."""
+        file = self._file
+        topics = []
+        for number, channel in self._channels.items():
+            topics.append(copy(self.topics[number]))
+            topics[-1].message_count = file.counts[channel]
+        part = (file.path.name, file.start_ns, file.end_ns, file.message_count)
+        return metadata_text(self._metadata(topics, [part]))
+
+    def _metadata(self, topics: list[TopicInfo], files: list[FilePart]) -> dict[str, Any]:
+        distro = choose_distribution(os.environ, None)
+        return metadata_of(topics, files, custom_data=self.custom_data, ros_distro=distro)
+
+    def _write_metadata(self) -> None:
+        files = [part for part, _ in self._closed]
+        if self._is_open:
+            files.append((self.file_name, 0, 0, 0))
+        write_metadata(self.path, self._metadata(self.topics, files))

@@ -1,0 +1,40 @@
+"""What goes wrong with bags."""
+
+from __future__ import annotations
+
+from aionode.errors._values import AionodeError
+
+__all__ = ["BagError", "BagWriteError"]
+
+
+class BagError(AionodeError, ValueError):
+    """A bag cannot be read, or is not what a command needs.
+
+    Attributes:
+        path: The bag, or the file in it.
+        problem: What was found.
+        remedy: What to do next; empty if nothing is known to help.
+    """
+
+    def __init__(self, path: str, problem: str, remedy: str = "") -> None:
+        self.path = path
+        self.problem = problem
+        self.remedy = remedy
+        super().__init__(f"bag {path}: {problem}" + (f"; {remedy}" if remedy else ""))
+
+
+class BagWriteError(AionodeError, OSError):
+    """A bag cannot be written any further; what was written before can be read.
+
+    Attributes:
+        path: The file.
+        problem: What the system says.
+        is_full: Whether the disk is full, or the file as large as it may be.
+    """
+
+    def __init__(self, path: str, problem: str, *, is_full: bool = False) -> None:
+        self.path = path
+        self.problem = problem
+        self.is_full = is_full
+        remedy = "free some space, or record elsewhere" if is_full else "record to another disk"
+        super().__init__(f"bag {path}: cannot be written any further: {problem}; {remedy}")
