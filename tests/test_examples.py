@@ -13,6 +13,7 @@ import sys
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
 import httpx
 import pytest
@@ -23,6 +24,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from examples.fastapi_app import make_app
 from tests.support.peers import isolated_environment
+from tests.system.left import MARK, left
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterator
@@ -34,7 +36,8 @@ ENDING = ["fibonacci", "overload", "pubsub", "service", "timers"]
 ENDLESS = sorted(
     path.name
     for path in (ROOT / "examples").glob("*.py")
-    if path.name not in {"call_service.py", "fastapi_app.py", "lifecycle_manager.py"}
+    if path.name
+    not in {"call_service.py", "fastapi_app.py", "lifecycle_manager.py", "robot_system.py"}
 )
 STAMP = r"\[INFO\] \[\d+\.\d{9}\]"
 
@@ -568,6 +571,24 @@ def test_the_wheels_stop_when_their_driver_is_killed_and_obey_an_emergency_stop(
         status, text = wheels.end_with(signal.SIGINT)
 
     assert status == 0, text
+
+
+def test_a_robot_of_four_processes_shows_its_table_and_ctrl_c_leaves_nothing(
+    domain: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The wheels hear that they stop before they are stopped."""
+    mark = uuid4().hex
+    monkeypatch.setenv(MARK, mark)
+    with running("examples/robot_system.py", domain=domain) as robot:
+        for name in ("wheels", "battery", "watch", "driver"):
+            robot.line_with(rf"^ *{name} +running +pid \d+$")
+        robot.line_with(r"wheels \| .*Motors: 0\.2")
+        status, text = robot.end_with(signal.SIGINT)
+
+    assert status == 0, text
+    assert "Motors: 0.0" in text
+    assert "failed" not in text
+    assert left(mark) == []
 
 
 def test_the_robot_drives_where_a_client_in_another_process_tells_it(domain: int) -> None:

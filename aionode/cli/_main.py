@@ -37,6 +37,7 @@ NOUNS = {
     "router": "Connect machines, as rmw_zenohd does.",
     "run": "Run node classes together in one process.",
     "service": "List, find and call services.",
+    "system": "Show what runs in a system; stop and restart its members.",
     "tf": "Show and publish transforms between frames.",
     "topic": "List, print, publish and measure topics.",
 }

@@ -2,18 +2,17 @@
 
 ::
 
-    async def main() -> None:
-        async with System() as system:
-            system.process("driver", ["my_driver"], ready=TopicPublished("/odom"))
-            system.node("planner", "my_robot.planner:Planner", restart="on-failure")
-            await system.ready()
-            await system.wait()
+    async def main(system: System) -> None:
+        system.process("driver", ["my_driver"], ready=TopicPublished("/odom"))
+        system.node("planner", "my_robot.planner:Planner", restart="on-failure")
+        await system.ready()
 
-    aionode.run(main)
+    aionode.system.run(main)
 """
 
 from aionode.system._control import SystemCommand
 from aionode.system._log import SystemLog
+from aionode.system._main import run
 from aionode.system._member import Member, MemberOptions
 from aionode.system._readiness import (
     ActionReady,
@@ -41,4 +40,5 @@ __all__ = [
     "SystemHealth",
     "SystemLog",
     "TopicPublished",
+    "run",
 ]

@@ -66,6 +66,7 @@ class System:
         log: Where the output of all members goes; `SystemLog` on ``sys.stdout`` by default.
 
     Attributes:
+        context: The context of its nodes; its processes are in the same domain.
         log: The log.
         ends: How members ended that nobody had stopped, in order; the first thousand.
 
@@ -83,7 +84,7 @@ class System:
         if not sys.platform.startswith("linux"):
             raise ConfigurationError("System", sys.platform, "systems of processes need Linux")
         self.name = name or str(os.getpid())
-        self.context = context
+        self.context = Context.default() if context is None else context
         self.log = SystemLog() if log is None else log
         self.ends: list[MemberEnd] = []
         self.closing = False
@@ -221,8 +222,8 @@ class System:
         if env is not None or cwd is not None:
             raise ValueError(f"{name}: env and cwd are for nodes with processes=True")
         shared = options_of(restart, facts, options, name)
-        context = self.context or Context.default()
-        return self._add(NodeMember(name, self, shared, maker_of(node), context, arguments))
+        make_node = maker_of(node)
+        return self._add(NodeMember(name, self, shared, make_node, self.context, arguments))
 
     def _add(self, member: Member) -> Member:
         if member.name in self._members or member.name == "system":
@@ -407,8 +408,12 @@ class System:
 
     def environment(self) -> dict[str, str]:
         """Return the environment of the processes: they join the domain of the system's context."""
-        domain_id = self.graph_node.context.domain_id
-        return {**os.environ, "ROS_DOMAIN_ID": str(domain_id)}
+        network = self.context.network
+        return {
+            **os.environ,
+            "ROS_DOMAIN_ID": str(network.domain_id),
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": network.discovery_range.value,
+        }
 
     def note_change(self) -> None:
         """Wake `wait`: a member has changed its state."""

@@ -20,11 +20,19 @@ from aionode.testing._faults import FaultyTransport
 from aionode.testing._manual_clock import ManualClock
 from aionode.testing._quiescence import settle
 from aionode.testing._stepped_loop import SteppedLoop
+from aionode.testing._system import system_under_test
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
 
-__all__ = ["FaultyTransport", "ManualClock", "SteppedLoop", "local_context", "settle"]
+__all__ = [
+    "FaultyTransport",
+    "ManualClock",
+    "SteppedLoop",
+    "local_context",
+    "settle",
+    "system_under_test",
+]
 
 
 def local_context(*, clock: TimeBase | None = None, seed: int | None = None) -> Context:

@@ -1,0 +1,97 @@
+"""A whole system in a test, in a domain of its own."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import os
+import runpy
+import socket
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.context import Context
+from aionode.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+
+    from aionode.system import System
+
+__all__ = ["system_under_test"]
+
+DOMAINS: Final = range(102, 233)
+"""Those that tests take: the ones above are for people, whose ports every platform has."""
+
+
+@contextlib.asynccontextmanager
+async def system_under_test(
+    description: str | os.PathLike[str] | Callable[[System], Awaitable[object]],
+) -> AsyncIterator[System]:
+    """Start a system for a test, in a domain of its own, and yield it when it is ready.
+
+    ::
+
+        async with system_under_test("robot.py") as system, Node("test", context=system.context):
+            ...
+
+    It is stopped at the end, and nothing of it is left. What its members print goes to
+    ``sys.stdout``, which pytest shows when the test fails.
+
+    Args:
+        description: A file with ``async def main(system)``, or such a function; it adds the
+            members.
+
+    Raises:
+        NotReadyError: a member is not ready; the text names what is missing, and has the last lines
+            of the member (a TimeoutError).
+        ConfigurationError: the file has no such function (a ValueError).
+    """
+    from aionode.system import System
+
+    main = description if callable(description) else main_of(Path(description))
+    with own_domain() as domain_id:
+        context = Context(domain_id=domain_id, discovery_range="LOCALHOST")
+        async with System("under_test", context=context) as system:
+            await main(system)
+            await system.ready()
+            yield system
+
+
+def main_of(file: Path) -> Callable[[System], Awaitable[object]]:
+    """Return the function of a file that adds the members of a system.
+
+    Raises:
+        ConfigurationError: it has none (a ValueError).
+    """
+    main: Any = runpy.run_path(str(file)).get("main")
+    if not inspect.iscoroutinefunction(main):
+        raise ConfigurationError(
+            "system_under_test", str(file), "the file needs `async def main(system)`"
+        )
+    return main  # type: ignore[no-any-return]  # a coroutine function
+
+
+@contextlib.contextmanager
+def own_domain() -> Iterator[int]:
+    """Reserve a domain that no other test of this machine has.
+
+    Raises:
+        ConfigurationError: all are taken (a ValueError).
+    """
+    start = os.getpid() % len(DOMAINS)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as reservation:
+        for domain_id in (*DOMAINS[start:], *DOMAINS[:start]):
+            if is_free(domain_id, reservation):
+                yield domain_id
+                return
+    raise ConfigurationError("system_under_test", "no domain", "all domains for tests are taken")
+
+
+def is_free(domain_id: int, reservation: socket.socket) -> bool:
+    """Return whether a domain could be reserved: a socket has its name until it is closed."""
+    try:
+        reservation.bind(f"\0aionode-test-domain-{domain_id}")
+    except OSError:  # another test has it
+        return False
+    return True

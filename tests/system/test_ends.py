@@ -1,0 +1,129 @@
+"""The ends of a system that runs in a process of its own: signals, and what is left afterwards."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from typing import TYPE_CHECKING, Self
+from uuid import uuid4
+
+import pytest
+
+from tests.system.left import MARK, left
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+MEMBER = """
+import os, signal, sys, time
+name, file = sys.argv[1:]
+def end(*_):
+    if name == "second":
+        print("x" * 5000, flush=True)
+        time.sleep(0.2)
+    with open(file, "a") as out:
+        out.write(name + " ")
+    sys.exit(0)
+signal.signal(signal.SIGINT, end)
+if name == "second" and not os.fork():
+    os.setsid()
+    if not os.fork():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        time.sleep(1000)
+    os._exit(0)
+print("up", flush=True)
+while True:
+    signal.pause()
+"""
+"""Writes its name when it is stopped. The second one prints before that, and has forked twice."""
+
+SYSTEM = """
+import sys
+from aionode.system import System, run
+async def main(system):
+    for name in ("first", "second"):
+        system.process(
+            name, [sys.executable, "-S", "-c", MEMBER, name, FILE], term_after_sec=TERM
+        )
+    system.process("failing", ["sh", "-c", "exit 3"])
+run(main)
+"""
+
+
+class Supervised:
+    """A system in a process of its own, whose processes have a mark.
+
+    Args:
+        text: The program.
+    """
+
+    def __init__(self, text: str) -> None:
+        self.mark = uuid4().hex
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", text],
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**os.environ, MARK: self.mark, "AIONODE_TRANSPORT": "local"},
+        )
+        self.lines: list[str] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.process.kill()
+        self.wait_until_nothing_is_left()
+        self.process.communicate()
+
+    def wait_for(self, *texts: str) -> None:
+        """Read its output until there is a line that ends with each of the texts."""
+        assert self.process.stdout is not None
+        while not all(any(line.endswith(text) for line in self.lines) for text in texts):
+            line = self.process.stdout.readline()
+            assert line, self.lines
+            self.lines.append(line.rstrip("\n"))
+
+    def wait_until_nothing_is_left(self) -> None:
+        """Wait until no process of it is left; the time limit of the test bounds that."""
+        while left(self.mark):
+            threading.Event().wait(0.05)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+def test_whatever_ends_the_supervisor_members_end_in_reverse_order_and_nothing_is_left(
+    number: signal.Signals, tmp_path: Path
+) -> None:
+    """A commander can tell its driver to stop, also when nobody reads what it prints meanwhile."""
+    file = tmp_path / "ends"
+    text = SYSTEM.replace("MEMBER", repr(MEMBER)).replace("FILE", repr(str(file)))
+    with Supervised(text.replace("TERM", "0.5")) as system:
+        system.wait_for("first | up", "second | up", "failing ended with exit status 3")
+        system.process.send_signal(number)
+        status = system.process.wait()
+        system.wait_until_nothing_is_left()
+
+    assert file.read_text() == "second first "
+    assert status == (-signal.SIGKILL if number == signal.SIGKILL else 3)
+
+
+def test_a_second_ctrl_c_ends_all_at_once() -> None:
+    """Who presses it twice does not want to wait for programs that hang."""
+    script = "trap '' INT TERM; echo up; while :; do sleep 1; done"
+    text = (
+        "from aionode.system import run\n"
+        "async def main(system):\n"
+        f"    system.process('deaf', ['sh', '-c', {script!r}])\n"
+        "run(main)\n"
+    )
+    with Supervised(text) as system:
+        system.wait_for("deaf | up")
+        system.process.send_signal(signal.SIGINT)
+        threading.Event().wait(1.2)  # a signal within a second counts as the same
+        assert left(system.mark)
+        system.process.send_signal(signal.SIGINT)
+
+        assert system.process.wait(timeout=2) == 128 + signal.SIGINT
+        system.wait_until_nothing_is_left()
