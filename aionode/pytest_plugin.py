@@ -7,6 +7,7 @@ which runs tests marked with ``@pytest.mark.anyio``. pytest starts without eithe
 from __future__ import annotations
 
 import asyncio
+from shutil import rmtree
 from types import FunctionType, ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -14,12 +15,24 @@ import pytest
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
+    from os import PathLike
 
+    from aionode.bag import Outputs, Replay
     from aionode.context import Context
     from aionode.node import Node
     from aionode.testing import ManualClock
 
-__all__ = ["aionode_context", "manual_clock", "node_factory", "pytest_configure"]
+__all__ = [
+    "aionode_context",
+    "golden_bag",
+    "manual_clock",
+    "node_factory",
+    "pytest_addoption",
+    "pytest_configure",
+    "replay_bag",
+]
+
+UPDATE = "--update-golden-bags"
 
 
 @pytest.fixture
@@ -50,6 +63,56 @@ def node_factory(request: pytest.FixtureRequest) -> Callable[..., Node]:
     """
     make: Callable[..., Node] = async_fixture(request, "factory")
     return make
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option that writes the recordings of `golden_bag` anew."""
+    parser.addoption(
+        UPDATE,
+        action="store_true",
+        help="aionode: take what nodes publish now as what golden_bag expects",
+    )
+
+
+@pytest.fixture
+def replay_bag(request: pytest.FixtureRequest) -> Callable[..., Replay]:
+    """A function that runs nodes on a recording, as `aionode.bag.replay` does.
+
+    Use it as ``async with replay_bag("run") as run``.
+
+    A relative path begins at the folder of the test's file.
+    """
+    from aionode.bag import replay  # the extra `bag` may be missing
+
+    def run(path: str | PathLike[str], *, seed: int = 0) -> Replay:
+        return replay(request.path.parent / path, seed=seed)
+
+    return run
+
+
+@pytest.fixture
+def golden_bag(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """A function that compares outputs with those of the time when the test was written.
+
+    ``golden_bag(outputs)`` makes the test fail with the first differences to a recording: that in
+    the folder ``golden`` beside the test's file, with the name of the test. ``pytest
+    --update-golden-bags`` writes it. Options are those of `aionode.bag.compare`, and `name` for
+    another recording.
+    """
+    from aionode.bag import compare  # as above
+
+    def check(outputs: Outputs, *, name: str = request.node.name, **options: Any) -> None:
+        path = request.path.parent / "golden" / name
+        if request.config.getoption(UPDATE):
+            rmtree(path, ignore_errors=True)
+            outputs.save(path)
+        elif not path.exists():
+            pytest.fail(f"{path} does not exist; pytest {UPDATE} writes it", pytrace=False)
+        elif found := compare(outputs, path, **options):
+            lines = "\n".join(map(str, found))
+            pytest.fail(f"the outputs differ from {path}:\n{lines}", pytrace=False)
+
+    return check
 
 
 # The async fixtures exist once for each plugin that can run them; the test determines which runs.

@@ -17,17 +17,39 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
+    from aionode.bag._comparison import Difference, compare
+    from aionode.bag._machine_use import MachineUseWarning
+    from aionode.bag._outputs import Outputs
     from aionode.bag._record import Record, TopicInfo
+    from aionode.bag._replay import Replay, replay
     from aionode.bag._writer import BagWriter
 
-__all__ = ["Bag", "BagWriter", "Record", "TopicInfo", "open"]
+__all__ = [
+    "Bag",
+    "BagWriter",
+    "Difference",
+    "MachineUseWarning",
+    "Outputs",
+    "Record",
+    "Replay",
+    "TopicInfo",
+    "compare",
+    "open",
+    "replay",
+]
 
 PLACES = {
     "Bag": "_bag",
     "BagWriter": "_writer",
+    "Difference": "_comparison",
+    "MachineUseWarning": "_machine_use",
+    "Outputs": "_outputs",
     "Record": "_record",
+    "Replay": "_replay",
     "TopicInfo": "_record",
+    "compare": "_comparison",
     "open": "_bag",
+    "replay": "_replay",
 }
 """The module of each public name, imported on first use: few programs need all of them."""
 

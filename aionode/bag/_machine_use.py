@@ -1,0 +1,154 @@
+"""Finds out that nodes use what differs in each run: the machine's clocks, and random numbers.
+
+Python tells which functions are called. From 3.12 on, each place in the code that calls anything is
+looked at once, which costs next to nothing; before, every call would be, so that only the first
+messages are watched. A place that calls something else later is not seen.
+"""
+
+from __future__ import annotations
+
+import datetime as dt
+import os
+import random
+import sys
+import time  # noqa: TID251  # it is looked for, not read
+import uuid
+import warnings
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Self
+
+if TYPE_CHECKING:
+    from types import CodeType, FrameType
+
+__all__ = ["MachineUse", "MachineUseWarning"]
+
+CLOCKS: Final[tuple[Any, ...]] = (
+    *(time.time, time.time_ns, time.monotonic, time.monotonic_ns, time.perf_counter),
+    *(time.perf_counter_ns, time.clock_gettime, time.localtime, time.gmtime, time.ctime),
+    *(dt.datetime.now, dt.datetime.utcnow, dt.datetime.today),  # noqa: TID251  # as above
+    dt.date.today,
+)
+CHANCE: Final[tuple[Any, ...]] = (
+    *(os.urandom, uuid.uuid1, uuid.uuid4),
+    *(random.random, random.randint, random.uniform, random.gauss, random.choice),
+    *(random.randrange, random.shuffle, random.sample, random.getrandbits),
+)
+NAMES: Final[dict[Any, str]] = {
+    **{one: f"{one.__module__ or 'time'}.{one.__qualname__}" for one in (*CLOCKS, *CHANCE)},
+    **{one: f"datetime.{one.__qualname__}" for one in CLOCKS[-4:]},
+    **{one: f"random.{one.__name__}" for one in CHANCE[3:]},
+}
+"""The functions that give something else in each run, with their names."""
+
+WATCHED_MESSAGES: Final = 300
+"""For so many messages Python 3.11 reports every call, which takes half as long again."""
+
+TOOL_NAME: Final = "aionode replay"
+
+OWN: Final = str(Path(__file__).parent.parent) + os.sep
+LIBRARY: Final = str(Path(os.__file__).parent) + os.sep
+
+
+class MachineUseWarning(UserWarning):
+    """A node uses the machine's clock, or random numbers, during a replay."""
+
+
+class MachineUse:
+    """Warns once for the machine's clocks, and once for random numbers, in a ``with`` block."""
+
+    def __init__(self) -> None:
+        self._open = {CLOCKS: "time", CHANCE: "random"}
+        self._tool: int | None = None
+        self._left = WATCHED_MESSAGES
+
+    def __enter__(self) -> Self:
+        if sys.version_info >= (3, 12):
+            self._monitor()
+        elif sys.getprofile() is None:
+            sys.setprofile(self._profile)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+
+    def note_message(self) -> None:
+        """Count a message that was published: the watch is too slow for all in Python 3.11."""
+        self._left -= 1
+        if self._left == 0 and self._tool is None:
+            self._end()
+
+    if sys.version_info >= (3, 12):
+
+        def _monitor(self) -> None:
+            monitoring = sys.monitoring
+            free = [tool for tool in range(5, -1, -1) if monitoring.get_tool(tool) is None]
+            if not free:
+                return  # debuggers and the like have all of them
+            self._tool = free[0]
+            monitoring.use_tool_id(self._tool, TOOL_NAME)
+            monitoring.register_callback(self._tool, monitoring.events.CALL, self._on_call)
+            monitoring.set_events(self._tool, monitoring.events.CALL)
+            monitoring.restart_events()
+
+        def _on_call(self, code: CodeType, _offset: int, function: Any, _argument: Any) -> Any:
+            if is_users(code.co_filename):
+                self._note(function, code.co_filename, sys._getframe(1).f_lineno)
+            return sys.monitoring.DISABLE
+
+    def _profile(self, frame: FrameType, event: str, function: Any) -> None:
+        if event == "c_call" and is_users(frame.f_code.co_filename):
+            self._note(function, frame.f_code.co_filename, frame.f_lineno)
+        elif event == "call" and frame.f_back is not None:
+            back = frame.f_back
+            called = PYTHON_FUNCTIONS.get(id(frame.f_code))
+            if called is not None and is_users(back.f_code.co_filename):
+                self._note(called, back.f_code.co_filename, back.f_lineno)
+
+    def _note(self, function: Any, file: str, line: int) -> None:
+        try:
+            name = NAMES.get(function)
+        except TypeError:  # not hashable
+            return
+        if name is None:
+            return
+        kind = CLOCKS if function in CLOCKS else CHANCE
+        if self._open.pop(kind, None) is None:
+            return
+        instead = (
+            "use the node's clock, node.get_clock().now()"
+            if kind is CLOCKS
+            else "use a random.Random with a seed of its own"
+        )
+        warnings.warn_explicit(
+            f"{name}() is called during a replay, and gives something else in each run; {instead}",
+            MachineUseWarning,
+            file,
+            line,
+        )
+
+    def _end(self) -> None:
+        if sys.version_info >= (3, 12):
+            if self._tool is not None:
+                sys.monitoring.set_events(self._tool, sys.monitoring.events.NO_EVENTS)
+                sys.monitoring.register_callback(self._tool, sys.monitoring.events.CALL, None)
+                sys.monitoring.free_tool_id(self._tool)
+                self._tool = None
+        elif sys.getprofile() == self._profile:
+            sys.setprofile(None)
+
+
+PYTHON_FUNCTIONS: Final = {
+    id(code): function
+    for function in NAMES
+    if (code := getattr(getattr(function, "__func__", function), "__code__", None)) is not None
+}
+"""Those that are written in Python, by their code objects, whose own hash takes long."""
+
+
+@cache
+def is_users(file: str) -> bool:
+    """Whether a file belongs to the program: not to aionode, and not to Python's own library."""
+    if file.startswith(OWN):
+        return f"{os.sep}examples{os.sep}" in file
+    return not file.startswith(("<", LIBRARY)) or "site-packages" in file
