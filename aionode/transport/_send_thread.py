@@ -199,6 +199,7 @@ class SendQueue:
 
     Attributes:
         dropped: How many sends were dropped.
+        limit: How many sends wait at most; it may be changed.
         sent: How many have left the queue.
     """
 
@@ -214,7 +215,7 @@ class SendQueue:
     ) -> None:
         self.dropped = 0
         self._send_thread = send_thread
-        self._limit = limit
+        self.limit = limit
         self._keep_all = keep_all
         self._lost = lost
         self._limit_bytes = limit_bytes
@@ -237,7 +238,7 @@ class SendQueue:
         waiting = self._waiting
         dropped = 0
         while not self._keep_all and (
-            len(waiting) >= self._limit or self._waiting_bytes + size_bytes > self._limit_bytes
+            len(waiting) >= self.limit or self._waiting_bytes + size_bytes > self._limit_bytes
         ):
             try:
                 oldest_bytes, _ = waiting.popleft()
@@ -260,7 +261,7 @@ class SendQueue:
 
     def has_room(self) -> bool:
         """Whether one more can be put without dropping any."""
-        return len(self) < self._limit and (
+        return len(self) < self.limit and (
             not self._waiting or self._waiting_bytes < self._limit_bytes
         )
 

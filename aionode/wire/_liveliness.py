@@ -68,6 +68,9 @@ LONGEST_TOKEN: Final = 4096
 QOS_CHUNKS: Final = 256
 """Of how many different QoS chunks the profiles are remembered."""
 
+SHARED: Final = 1024
+"""So many nodes and names, and so many types, are one object in all endpoints that have them."""
+
 FOREVER: Final = divmod(CONST_INFINITE_NS, S_TO_NS)
 
 
@@ -170,7 +173,7 @@ def parse_token(key: str) -> Token | None:
     if None in numbers:
         return None
     domain_id, nid, eid = (n or 0 for n in numbers)
-    node = NodeInfo(zid, nid, name, demangle(namespace), demangle(enclave))
+    node = shared_node(zid, nid, name, namespace, enclave)
     if kind == NODE_KIND:
         return Token(domain_id, node)
     endpoint = parse_endpoint(key, node, eid, kind, chunks[NODE_CHUNKS:])
@@ -184,7 +187,7 @@ def parse_endpoint(
     if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS - NODE_CHUNKS:
         return None
     name, dds_name, type_hash, qos_text = chunks[:4]
-    type_name = ros_type(demangle(dds_name))
+    type_name, hash_text = shared_type(dds_name, type_hash)
     qos = parse_qos(qos_text)
     if type_name is None or qos is None:
         return None
@@ -192,12 +195,30 @@ def parse_endpoint(
         KINDS[kind],
         node,
         endpoint_id,
-        demangle(name),
+        shared_name(name),
         type_name,
-        demangle(type_hash),
+        hash_text,
         qos,
         gid_of(key),
     )
+
+
+@lru_cache(SHARED)
+def shared_node(zid: str, node_id: int, name: str, namespace: str, enclave: str) -> NodeInfo:
+    """Return the node of some chunks; the same object for all endpoints of a node."""
+    return NodeInfo(zid, node_id, name, demangle(namespace), demangle(enclave))
+
+
+@lru_cache(SHARED)
+def shared_name(chunk: str) -> str:
+    """Return the name of a topic or service; the same object for all its endpoints."""
+    return demangle(chunk)
+
+
+@lru_cache(SHARED)
+def shared_type(dds_name: str, type_hash: str) -> tuple[str | None, str]:
+    """Return the name of a type, None if it is not one, and its hash; the same objects always."""
+    return ros_type(demangle(dds_name)), demangle(type_hash)
 
 
 def parse_qos(chunk: str) -> QoSProfile | None:

@@ -11,8 +11,6 @@ from tests.faults.roles import Hear, Publish, Role
 
 __all__ = ["all_attacks"]
 
-ZENOH = "Zenoh: its put waits while it drops thousands of declarations; about half of it is ours"
-
 
 def pair(link: str = "off", env: dict[str, str] | None = None, **talker: Any) -> tuple[Role, ...]:
     """Return two nodes with true messages in both directions, 100 in each second.
@@ -127,7 +125,6 @@ def all_attacks() -> list[Attack]:
             "member",
             "filter_often",
             pair(publish=clouds()),
-            issue=ZENOH,
             bare=True,
         ),
         Attack(
@@ -171,7 +168,6 @@ def all_attacks() -> list[Attack]:
             "member",
             "subscribe_often",
             pair(),
-            issue=ZENOH,
             bare=True,
         ),
         Attack(
@@ -179,7 +175,6 @@ def all_attacks() -> list[Attack]:
             "member",
             "flood_graph",
             pair(),
-            issue=ZENOH,
             bare=True,
         ),
     ]

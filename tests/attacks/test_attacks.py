@@ -70,6 +70,18 @@ def test_the_table_says_why_an_attack_was_not_held() -> None:
     assert table([line]).endswith(END)
 
 
+@pytest.mark.parametrize(("zenoh_bytes", "is_held"), [(60, True), (20, False)])
+def test_memory_that_zenoh_takes_by_itself_is_told_and_not_counted(
+    zenoh_bytes: int, is_held: bool
+) -> None:
+    """No program with a session can refuse it; what a node takes beside it counts."""
+    attack = Attack("announces", "member", "wait", pair())
+    found = Found(Outcome(), memory_before_bytes=100, memory_most_bytes=180, bare_bytes=zenoh_bytes)
+
+    assert (not found.broken()) is is_held
+    assert f"1.80 times; {1.8 - zenoh_bytes / 100:.2f} times without the" in line_of(attack, found)
+
+
 def test_names_of_attacks_are_unique() -> None:
     """The table has one line for each."""
     names = [attack.name for attack in all_attacks()]

@@ -209,6 +209,26 @@ def test_a_profile_that_is_changed_is_not_that_of_another_endpoint() -> None:
     assert second.depth == 10
 
 
+def test_endpoints_share_what_they_have_in_common() -> None:
+    """Others may announce thousands, and the graph keeps them all."""
+    token = TOKENS[-1]["key"]
+    infos = []
+    for number in (1001, 1002):
+        chunks = token.split("/")
+        chunks[4] = str(number)
+        parsed = liveliness.parse_token("/".join(chunks))
+        assert parsed is not None
+        assert isinstance(parsed.info, EndpointInfo)
+        infos.append(parsed.info)
+    one, other = infos
+
+    assert one != other
+    assert one.node is other.node
+    assert one.name is other.name
+    assert one.type_name is other.type_name
+    assert one.type_hash is other.type_hash
+
+
 def test_a_depth_of_zero_is_the_default_depth() -> None:
     """As rmw_zenoh takes it."""
     qos = liveliness.parse_qos("::,0:,:,:,,")

@@ -14,6 +14,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Final, Protocol
 
 import zenoh
@@ -27,6 +28,7 @@ from aionode.wire._key_expression import Side
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
     from aionode.transport.zenoh._announced import AnnouncedLimit
+    from aionode.transport.zenoh._outlet import Outlet
 
 __all__ = ["Acknowledgements", "StatefulReader", "StatefulWriter"]
 
@@ -138,6 +140,7 @@ class Acknowledgements:
         note_malformed: Called with the key of a malformed sample, and what it should be.
         on_participant: Called when another context is known to acknowledge.
         announced: Limits how many contexts are kept; the others count as ones that do not.
+        outlet: Where submessages are put.
 
     Attributes:
         participants: The other contexts that acknowledge, the last `GONE` that have gone included.
@@ -154,6 +157,7 @@ class Acknowledgements:
         note_malformed: Callable[[str, str], None],
         on_participant: Callable[[str], None],
         announced: AnnouncedLimit,
+        outlet: Outlet,
     ) -> None:
         self.participants: set[str] = set()
         self._gone: dict[str, None] = {}  # in order
@@ -166,6 +170,7 @@ class Acknowledgements:
         self._participant = participant
         self._note_malformed = note_malformed
         self._on_participant = on_participant
+        self._outlet = outlet
         self._prefix = f"{PREFIX}/{domain_id}/"
         self._suffix = f"/reliable/{acknack.VERSION}"
         self._session: zenoh.Session | None = None
@@ -238,6 +243,13 @@ class Acknowledgements:
 
     def send(self, key: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
         """Send a submessage; it may be lost. Large ones go from a thread."""
+        if self._outlet.is_crowded:
+            self._outlet.send(partial(self.send_now, key, data, priority), len(data))
+        else:
+            self.send_now(key, data, priority)
+
+    def send_now(self, key: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
+        """Send a submessage from the calling thread."""
         session = self._session
         if session is None:
             return

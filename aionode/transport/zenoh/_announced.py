@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from typing import Final
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 __all__ = ["AnnouncedLimit"]
 
@@ -15,6 +18,10 @@ TOKEN_BYTES: Final = 2_000
 
 SHARE: Final = 8
 """One participant may have an eighth of it all."""
+
+CROWDED: Final = 2_000
+"""Of more tokens than that Zenoh's lock may be held for long: it drops those of a connection in one
+piece, which takes 40 ms for 2,000 and grows with their square."""
 
 RESERVED_BYTES: Final = 256_000
 """So much of each connected participant is kept whatever others announce: 100 endpoints. Whoever
@@ -32,10 +39,15 @@ class AnnouncedLimit:
     Attributes:
         left_out: How many tokens were left out since the graph was last filled up; those that come
             again count again.
+        is_crowded: Whether there are so many that Zenoh may stand still for a moment.
+        on_crowded: Called when that has changed.
     """
 
     def __init__(self, limit_bytes: int) -> None:
         self.left_out = 0
+        self.is_crowded = False
+        self.on_crowded: list[Callable[[], None]] = []
+        self._count = 0
         self._is_told = False
         self._connected: set[str] = set()
         self._limit_bytes = limit_bytes
@@ -53,6 +65,8 @@ class AnnouncedLimit:
             return False
         self._of[participant] = own_bytes
         self._used_bytes += size_bytes
+        self._count += 1
+        self._judge()
         return True
 
     def give_back(self, participant: str, key: str) -> None:
@@ -64,6 +78,13 @@ class AnnouncedLimit:
         self._of[participant] -= size_bytes
         if not self._of[participant]:
             del self._of[participant]
+        self._count -= 1
+        self._judge()
+
+    def begin_to_fill(self) -> None:
+        """Count anew what is left out: everything is asked for again."""
+        self.left_out = 0
+        self._judge()
 
     def note_connected(self, participant: str, *, is_so: bool) -> None:
         """Note who is connected; the others may be behind routers, or invented."""
@@ -74,14 +95,24 @@ class AnnouncedLimit:
 
     def clear(self) -> None:
         """Begin anew: nothing is kept any more."""
-        self._used_bytes = 0
+        self._used_bytes = self._count = 0
         self._of.clear()
         self._connected.clear()
+        self._judge()
+
+    def _judge(self) -> None:
+        """Find out whether it is crowded."""
+        is_crowded = self._count > CROWDED or self.left_out > 0
+        if is_crowded is not self.is_crowded:
+            self.is_crowded = is_crowded
+            for call in self.on_crowded:
+                call()
 
     def _leave_out(self, participant: str) -> None:
         if not self._of[participant]:
             del self._of[participant]  # it was asked for only
         self.left_out += 1
+        self._judge()
         if not self._is_told:
             self._is_told = True
             logger.warning(

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.transport._loop_waker import LoopWaker
+    from aionode.transport.zenoh._outlet import Outlet
 
 __all__ = ["Assertions"]
 
@@ -32,8 +33,11 @@ GID_SIZE = 16
 class Assertions:
     """The assertions that this context sends and receives."""
 
-    def __init__(self, waker: LoopWaker, note_malformed: Callable[[str, str], None]) -> None:
+    def __init__(
+        self, waker: LoopWaker, note_malformed: Callable[[str, str], None], outlet: Outlet
+    ) -> None:
         self._waker = waker
+        self._outlet = outlet
         self._note_malformed = note_malformed
         # By the key of the topic.
         self._listeners: dict[str, dict[Callable[[bytes], None], None]] = {}
@@ -67,8 +71,12 @@ class Assertions:
 
     def send(self, key: str, gid: bytes) -> None:
         """Assert the liveliness of a publisher of this context."""
-        if self._session is not None:
-            self._session.put(
+        self._outlet.send(partial(self._send, key, gid), len(gid))
+
+    def _send(self, key: str, gid: bytes) -> None:
+        session = self._session
+        if session is not None:
+            session.put(
                 key_of(key),
                 gid,
                 congestion_control=zenoh.CongestionControl.DROP,

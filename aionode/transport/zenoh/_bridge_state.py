@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport._loop_waker import LoopWaker
+    from aionode.transport.zenoh._announced import AnnouncedLimit
     from aionode.transport.zenoh._bridge_stubs import Stub
 
 __all__ = ["BridgeDeclaration", "BridgeState"]
@@ -78,7 +79,9 @@ class BridgeState(SessionState):
     ) -> None:
         super().__init__(participant, domain_id, time_base, waker)
         self.acknowledgements = Unacknowledged(
-            participant, domain_id, waker, self.note_malformed, lambda _: None, self.announced
+            *(participant, domain_id, waker, self.note_malformed, lambda _: None),
+            self.announced,
+            self.outlet,
         )
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()
@@ -87,6 +90,11 @@ class BridgeState(SessionState):
         self._tokens: dict[str, SharedToken] = {}
         self._warned_of: set[str] = set()
         self._is_full = False  # whether a bridge was left out
+
+    def follow(self, announced: AnnouncedLimit) -> None:
+        """Count what others announce together with the other endpoints of the session."""
+        self.announced = announced
+        announced.on_crowded.append(self.note_crowd)
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
         """Make all endpoints: this is the first bridge."""

@@ -10,6 +10,7 @@ The name of the service is a chunk of the key, as in the tokens of ROS, so that 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import TYPE_CHECKING
 
 import zenoh
@@ -21,6 +22,7 @@ from aionode.wire._key_expression import demangle, mangle
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
+    from aionode.transport.zenoh._outlet import Outlet
 
 __all__ = ["Cancellations"]
 
@@ -41,11 +43,13 @@ class Cancellations:
         domain_id: int,
         waker: LoopWaker,
         note_malformed: Callable[[str, str], None],
+        outlet: Outlet,
     ) -> None:
         self.listeners: dict[str, dict[Callable[[bytes, int], None], None]] = {}
         self._participant = participant
         self._domain_id = domain_id
         self._note_malformed = note_malformed
+        self._outlet = outlet
         self._session: zenoh.Session | None = None
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take, LIMIT)
@@ -77,15 +81,21 @@ class Cancellations:
 
     def tell(self, participants: Iterable[str], service: str, gid: bytes, sequence: int) -> None:
         """Send the cancellation of a request to some contexts with servers of its service."""
-        if self._session is not None:
-            for participant in participants:
-                self._session.put(
-                    self._prefix(participant) + mangle(service),
-                    b"",
-                    attachment=attachment.pack(sequence, 0, gid),
-                    congestion_control=zenoh.CongestionControl.DROP,
-                    priority=LOOP_PRIORITY,
-                )
+        extra = attachment.pack(sequence, 0, gid)
+        for participant in participants:
+            key = self._prefix(participant) + mangle(service)
+            self._outlet.send(partial(self._send, key, extra), len(extra))
+
+    def _send(self, key: str, extra: bytes) -> None:
+        session = self._session
+        if session is not None:
+            session.put(
+                key,
+                b"",
+                attachment=extra,
+                congestion_control=zenoh.CongestionControl.DROP,
+                priority=LOOP_PRIORITY,
+            )
 
     def _prefix(self, participant: str) -> str:
         return f"@aionode/{self._domain_id}/{participant}/cancel/"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 from functools import partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
@@ -104,6 +104,18 @@ class Check:
         self.failed = False
 
 
+class Change(NamedTuple):
+    """The declaration or undeclaration of a token.
+
+    Attributes:
+        key: The token.
+        present: Whether it is declared.
+    """
+
+    key: str
+    present: bool
+
+
 class Watcher:
     """Keeps the graph up to date with the tokens of other contexts.
 
@@ -135,7 +147,7 @@ class Watcher:
         with translated("the graph"):
             # Of all domains, so that a node with another domain id can be named in the log.
             self._subscriber = session.liveliness().declare_subscriber(
-                f"{PREFIX}/**", direct(self._queue.put), history=True
+                f"{PREFIX}/**", direct(self._hand_over), history=True
             )
             self._listener = session.info.declare_transport_events_listener(
                 direct(self._changes.put), history=True
@@ -225,16 +237,19 @@ class Watcher:
             check.failed = True
             self._queue.put(check)
 
-    def _take(self, item: zenoh.Sample | zenoh.Reply | Check | Answer) -> None:
-        if isinstance(item, zenoh.Sample):
+    def _hand_over(self, sample: zenoh.Sample) -> None:
+        """Have the loop take a token; thousands may wait, and the sample would take three times."""
+        self._queue.put(Change(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT))
+
+    def _take(self, item: Change | zenoh.Reply | Check | Answer) -> None:
+        if isinstance(item, Change):
             self.newest_ns = perf_ns()
-            key = str(item.key_expr)
             if self._check is not None:
-                self._check.changed.add(key)
-            if item.kind == zenoh.SampleKind.PUT:
-                self._add(key)
+                self._check.changed.add(item.key)
+            if item.present:
+                self._add(item.key)
             else:
-                self._remove(key)
+                self._remove(item.key)
         elif isinstance(item, zenoh.Reply):
             if self._check is None:
                 return
@@ -323,7 +338,7 @@ class Watcher:
     def _fill(self) -> None:
         """Ask for what was left out: there is room again."""
         self._filling = None
-        self._state.announced.left_out = 0
+        self._state.announced.begin_to_fill()
         self.check()
 
     def _forget_domain(self, key: str) -> None:

@@ -73,9 +73,13 @@ class PeerSenders:
         waker: Wakes the event loop from threads.
         look: Tells in a thread whether the connection to a participant has room, and how many bytes
             were written to it so far; None if that is not known.
+
+    Attributes:
+        is_crowded: Whether threads send everything, as `Outlet.is_crowded`.
     """
 
     def __init__(self, waker: LoopWaker, look: Callable[[str], tuple[bool, int] | None]) -> None:
+        self.is_crowded = False
         self._waker = waker
         self._look = look
         self._stopped = threading.Event()
@@ -101,7 +105,7 @@ class PeerSenders:
                 peer = self._peers[participant] = PeerSender()
             peer.spent_bytes += size_bytes
             busy = peer.send_thread is not None and peer.send_thread.busy
-            if busy or peer.spent_bytes > ALLOWANCE_BYTES:
+            if busy or peer.spent_bytes > ALLOWANCE_BYTES or self.is_crowded:
                 slow = participant
                 if busy:
                     break

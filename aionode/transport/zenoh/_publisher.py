@@ -62,7 +62,7 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 LATE = 1_000
 """How many messages of a KEEP_LAST publisher, or as many as its depth, wait for Zenoh while that
-answers a late reader; without one they do not wait."""
+answers a late reader, or in a crowd; else they do not wait."""
 
 MORE_DEPTH = "A greater depth keeps more of them, KEEP_ALL and `await drain()` all"
 DRAIN = "`await drain()` before the end waits for readers that still take them"
@@ -282,19 +282,9 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             if history is not None:
                 self._update_readers(history, None if reader is None else reader.gid)
             if not self._transient:  # a late reader may want what all others do not
-                self._wants = self._filter()
+                self._wants = self._matched.wanted(history, self._msg_type)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
-
-    def _filter(self) -> Callable[[Any], bool] | None:
-        """Return whether any reader wants a message; None if all messages have to be sent."""
-        filters = self.state.content_filters
-        if not filters or self.state.has_unannounced_peers:
-            return None
-        readers = dict(self._matched.participants)
-        if self._history is not None:
-            readers |= self._history.participants()  # also those that are away, and may return
-        return filters.wanted_by(self.endpoint.name, readers, self._msg_type)
 
     def _update_readers(self, history: WriterHistory, gid: bytes | None) -> None:
         """Add new and returned readers to the history, and remove those that have vanished.
@@ -387,19 +377,21 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         Returns whether one does; else the loop may put it at once.
         """
         size = len(payload)
-        self.used_bulk = self.used_bulk or size >= BULK_BYTES
+        is_crowded = self.state.outlet.is_crowded
+        self.used_bulk = self.used_bulk or size >= BULK_BYTES or is_crowded
         self._is_large_used = bool(len(self._large))
-        may_not_drop = not self._is_direct and self._reliable
+        if is_crowded or not self._is_large_used:
+            self._large.limit = max(self._depth, LATE) if is_crowded else self._depth
         if (
             self._transient
             or self._patient is not None
             or (
-                may_not_drop
+                self._may_not_drop
                 and (self.bounded or (size < BULK_BYTES and not self.state.burst.spend(size)))
             )
         ):
             self._put_patiently(publisher, payload, extra)
-        elif size >= BULK_BYTES or self._is_large_used:
+        elif size >= BULK_BYTES or self._is_large_used or is_crowded:
             self._is_large_used = True
             send = partial(self._send, publisher, payload, extra)
             self._large.put(self._unless_expired(extra, send), size)
@@ -415,9 +407,17 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         while Zenoh waits for one to read the answer, it lets nobody add to it.
         """
         others = self._history is None or self._history.has_other_readers
-        self._is_direct = (
-            self._patient is None and not self._transient and not (others and self._reliable)
+        self._may_not_drop = others and self._reliable
+        self._is_direct = not (
+            self._patient is not None
+            or self._transient
+            or self._may_not_drop
+            or self.state.outlet.is_crowded
         )
+
+    def note_crowd(self) -> None:
+        """Have the thread for large messages send all while Zenoh may stand still."""
+        self._update_route()
 
     def _put_patiently(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes

@@ -25,6 +25,7 @@ from aionode.transport.zenoh._announced import AnnouncedLimit
 from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._handlers import translated
+from aionode.transport.zenoh._outlet import Outlet
 from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.transport.zenoh._request_room import RequestRoom
 from aionode.transport.zenoh._sockets import look
@@ -95,6 +96,7 @@ class SessionState:
         waker: Wakes the event loop from Zenoh's threads.
         bulk: The thread that sends large messages.
         send_threads: All threads that send messages, `bulk` included.
+        outlet: Where the loop puts what is no message.
         peer_senders: Send requests and replies.
         burst: Limits what the loop puts at once for readers that do not acknowledge.
         acknowledgements: The acknowledgements between contexts of aionode.
@@ -134,18 +136,23 @@ class SessionState:
         self.waker = LoopWaker() if waker is None else waker
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
+        self.outlet = Outlet(self.bulk, queue_bytes)
+        self.announced.on_crowded.append(self.note_crowd)
         self.peer_senders = PeerSenders(self.waker, self._look)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(
             *(participant, domain_id, self.waker, self.note_malformed, self._acknowledges),
             self.announced,
+            self.outlet,
         )
         self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()
         self.lies: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
-        self.cancellations = Cancellations(participant, domain_id, self.waker, self.note_malformed)
-        self.assertions = Assertions(self.waker, self.note_malformed)
+        self.cancellations = Cancellations(
+            participant, domain_id, self.waker, self.note_malformed, self.outlet
+        )
+        self.assertions = Assertions(self.waker, self.note_malformed, self.outlet)
         self.time_base = MachineTime() if time_base is None else time_base
         self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, dict[ReaderListener, None]] = {}
@@ -272,6 +279,7 @@ class SessionState:
             for publisher in list(self.lingering):
                 publisher.finish()
         self.peer_senders.clear()
+        self.outlet.clear()
         self.cancellations.stop()
         self.assertions.stop()
         self.acknowledgements.stop()
@@ -305,6 +313,13 @@ class SessionState:
             self.has_unannounced_peers = there_are
             if self.content_filters:
                 self._readers_changed()
+
+    def note_crowd(self) -> None:
+        """Leave what may wait for Zenoh to threads while others have announced so much."""
+        is_crowded = self.announced.is_crowded
+        self.outlet.is_crowded = self.peer_senders.is_crowded = is_crowded
+        for declaration in list(self._declarations):
+            declaration.note_crowd()
 
     def note_malformed(self, key: str, problem: str) -> None:
         """Count a malformed sample; the first on each key is logged."""
@@ -399,6 +414,9 @@ class Declaration(Registration):
 
     def linger(self) -> None:
         """Begin to linger, if messages are not acknowledged: the context is about to close."""
+
+    def note_crowd(self) -> None:
+        """Take note of whether others have announced so much that Zenoh may stand still."""
 
     @abstractmethod
     def declare_data(self, session: zenoh.Session) -> None:

@@ -65,8 +65,8 @@ class SubmessageSender:
     ) -> None:
         data = acknack.pack(kind, self.gid, reader.gid, first, last, rest)
         key = acknack.submessage_key(self._key, Side.PUBLISHERS, reader.participant)
-        send = self.state.acknowledgements.send
+        acknowledgements = self.state.acknowledgements
         if len(data) < BULK_BYTES:
-            send(key, data)
+            acknowledgements.send(key, data)
         else:  # Zenoh sends it in fragments, each of which may wait
-            self.state.bulk.submit(partial(send, key, data, BULK_PRIORITY))
+            self.state.bulk.submit(partial(acknowledgements.send_now, key, data, BULK_PRIORITY))

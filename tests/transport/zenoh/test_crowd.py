@@ -1,0 +1,158 @@
+"""The event loop leaves Zenoh to threads while others have announced thousands of things.
+
+Zenoh drops what a connection has announced in one piece, and no put goes on meanwhile.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import AsyncIterator, Callable
+from typing import Any
+
+import pytest
+
+from aionode.endpoints.publisher import Publisher
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.qos import QoSProfile, ReliabilityPolicy
+from aionode.transport._send_thread import Worker
+from aionode.transport.zenoh import _announced as announced
+from aionode.transport.zenoh._announced import CROWDED, AnnouncedLimit
+from aionode.transport.zenoh._handlers import LOOP_PRIORITY
+from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._session_state import SessionState
+from tests.support.peers import quiet_node, two_contexts
+
+PARTICIPANT = "a" * 32
+
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Gate:
+    """Holds back what a thread of a publisher sends, as Zenoh does while it drops declarations."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.opened = threading.Event()
+        send = ZenohWriter._send
+
+        def wait(self_: ZenohWriter, *what: Any) -> None:
+            self.opened.wait()
+            send(self_, *what)
+
+        monkeypatch.setattr(ZenohWriter, "_send", wait)
+
+
+def writer_of(publisher: Publisher[Int32]) -> ZenohWriter:
+    """Return a publisher's end in Zenoh."""
+    writer: Any = publisher._writers[1]
+    assert isinstance(writer, ZenohWriter)
+    return writer
+
+
+@pytest.fixture
+async def state() -> AsyncIterator[SessionState]:
+    """The state of a context without a session, in a crowd."""
+    state = SessionState(PARTICIPANT, 42)
+    state.waker.open(asyncio.get_running_loop())
+    state.announced.left_out = 1
+    state.announced.take("other", "one more")
+    assert state.outlet.is_crowded
+    yield state
+    await state.bulk.flush()
+    state.waker.close()
+
+
+def test_there_is_a_crowd_while_more_than_some_thousand_tokens_are_kept() -> None:
+    """It is told as it begins, and as it ends."""
+    limit = AnnouncedLimit(64 << 20)
+    told: list[bool] = []
+    limit.on_crowded.append(lambda: told.append(limit.is_crowded))
+    for number in range(CROWDED + 10):
+        limit.take(str(number % 10), str(number))
+    for number in range(20):
+        limit.give_back(str(number % 10), str(number))
+
+    assert told == [True, False]
+
+
+def test_there_is_a_crowd_while_anything_is_left_out() -> None:
+    """Zenoh keeps that too, and nobody knows how much it is."""
+    limit = AnnouncedLimit(0)
+    limit.take("liar", "x" * announced.RESERVED_BYTES)
+    assert limit.is_crowded
+
+    limit.begin_to_fill()
+    assert not limit.is_crowded
+
+
+async def test_messages_wait_for_zenoh_in_a_thread_and_stay_in_order(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Beyond the depth of their publisher, as well: it is no reader that is slow."""
+    gate = Gate(monkeypatch)
+    async with (
+        two_contexts(link=False) as (first, second),
+        quiet_node("talker", first) as talker,
+        quiet_node("listener", second) as listener,
+    ):
+        subscription = listener.create_subscription(Int32, "n", None, 500)
+        publisher = talker.create_publisher(Int32, "n", 10)
+        await publisher.wait_for_subscribers()
+        limit = writer_of(publisher).state.announced
+        publisher.publish(Int32(data=0))
+        assert (await subscription.receive()).data == 0
+
+        monkeypatch.setattr(announced, "CROWDED", 0)
+        limit.take("other", "one more")
+        for number in range(1, 101):
+            publisher.publish(Int32(data=number))
+        monkeypatch.setattr(announced, "CROWDED", CROWDED)
+        limit.give_back("other", "one more")
+        for number in range(101, 111):  # these wait behind the others
+            publisher.publish(Int32(data=number))
+        assert len(writer_of(publisher)._large) == 110
+        gate.opened.set()
+
+        heard = [(await subscription.receive()).data for _ in range(110)]
+        assert heard == list(range(1, 111))
+        assert publisher.stats.dropped == 0
+
+
+@pytest.mark.parametrize(
+    "put",
+    [
+        lambda state: state.acknowledgements.send("key", b"ack", LOOP_PRIORITY),
+        lambda state: state.assertions.send("key", bytes(16)),
+        lambda state: state.cancellations.tell(["other"], "/service", bytes(16), 1),
+        lambda state: state.peer_senders.send(["other"], 1, lambda: None),
+    ],
+    ids=["acknowledgement", "assertion", "cancellation", "request"],
+)
+async def test_all_else_waits_in_threads_too(
+    state: SessionState, put: Callable[[SessionState], None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The loop puts nothing at all."""
+    jobs: list[Any] = []
+    with monkeypatch.context() as until_then:
+        until_then.setattr(Worker, "submit", lambda _, job: jobs.append(job))
+
+        put(state)
+        assert len(jobs) == 1
+
+        state.announced.begin_to_fill()
+        put(state)
+        assert len(jobs) == 1
+
+
+async def test_a_publisher_that_is_made_in_a_crowd_uses_the_thread(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The crowd may have been there before the program."""
+    monkeypatch.setattr(announced, "CROWDED", 0)
+    async with quiet_node("talker") as talker:
+        before = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
+        assert before._is_direct
+        before.state.announced.take("other", "one more")
+        late = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
+        assert not late._is_direct
+        assert not before._is_direct
