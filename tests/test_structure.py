@@ -35,6 +35,7 @@ SHARED = {
     "aionode.endpoints.timer._ticker": "timers of rclpy's API go by the same schedule",
     "aionode.endpoints.timer._timer": "Node.create_timer builds one",
     "aionode.errors._values": "durations and times need its texts, not the exceptions",
+    "aionode.idl._named": "programs of rclpy are started with folders of interfaces",
     "aionode.lifecycle._answers": "managed nodes of rclpy's API give the same answers",
     "aionode.logging._severity": "arguments name severities, and do not log",
     "aionode.message._field_types": "the codec compiles the fields of a message",

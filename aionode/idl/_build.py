@@ -83,10 +83,16 @@ class Builder:
         """
         if typename not in self.built:
             self.open.append(typename)
-            built = self.make(self.texts[typename])
-            self.open.pop()
-            self.built[typename] = (self.reuse and existing(typename, built)) or built
+            try:
+                built = self.make(self.texts[typename])
+            finally:
+                self.open.pop()
+            self.built[typename] = (self.reuse and self.existing(typename, built)) or built
         return self.built[typename]
+
+    def existing(self, typename: str, built: type[Interface]) -> type[Interface] | None:
+        """Return the class that is there already and has the same definition."""
+        return existing(typename, built)
 
     def make(self, text: InterfaceText) -> type[Interface]:
         """Return a new class."""

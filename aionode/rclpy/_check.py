@@ -14,6 +14,7 @@ from typing import Final
 from aionode.rclpy._finder import ALIASES, KINDS, exists
 from aionode.rclpy._missing import advice
 from aionode.rclpy._rosidl import has_interfaces, names_in
+from aionode.rclpy._workspace import around
 
 __all__ = ["check"]
 
@@ -146,8 +147,25 @@ def find(wanted: Import, file: Path) -> Finding:
         # A folder without Python is importable too, such as that of a message package.
         if beside is not None and beside.loader is not None:
             return Finding(module, "beside the program")
+    place = in_workspace(wanted, file)
+    if place is not None:
+        return Finding(module, f"in {place}")
     reason = advice(module, frozenset(ALIASES)) or "no module of this name is installed"
     return Finding(module, reason, is_there=False)
+
+
+def in_workspace(wanted: Import, file: Path) -> Path | None:
+    """Return the package of the workspace around a file that has what the file imports."""
+    package, _, inside = wanted.module.partition(".")
+    packages = around(file)
+    root = packages.module_root(package)
+    if root is not None:
+        return root if found_on([str(root)], wanted.module) else None
+    source = packages.sources().get(package)
+    if source is None or inside not in KINDS:
+        return None
+    name = wanted.name.partition("_")[0]
+    return source if not name or (source / inside / f"{name}.{inside}").is_file() else None
 
 
 def own_folders(file: Path) -> list[Path]:

@@ -16,6 +16,7 @@ from aionode.interfaces import shipped_packages
 from aionode.rclpy._reexports import add_names
 from aionode.rclpy._rosidl import (
     add_folder,
+    add_workspace,
     classes_of,
     has_interfaces,
     module_name,
@@ -64,7 +65,6 @@ def install(
 
     Raises:
         ImportError: Another rclpy has been imported already.
-        IdlError: The definition of an interface is not valid.
         FileNotFoundError: There is no such folder.
     """
     loaded = sys.modules.get("rclpy")
@@ -128,9 +128,11 @@ class AionodeFinder(MetaPathFinder):
         if package in ALIASES:
             own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
             return spec_from_loader(fullname, AliasLoader(own)) if exists(own) else None
-        if package == "aionode" or package in sys.stdlib_module_names:
+        kind, _, module = inside.partition(".")
+        if package == "aionode" or package in sys.stdlib_module_names or kind not in ("", *KINDS):
             return None
-        if not has_interfaces(package):
+        # A package of the workspace may have messages beside its Python modules.
+        if not has_interfaces(package) and not (inside and add_workspace(package)):
             return None if inside else of_workspace(package)
         if not inside:
             # A package may have Python modules beside its messages.
@@ -138,8 +140,7 @@ class AionodeFinder(MetaPathFinder):
             if ordinary is not None and ordinary.origin is not None:
                 return None
             return spec_from_loader(fullname, EmptyLoader(), is_package=True)
-        kind, _, module = inside.partition(".")
-        if kind not in KINDS or not has_interfaces(package, kind):
+        if not has_interfaces(package, kind):
             return None
         if not module:
             return spec_from_loader(fullname, KindLoader(package, kind), is_package=True)
@@ -150,7 +151,7 @@ class AionodeFinder(MetaPathFinder):
 
 
 def of_workspace(package: str) -> ModuleSpec | None:
-    """Return how the Python package of a package of the workspace is loaded.
+    """Return how a package of the workspace is loaded: its Python modules, or its messages.
 
     What is installed or on PYTHONPATH comes first. A folder without Python is no package for that:
     in a workspace, the folder around a Python package often has the same name.
@@ -161,7 +162,10 @@ def of_workspace(package: str) -> ModuleSpec | None:
     from aionode.rclpy._workspace import here  # only for what is not found otherwise
 
     root = here().module_root(package)
-    return None if root is None else PathFinder.find_spec(package, [str(root)])
+    if root is not None:
+        return PathFinder.find_spec(package, [str(root)])
+    is_found = add_workspace(package)
+    return spec_from_loader(package, EmptyLoader(), is_package=True) if is_found else None
 
 
 def exists(module: str) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from aionode._packages import Packages, workspace_of
 
-__all__ = ["here", "use"]
+__all__ = ["around", "here", "use"]
 
 GIVEN: list[Path] = []
 """The workspace that was named, if one was."""
@@ -33,13 +33,16 @@ def here() -> Packages:
     The workspace is the one that was named, or else the one around the program. Before a module
     runs, and where there is no program's file, it is the one around the current folder.
     """
-    if GIVEN:
-        return Packages(*GIVEN)
     name = getattr(sys.modules.get("__main__"), "__file__", None)
     return around(Path.cwd() if name is None or Path(name) == STARTER else Path(name))
 
 
-@cache
 def around(place: Path) -> Packages:
-    """Return the packages of the workspace around a file or folder."""
+    """Return the packages of the workspace that was named, or else of the one around a place."""
+    return Packages(*GIVEN) if GIVEN else looked_up(place)
+
+
+@cache
+def looked_up(place: Path) -> Packages:
+    """Return the packages of the workspace around a place."""
     return Packages(workspace_of(place))

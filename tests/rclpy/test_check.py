@@ -46,6 +46,32 @@ def test_each_import_has_its_source(program: Path) -> None:
     assert complete
 
 
+def test_packages_of_the_workspace_are_there(tmp_path: Path) -> None:
+    """They need no build, neither for their modules nor for their messages."""
+    for name in ("own_robot", "own_msgs"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text(f"<name>{name}</name>")
+    (tmp_path / "src" / "own_msgs" / "msg").mkdir()
+    (tmp_path / "src" / "own_msgs" / "msg" / "Words.msg").write_text("int8 value\n")
+    (tmp_path / "src" / "own_robot" / "own_robot").mkdir()
+    (tmp_path / "src" / "own_robot" / "own_robot" / "__init__.py").write_text("")
+    (tmp_path / "src" / "own_msgs" / "scripts").mkdir()
+
+    found, complete = findings(
+        tmp_path / "src" / "own_msgs" / "scripts" / "tool.py",
+        "import own_robot, own_robot.nothing\n"
+        "from own_msgs.msg import Words\nfrom own_msgs.srv import Ask\n",
+    )
+
+    assert found == {
+        "own_robot": f"in {tmp_path / 'src' / 'own_robot'}",
+        "own_robot.nothing": "missing",
+        "own_msgs.msg": f"in {tmp_path / 'src' / 'own_msgs'}",
+        "own_msgs.srv": "missing",
+    }
+    assert not complete
+
+
 @pytest.mark.parametrize(
     ("line", "shown"),
     [

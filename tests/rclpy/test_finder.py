@@ -14,7 +14,8 @@ from types import ModuleType
 import pytest
 
 import aionode.rclpy
-from aionode.rclpy import _finder
+from aionode.errors import IdlError
+from aionode.rclpy import _finder, _workspace
 from aionode.rclpy._rosidl import message_class
 
 WORDS = """\
@@ -31,6 +32,7 @@ def installed() -> Iterator[None]:
     before = dict(sys.modules)
     aionode.rclpy.install()
     yield
+    _workspace.GIVEN.clear()
     sys.meta_path.remove(_finder.FINDER)
     for name in set(sys.modules) - set(before):
         if not name.startswith("aionode"):
@@ -166,6 +168,86 @@ def test_messages_of_a_folder_need_no_build(words: Path) -> None:
     assert message.MANY == 100
     assert message.scores[0].value == 0.5
     assert type(message.header) is message_class("std_msgs/msg/Header")
+
+
+@pytest.mark.usefixtures("installed")
+def test_folders_of_messages_are_read_when_they_are_used(tmp_path: Path) -> None:
+    """Their order does not matter, and a definition that is not valid harms nobody else."""
+    write_message(tmp_path / "one/late_words_msgs/msg/Words.msg", "late_score_msgs/Score best\n")
+    write_message(tmp_path / "one/late_words_msgs/msg/Lost.msg", "no_such_msgs/Thing thing\n")
+    write_message(tmp_path / "one/late_words_msgs/msg/Broken.msg", "what is this?\n")
+    write_message(tmp_path / "two/late_score_msgs/msg/Score.msg", "float32 value 0.5\n")
+    aionode.rclpy.install(interfaces=[tmp_path / "one", tmp_path / "two"])
+
+    module = importlib.import_module("late_words_msgs.msg")
+
+    assert module.Words().best.value == 0.5
+    with pytest.raises(IdlError, match=r"Lost\.msg:1:1: no message type 'no_such_msgs/Thing'"):
+        _ = module.Lost
+    with pytest.raises(IdlError, match=r"Broken\.msg:1"):
+        _ = module.Broken
+    assert type(module.Words().best) is message_class("late_score_msgs/msg/Score")
+
+
+@pytest.mark.usefixtures("installed")
+def test_the_first_of_two_equal_names_wins_with_a_warning(tmp_path: Path) -> None:
+    """A copy of the same text is none of them: a workspace has its source and what it installs."""
+    write_message(tmp_path / "one/twice_msgs/msg/Words.msg", "int8 first\n")
+    write_message(tmp_path / "two/twice_msgs/msg/Words.msg", "int8 second\n")
+    write_message(tmp_path / "two/same_msgs/msg/Words.msg", "int8 same\n")
+    write_message(tmp_path / "three/same_msgs/msg/Words.msg", "int8 same\n")
+    aionode.rclpy.install(interfaces=[tmp_path / name for name in ("one", "two", "three")])
+
+    with pytest.warns(
+        RuntimeWarning, match="twice_msgs/msg/Words is defined in .*one.*two"
+    ) as seen:
+        module = importlib.import_module("twice_msgs.msg")
+
+    assert len(seen) == 1
+    assert module.Words().get_fields_and_field_types() == {"first": "int8"}
+
+
+@pytest.mark.usefixtures("installed")
+def test_an_installed_package_may_use_messages_of_a_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The folder is named for the one package that the sourced workspace does not have."""
+    write_message(tmp_path / "share/outer_msgs/msg/Words.msg", "inner_msgs/Score best\n")
+    write_message(tmp_path / "named/inner_msgs/msg/Score.msg", "float32 value 0.5\n")
+    write_message(tmp_path / "named/inner_msgs/msg/Broken.msg", "what is this?\n")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path))
+    aionode.rclpy.install(interfaces=[tmp_path / "named"])
+
+    module = importlib.import_module("outer_msgs.msg")
+
+    assert type(module.Words().best) is message_class("inner_msgs/msg/Score")
+
+
+@pytest.mark.usefixtures("installed")
+def test_packages_of_the_workspace_need_no_build(tmp_path: Path) -> None:
+    """Neither their Python modules nor their messages, which use one another."""
+    for name in ("ws_words_msgs", "ws_score_msgs", "ws_robot"):
+        (tmp_path / "src" / name).mkdir(parents=True)
+        (tmp_path / "src" / name / "package.xml").write_text(f"<name>{name}</name>")
+    write_message(tmp_path / "src/ws_words_msgs/msg/Words.msg", "ws_score_msgs/Score best\n")
+    write_message(tmp_path / "src/ws_score_msgs/msg/Score.msg", "float32 value 0.5\n")
+    robot = tmp_path / "src" / "ws_robot" / "ws_robot"
+    robot.mkdir()
+    (robot / "__init__.py").write_text("")
+    (robot / "tools.py").write_text("from ws_words_msgs.msg import Words\n")
+    aionode.rclpy.install(workspace=tmp_path)
+
+    module = importlib.import_module("ws_robot.tools")
+
+    assert module.Words().best.value == 0.5
+    with pytest.raises(ModuleNotFoundError, match="No module named 'ws_nothing'"):
+        importlib.import_module("ws_nothing")
+
+
+def write_message(file: Path, text: str) -> None:
+    """Write a definition."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
 
 
 @pytest.mark.usefixtures("installed")

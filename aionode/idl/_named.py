@@ -1,0 +1,206 @@
+"""Interfaces of the folders that a program was started with, each read when it is first used.
+
+The order of the folders matters for equal names alone: a type may use those of any folder, of
+aionode.interfaces and of the sourced ROS 2.
+"""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from threading import RLock
+from types import ModuleType
+from typing import Any
+
+from aionode.errors import IdlError
+from aionode.idl._build import Builder, existing
+from aionode.idl._definition import HALVES, InterfaceText, split_type_name
+from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, package_of, read
+from aionode.idl._parser import parse
+from aionode.interfaces import shipped_packages
+from aionode.message import Interface
+
+__all__ = ["NamedFinder", "NamedInterfaces"]
+
+PREFIX = "aionode.interfaces."
+
+
+class NamedInterfaces:
+    """The interfaces of several folders, of which nothing is read before it is used."""
+
+    def __init__(self) -> None:
+        self._folders: set[Path] = set()
+        self._new: list[Path] = []
+        """Those that have not been looked at yet."""
+        self._files: dict[str, Path] = {}
+        self._builder = NamedBuilder(NamedTexts(self._files))
+        self._lock = RLock()  # a builder knows which type is being built; it asks for others
+
+    def add(self, path: str | Path) -> None:
+        """Add a folder: a package, or a folder with packages at any depth.
+
+        Raises:
+            FileNotFoundError: There is no such folder.
+        """
+        folder = Path(path).resolve()
+        if not folder.is_dir():
+            raise FileNotFoundError(f"{path}: no such folder")
+        if folder not in self._folders:
+            self._folders.add(folder)
+            self._new.append(folder)
+
+    def names(self, package: str) -> list[str]:
+        """Return the ROS names of the types of a package."""
+        return [name for name in self._known() if name.startswith(f"{package}/")]
+
+    def has(self, typename: str) -> bool:
+        """Return whether one of the folders has a type."""
+        return typename in self._known()
+
+    def build(self, typename: str) -> type[Interface]:
+        """Return the class of a type, created when it is first asked for.
+
+        Raises:
+            IdlError: Its definition is not valid, or uses a type that is not known.
+        """
+        self._known()
+        with self._lock:
+            return self._builder.build(typename)
+
+    def _known(self) -> Mapping[str, Path]:
+        """Return the files of all types, after a look at the folders that are new."""
+        if self._new:
+            with self._lock:
+                while self._new:  # another thread may have done it meanwhile
+                    add_definitions(self._new[0], self._files)
+                    del self._new[0]
+        return self._files
+
+
+class NamedTexts(Mapping[str, InterfaceText]):
+    """Definitions by the names of their types, each parsed when it is first asked for."""
+
+    def __init__(self, files: Mapping[str, Path]) -> None:
+        self._files = files
+        self._parsed: dict[str, InterfaceText] = {}
+
+    def __getitem__(self, typename: str) -> InterfaceText:
+        if typename not in self._parsed:
+            file = self._files[typename]
+            self._parsed[typename] = parse(typename, read(file), str(file))
+        return self._parsed[typename]
+
+    def __contains__(self, typename: object) -> bool:
+        return typename in self._files
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+
+class NamedBuilder(Builder):
+    """Creates the classes of the folders; a shipped type with the same definition stays."""
+
+    def __init__(self, texts: Mapping[str, InterfaceText]) -> None:
+        super().__init__(texts, reuse=True)
+
+    def existing(self, typename: str, built: type[Interface]) -> type[Interface] | None:
+        """Return the shipped class of this name, if its definition is the same."""
+        is_shipped = split_type_name(typename)[0] in shipped_packages()
+        return existing(typename, built) if is_shipped else None
+
+
+def add_definitions(folder: Path, known: dict[str, Path]) -> None:
+    """Add the files of a folder that define types which are not known yet.
+
+    A warning names two files that define one type differently.
+    """
+    for file in files_in(folder):
+        package = package_of_file(file)
+        if package is None:
+            continue
+        typename = f"{package}/{file.parent.name}/{file.stem}"
+        first = known.setdefault(typename, file)
+        # A workspace may have its source and an installed copy.
+        if first is not file and first.read_bytes() != file.read_bytes():
+            text = f"{typename} is defined in {first}, and differently in {file}, which is not used"
+            warnings.warn(text, RuntimeWarning, stacklevel=2)
+
+
+def files_in(folder: Path) -> Iterator[Path]:
+    """Yield the files with definitions below a folder, sorted within each folder."""
+    for place, folders, files in os.walk(folder):
+        folders[:] = sorted(name for name in folders if not name.startswith("."))
+        kind = Path(place).name
+        if kind in HALVES:
+            yield from (Path(place, name) for name in sorted(files) if is_definition(name, kind))
+
+
+def is_definition(name: str, kind: str) -> bool:
+    """Return whether a file has the name of a definition."""
+    stem, _, ending = name.partition(".")
+    return ending == kind and TYPE_NAME.fullmatch(stem) is not None
+
+
+def package_of_file(file: Path) -> str | None:
+    """Return the package of a definition; None where no package can have that name."""
+    try:
+        return package_of(file)
+    except IdlError:  # no program can import it
+        return None
+
+
+class NamedFinder(MetaPathFinder):
+    """Finds ``aionode.interfaces.my_msgs.msg`` in the folders, for types that use such a one."""
+
+    def __init__(self, named: NamedInterfaces) -> None:
+        self.named = named
+
+    def find_spec(
+        self,
+        fullname: str,
+        path: Sequence[str] | None,  # noqa: ARG002 (Python's protocol)
+        target: ModuleType | None = None,  # noqa: ARG002 (the same)
+    ) -> ModuleSpec | None:
+        """Return how to import a package of the folders that is not shipped."""
+        package, _, kind = fullname.removeprefix(PREFIX).partition(".")
+        if not fullname.startswith(PREFIX) or not PACKAGE_NAME.fullmatch(package):
+            return None
+        if package in shipped_packages() or "." in kind:
+            return None
+        names = [name for name in self.named.names(package) if f"/{kind}/" in name or not kind]
+        if not names:
+            return None
+        loader = NamedLoader(self.named, names if kind else [])
+        return ModuleSpec(fullname, loader, is_package=not kind)
+
+
+class NamedLoader(Loader):
+    """Loads a module of types; one that is not valid is left out, and an error where it is used."""
+
+    def __init__(self, named: NamedInterfaces, names: list[str]) -> None:
+        self.named = named
+        self.names = names
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Put the classes into the module."""
+        failed: dict[str, IdlError] = {}
+        for typename in self.names:
+            name = split_type_name(typename)[2]
+            try:
+                vars(module)[name] = self.named.build(typename)
+            except IdlError as error:
+                failed[name] = error
+
+        def find(name: str) -> Any:
+            if name in failed:
+                raise failed[name]
+            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+
+        vars(module).update(__getattr__=find)
