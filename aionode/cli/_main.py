@@ -31,6 +31,7 @@ NOUNS = {
     "completion": "Print the completion script of a shell.",
     "doctor": "Find out why endpoints do not communicate.",
     "interface": "Show message, service and action types.",
+    "launch": "Start processes and nodes as a launch file says.",
     "lifecycle": "Show and change the states of managed nodes.",
     "node": "List and inspect nodes.",
     "param": "Read and set the parameters of nodes.",

@@ -34,6 +34,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     │   └── UnknownROSArgsError
     ├── InvalidRemapRuleError (ValueError)
     ├── MemberNotFoundError (LookupError)
+    ├── LaunchFileError (ValueError)
     ├── MessageError (ValueError)
     ├── LeaseExpiredError (TimeoutError)
     ├── LeaseHeldError (RuntimeError)
@@ -83,6 +84,7 @@ from collections.abc import Sequence
 
 from aionode.errors import _values
 from aionode.errors._bag import BagError, BagWriteError
+from aionode.errors._commands import CommandError, LaunchFileError
 from aionode.errors._values import (
     AionodeError,
     BackwardExtrapolationException,
@@ -169,6 +171,7 @@ __all__ = [
     "InvalidRemapRuleError",
     "InvalidServiceNameException",
     "InvalidTopicNameException",
+    "LaunchFileError",
     "LeaseExpiredError",
     "LeaseHeldError",
     "LookupException",
@@ -581,18 +584,6 @@ HOW_TO_FIND = (
     "names look like std_msgs/msg/String or std_srvs/srv/Trigger; `aionode interface list` shows "
     "all known interfaces, and aionode.idl.load_interfaces() adds your own"
 )
-
-
-class CommandError(AionodeError, RuntimeError):
-    """A command of the command line failed.
-
-    Attributes:
-        status: The exit status of the command.
-    """
-
-    def __init__(self, text: str, status: int = 1) -> None:
-        self.status = status
-        super().__init__(text)
 
 
 for _name in __all__:

@@ -23,8 +23,6 @@ PURE_PYTHON: Final = """
 """Packages of ROS without compiled modules, whose source works where it lies."""
 
 INSTEAD: Final = {
-    "launch": "start each node with `aionode run`",
-    "launch_ros": "start each node with `aionode run`",
     "launch_testing": "aionode's fixtures for pytest start nodes in tests",
     "rosbag2_py": "the distribution rosbags (`pip install rosbags`) reads and writes bags",
     "tf2_kdl": "tf_transformations computes with rotations in numpy",

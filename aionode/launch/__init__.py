@@ -1,0 +1,189 @@
+"""Launch files of ROS 2, in Python, XML and YAML: from a file to what is started.
+
+`Plan` evaluates a file as far as that is possible before anything runs: names that are missing,
+arguments that do not fit and packages that are not there are errors then, with file and line.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from aionode._packages import Packages, workspace_of
+from aionode.launch._evaluation import arguments_of, evaluate, load_file, new_context
+from aionode.launch._plan import Step
+from aionode.launch._preview import records, text_of
+from aionode.launch._running import RunningLaunch
+from aionode.launch._watch import restart_changed
+
+if TYPE_CHECKING:
+    from aionode.system import System
+
+__all__ = ["DeclaredArgument", "Plan", "run_plan", "share_directory"]
+
+
+@dataclass(frozen=True)
+class DeclaredArgument:
+    """An argument that a launch file takes.
+
+    Attributes:
+        name: Its name.
+        description: What it is for.
+        default: Its default, as it stands in the file; None if it has to be given.
+        choices: The values that fit; None if all do.
+    """
+
+    name: str
+    description: str
+    default: str | None
+    choices: tuple[str, ...] | None
+
+
+class Plan:
+    """What a launch file starts, in order. Making it starts nothing.
+
+    A file in Python is run as a program of the user: it may do what programs may do.
+
+    Args:
+        path: The launch file.
+        arguments: Values for its arguments.
+        workspace: The folder with the packages that it names, which need no build; the workspace
+            around the file by default. Installed packages are known in any case.
+
+    Attributes:
+        path: The launch file.
+        description: The launch description; an empty one if the file has `main`.
+        main: The function ``async def main(system)`` of the file, if it has that.
+
+    Raises:
+        LaunchFileError: The file cannot be read, or what it says cannot be done (a ValueError).
+        FileNotFoundError: There is no such workspace.
+    """
+
+    def __init__(
+        self,
+        path: str,
+        arguments: Mapping[str, str] | None = None,
+        *,
+        workspace: str | Path | None = None,
+    ) -> None:
+        from aionode.rclpy import install
+
+        around = workspace_of(Path(path)) if workspace is None else Path(workspace)
+        install(workspace=around)
+        self._packages = Packages(around)
+        self.path = path
+        self.description, self.main = load_file(path)
+        self._arguments = dict(arguments or {})
+        self._steps: list[Step] | None = None
+
+    @property
+    def declared(self) -> list[DeclaredArgument]:
+        """The arguments that the file takes."""
+        return [
+            DeclaredArgument(
+                name=one.name,
+                description=one.description,
+                default=None if one.default_value is None else joined(one.default_value),
+                choices=None if one.choices is None else tuple(one.choices),
+            )
+            for one in arguments_of(self.description, self.path)
+        ]
+
+    @property
+    def steps(self) -> list[Step]:
+        """What is done, in order.
+
+        Raises:
+            LaunchFileError: It cannot be evaluated with these arguments (a ValueError).
+        """
+        if self._steps is None:
+            context = new_context(self.path, self._arguments)
+            context.packages = self._packages
+            self._steps = evaluate([self.description], context)
+        return self._steps
+
+    def records(self) -> Iterator[dict[str, Any]]:
+        """Yield what is started, as plain values that can be written as JSON."""
+        return records(self.steps)
+
+    def lines(self) -> Iterator[str]:
+        """Yield what is started, for readers."""
+        return (text_of(record) for record in self.records())
+
+
+async def run_plan(
+    plan: Plan, system: System, *, watch: bool = False, once_ready: str | None = None
+) -> None:
+    """Start what a plan says, and return when nothing of it runs any more, or it asks to end.
+
+    The processes and nodes are added to `system`, which has been entered, and stops them at its
+    end. Cancelling is safe.
+
+    Args:
+        plan: The plan.
+        system: The system.
+        watch: Whether a process is restarted when the file of its program changes.
+        once_ready: A command for the shell, which is run when all nodes are in the graph.
+
+    Raises:
+        LaunchFileError: What an event handler or a timer does cannot be evaluated (a ValueError).
+        NotReadyError: A node did not come, so that `once_ready` was not run (a TimeoutError).
+    """
+    running = RunningLaunch(system, waits_for_nodes=once_ready is not None)
+    async with asyncio.TaskGroup() as tasks:
+        beside = [tasks.create_task(note_start(system))]
+        if watch:
+            beside.append(tasks.create_task(restart_changed(system)))
+        if once_ready is not None:
+            beside.append(tasks.create_task(run_once_ready(system, once_ready)))
+        if plan.main is None:
+            await running.run(plan.steps)
+        else:
+            await plan.main(system)
+            await system.wait()
+        for task in beside:
+            task.cancel()
+
+
+async def note_start(system: System) -> None:
+    """Note which members run, with the numbers of their processes, once all have been started."""
+    while not (table := system.status()) or any(
+        status.state in {"waiting", "starting"} for status in table.values()
+    ):
+        await system._next_change()
+    width = max(map(len, table))
+    for name, status in table.items():
+        pid = "" if status.pid is None else f", process {status.pid}"
+        system.log.note(f"{name:<{width}}  {status.state}{pid}")
+
+
+async def run_once_ready(system: System, command: str) -> None:
+    """Run a command for the shell when all members are ready, and note how it ended."""
+    await system.ready()
+    process = await asyncio.create_subprocess_shell(command)
+    status = await process.wait()
+    if status:
+        system.log.note(f"{command!r} ended with status {status}")
+
+
+def share_directory(package: str, workspace: str | Path | None = None) -> Path:
+    """Return the folder with the data of a package, such as its launch files.
+
+    Args:
+        package: The name of the package.
+        workspace: The folder with packages; by default the workspace around the current folder.
+
+    Raises:
+        PackageNotFoundError: There is no such package (a LookupError).
+    """
+    around = workspace_of(Path.cwd()) if workspace is None else Path(workspace)
+    return Packages(around).share(package)
+
+
+def joined(substitutions: list[Any]) -> str:
+    """Return substitutions as they stand in the file."""
+    return " + ".join(sub.describe() for sub in substitutions)

@@ -1,0 +1,256 @@
+"""From a launch file to a plan: the evaluation of a description, which starts nothing."""
+
+from __future__ import annotations
+
+import importlib.machinery
+import importlib.util
+import inspect
+import re
+import sys
+import traceback
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from aionode.errors import AionodeError, LaunchFileError
+from aionode.launch._frontend import description_of
+from aionode.launch._launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from aionode.launch._launch.event_handler import entities_of
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.launch_description import LaunchDescription
+from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
+from aionode.launch._markup import read_xml, read_yaml
+from aionode.launch._plan import Step
+
+__all__ = ["arguments_of", "evaluate", "load_file", "new_context"]
+
+FUNCTION = "generate_launch_description"
+
+MAX_DEPTH = 100
+"""How many files may include one another."""
+
+
+def new_context(path: str, arguments: Mapping[str, str]) -> LaunchContext:
+    """Return the context in which the description of a file is evaluated."""
+    context = LaunchContext(argv=[f"{name}:={value}" for name, value in arguments.items()])
+    context.load_file = load_description
+    context.launch_configurations.update(arguments)
+    file = Path(path).absolute()
+    context.extend_locals(
+        {
+            "current_launch_file_path": str(file),
+            "current_launch_file_directory": str(file.parent),
+        }
+    )
+    return context
+
+
+def load_description(path: str, kind: str = "any") -> Any:
+    """Return the description in a file.
+
+    Raises:
+        LaunchFileError: There is no such file, or it is not a launch file.
+    """
+    file = Path(path)
+    try:
+        text = file.read_bytes()
+    except OSError as error:
+        raise LaunchFileError(path, f"cannot be read: {error.strerror}") from error
+    if kind == "any":
+        kind = kind_of(path, text)
+    if kind == "python":
+        return description_in(module_in(path), path)
+    return description_of(path, (read_xml if kind == "xml" else read_yaml)(path, text))
+
+
+def kind_of(path: str, text: bytes) -> str:
+    """Return in which language a file is: by its name, else by its text."""
+    endings = {".py": "python", ".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
+    kind = endings.get(Path(path).suffix)
+    if kind is not None:
+        return kind
+    begin = text.lstrip()[:200]
+    if begin.startswith(b"<"):
+        return "xml"
+    if b"generate_launch_description" in text:
+        return "python"
+    if begin.startswith(b"launch:") or b"\nlaunch:" in text:
+        return "yaml"
+    raise LaunchFileError(path, "not a launch file; files in Python, XML and YAML fit")
+
+
+def module_in(path: str) -> Any:
+    """Return the module in a file of Python, run.
+
+    Raises:
+        LaunchFileError: It fails.
+    """
+    spec = importlib.util.spec_from_loader(
+        f"aionode_launch_file_{Path(path).name.replace('.', '_')}",
+        importlib.machinery.SourceFileLoader("aionode_launch_file", str(path)),
+    )
+    assert spec is not None  # noqa: S101  # it has a loader
+    assert spec.loader is not None  # noqa: S101  # as above
+    module = importlib.util.module_from_spec(spec)
+    module.__file__ = str(path)
+    wrote = sys.dont_write_bytecode
+    sys.dont_write_bytecode = True  # a launch file leaves no file beside it
+    try:
+        exec(compile(Path(path).read_bytes(), str(path), "exec"), vars(module))  # noqa: S102  # the user's own program
+    except Exception as error:
+        raise failure(path, error) from error
+    finally:
+        sys.dont_write_bytecode = wrote
+    return module
+
+
+def load_file(path: str) -> tuple[Any, Callable[..., Any] | None]:
+    """Return the description in a file, and its ``async def main(system)`` if it has that.
+
+    Raises:
+        LaunchFileError: There is no such file, or it is not a launch file.
+    """
+    if Path(path).suffix == ".py" and Path(path).is_file():
+        module = module_in(path)
+        main = getattr(module, "main", None)
+        if not hasattr(module, FUNCTION) and inspect.iscoroutinefunction(main):
+            return LaunchDescription(), main
+        return description_in(module, path), None
+    return load_description(path), None
+
+
+def description_in(module: Any, path: str) -> Any:
+    """Return what ``generate_launch_description()`` of a module returns."""
+    function = getattr(module, FUNCTION, None)
+    if function is None:
+        raise LaunchFileError(path, f"has neither {FUNCTION}() nor `async def main(system)`")
+    try:
+        description = function()
+    except Exception as error:
+        raise failure(path, error) from error
+    if not isinstance(description, LaunchDescription):
+        problem = f"{FUNCTION}() returned {description!r}; a LaunchDescription fits"
+        raise LaunchFileError(path, problem)
+    return description
+
+
+def failure(path: str, error: Exception) -> LaunchFileError:
+    """Return the error of a launch file whose code fails: where, and what fits."""
+    if isinstance(error, LaunchFileError):
+        return error
+    if isinstance(error, SyntaxError):
+        return LaunchFileError(path, f"not valid Python: {error.msg}", line=error.lineno)
+    frames = traceback.extract_tb(error.__traceback__)
+    file, line = next(
+        (
+            (frame.filename, frame.lineno)
+            for frame in reversed(frames)
+            if not is_machinery(frame.filename)
+        ),
+        (path, None),
+    )
+    return LaunchFileError(file, problem_of(error), line=line)
+
+
+def is_machinery(filename: str) -> bool:
+    """Return whether a file belongs to aionode or to Python's import system."""
+    return filename.startswith((str(Path(__file__).parents[1]), "<frozen"))
+
+
+def problem_of(error: Exception) -> str:
+    """Return what went wrong, and for a missing name what there is instead."""
+    if isinstance(error, ImportError) and error.name is not None:
+        match = re.match(r"cannot import name '(\w+)'", str(error))  # before Python 3.12
+        missing = None if match is None else match.group(1)
+        package = error.name.removeprefix("aionode.launch._")
+        if missing is not None and is_own(error.name):
+            known = ", ".join(getattr(sys.modules.get(error.name), "__all__", ()))
+            return (
+                f"{package} has no {missing}; it has: {known}. "
+                "--real runs the file with ROS 2's own launch, where that is installed"
+            )
+        return f"no module {package}"
+    text = str(error) or type(error).__name__
+    if isinstance(error, KeyError) and error.args:
+        text = str(error.args[0])
+    plain = (AionodeError, TypeError, ValueError, RuntimeError, OSError, KeyError)
+    if isinstance(error, plain):
+        return text
+    return f"{type(error).__name__}: {text}"
+
+
+def is_own(module: str) -> bool:
+    """Return whether a module is one of those that stand for ROS's."""
+    return module.startswith(("aionode.launch._launch", "aionode.rclpy._ament"))
+
+
+def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:
+    """Return what entities do, in order.
+
+    Raises:
+        LaunchFileError: An entity cannot be evaluated, with its file and line.
+    """
+    for entity in entities:
+        visit(entity, context, 0)
+    steps, context.steps = context.steps, []
+    return steps
+
+
+def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -> None:
+    """Do what an entity says, and what it consists of."""
+    if depth > MAX_DEPTH:
+        path, _, line = entity.where.rpartition(":")
+        problem = f"includes more than {MAX_DEPTH} levels; does a file include itself?"
+        raise LaunchFileError(path, problem, line=int(line))
+    try:
+        inner = entities_of(entity.visit(context))
+    except LaunchFileError as error:
+        if error.line is None and isinstance(entity, IncludeLaunchDescription):
+            path, _, line = entity.where.rpartition(":")
+            problem = f"includes {error.path}, which {error.problem}"
+            raise LaunchFileError(path, problem, line=int(line)) from error
+        raise
+    except Exception as error:
+        raise failure_of(entity, error) from error
+    for one in inner:
+        visit(one, context, depth + 1)
+
+
+def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:
+    """Return the error of an entity: at the line of the user's function, else at its own."""
+    path, _, line = entity.where.rpartition(":")
+    for frame in reversed(traceback.extract_tb(error.__traceback__)):
+        if frame.filename.endswith((".launch.py", "_launch.py")):
+            path, line = frame.filename, str(frame.lineno)
+            break
+    problem = f"{type(entity).__name__}: {problem_of(error)}"
+    return LaunchFileError(path, problem, line=int(line))
+
+
+def arguments_of(description: Any, path: str) -> list[DeclareLaunchArgument]:
+    """Return the arguments that a description declares, those of its groups included.
+
+    Those of included files are there if the path of the file is known without the arguments.
+    """
+    found: dict[str, DeclareLaunchArgument] = {}
+    context = new_context(path, {})
+
+    def collect(entities: Iterable[Any], depth: int) -> None:
+        for entity in entities:
+            if isinstance(entity, DeclareLaunchArgument):
+                found.setdefault(entity.name, entity)
+            elif isinstance(entity, LaunchDescription):
+                collect(entity.entities, depth)
+            elif isinstance(entity, IncludeLaunchDescription) and depth < MAX_DEPTH:
+                try:
+                    collect(
+                        [entity.launch_description_source.get_launch_description(context)],
+                        depth + 1,
+                    )
+                except Exception:  # noqa: BLE001, S112  # its path depends on arguments
+                    continue
+            else:
+                collect(getattr(entity, "actions", ()), depth)
+
+    collect([description], 0)
+    return list(found.values())

@@ -1,0 +1,491 @@
+"""What the elements of XML and YAML files stand for."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from collections.abc import Callable, Iterable
+from functools import partial
+from typing import Any
+
+from aionode.errors import LaunchFileError
+from aionode.launch import _launch_ros as launch_ros
+from aionode.launch._launch import actions, substitutions
+from aionode.launch._launch.conditions import IfCondition, UnlessCondition
+from aionode.launch._launch.launch_description import LaunchDescription
+from aionode.launch._launch.launch_description_sources import AnyLaunchDescriptionSource
+from aionode.launch._launch.substitution import Substitution, TextSubstitution
+from aionode.launch._launch.utilities.type_utils import coerce_to_type
+from aionode.launch._launch_ros import actions as ros_actions
+from aionode.launch._launch_ros import descriptions
+from aionode.launch._markup import Element
+from aionode.launch._words import SUBSTITUTIONS, parse_words
+
+__all__ = ["description_of"]
+
+Options = dict[str, Any]
+
+
+def register_substitutions() -> None:
+    """Tell the reader of texts what its names stand for."""
+    kinds: dict[str, Callable[..., Substitution]] = {
+        "all": substitutions.AllSubstitution,
+        "and": substitutions.AndSubstitution,
+        "anon": substitutions.AnonName,
+        "any": substitutions.AnySubstitution,
+        "command": substitutions.Command.of_words,
+        "dirname": substitutions.ThisLaunchFileDir,
+        "env": substitutions.EnvironmentVariable.of_words,
+        "equals": substitutions.EqualsSubstitution,
+        "eval": substitutions.PythonExpression.of_words,
+        "exec-in-pkg": launch_ros.substitutions.ExecutableInPackage,
+        "file-content": substitutions.FileContent,
+        "filename": substitutions.ThisLaunchFile,
+        "find-exec": substitutions.FindExecutable.of_words,
+        "find-pkg-prefix": launch_ros.substitutions.FindPackagePrefix,
+        "find-pkg-share": launch_ros.substitutions.FindPackageShare,
+        "if": substitutions.IfElseSubstitution,
+        "launch_log_dir": substitutions.LaunchLogDir,
+        "log_dir": substitutions.LaunchLogDir,
+        "not": substitutions.NotSubstitution,
+        "not-equals": substitutions.NotEqualsSubstitution,
+        "or": substitutions.OrSubstitution,
+        "param": launch_ros.substitutions.Parameter.of_words,
+        "path-join": lambda *words: substitutions.PathJoinSubstitution(words),
+        "var": substitutions.LaunchConfiguration.of_words,
+    }
+    SUBSTITUTIONS.update(kinds)
+
+
+register_substitutions()
+
+
+MARK = 0xF0000
+MARKS = re.compile("([\U000f0000-\U000ffffd])")
+
+
+class Reading:
+    """The attributes and inner elements of one element, of which all have to be used."""
+
+    def __init__(self, element: Element) -> None:
+        self.element = element
+        self.attributes = dict(element.attributes)
+        self.names = {child.name for child in element.children}
+        self.known: set[str] = set()
+
+    def raw(self, name: str) -> Any:
+        """Return an attribute as it is written; None if it is not there."""
+        self.known.add(name)
+        return self.attributes.pop(name, None)
+
+    def need(self, name: str) -> Any:
+        """Return an attribute that has to be there."""
+        value = self.raw(name)
+        if value is None:
+            raise ValueError(f"'{self.element.name}' needs '{name}'")
+        return value
+
+    def text(self, name: str) -> list[Substitution] | None:
+        """Return an attribute whose text may have substitutions."""
+        value = self.raw(name)
+        return None if value is None else words_of(value)
+
+    def flag(self, name: str) -> Any:
+        """Return an attribute that is true or false, or a substitution."""
+        value = self.raw(name)
+        if not isinstance(value, str):
+            return value
+        found = parse_words(value)
+        if len(found) == 1 and isinstance(found[0], TextSubstitution):
+            return coerce_to_type(value, bool)
+        return found
+
+    def inner(self, name: str) -> list[Element]:
+        """Return the elements inside with this name."""
+        self.known.add(name)
+        self.names.discard(name)
+        return list(self.element.all(name))
+
+    def pairs(self, name: str, first: str, second: str) -> list[tuple[Any, Any]]:
+        """Return two attributes of each element inside with this name."""
+        found = []
+        for child in self.inner(name):
+            reading = Reading(child)
+            found.append((words_of(reading.need(first)), words_of(reading.need(second))))
+            reading.finish()
+        return found
+
+    def finish(self) -> None:
+        """Raise ValueError if there is something that nobody has asked for."""
+        left = [*self.attributes, *sorted(self.names)]
+        if left:
+            fits = ", ".join(sorted(self.known)) or "nothing"
+            raise ValueError(f"'{self.element.name}' has no '{left[0]}'; it has: {fits}")
+
+
+def words_of(value: Any) -> list[Substitution]:
+    """Return the substitutions of an attribute."""
+    return parse_words(value if isinstance(value, str) else str(value))
+
+
+def given(**options: Any) -> Options:
+    """Return the options that are not None."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def command_words(text: str) -> list[list[Substitution]]:
+    """Return the words of a command line, whose texts may have substitutions.
+
+    A substitution belongs to the word that it stands in, and quotes around it hold.
+    """
+    parts = parse_words(text)
+    later = [part for part in parts if not isinstance(part, TextSubstitution)]
+    # Each is a character that no command line has, until the words are known.
+    marks = iter(range(len(later)))
+    line = "".join(
+        part.text if isinstance(part, TextSubstitution) else chr(MARK + next(marks))
+        for part in parts
+    )
+    return [
+        [
+            later[ord(piece) - MARK] if is_mark(piece) else TextSubstitution(text=piece)
+            for piece in MARKS.split(word)
+            if piece
+        ]
+        or [TextSubstitution(text="")]
+        for word in shlex.split(line)
+    ]
+
+
+def is_mark(piece: str) -> bool:
+    """Return whether a piece of a word stands for a substitution."""
+    return bool(MARKS.fullmatch(piece))
+
+
+def description_of(path: str, root: Element) -> LaunchDescription:
+    """Return the description that a file has.
+
+    Raises:
+        LaunchFileError: An element is not known, or has what it should not have.
+    """
+    if root.name != "launch":
+        raise LaunchFileError(path, f"begins with '{root.name}'; 'launch' fits", line=1)
+    return LaunchDescription([action_of(child) for child in root.children])
+
+
+def action_of(element: Element) -> actions.Action:
+    """Return the action that an element stands for."""
+    path, _, line = element.where.rpartition(":")
+    make = ACTIONS.get(element.name)
+    if make is None:
+        known = ", ".join(sorted(ACTIONS))
+        problem = f"'{element.name}' is not an action; there are: {known}"
+        raise LaunchFileError(path, problem, line=int(line))
+    reading = Reading(element)
+    try:
+        condition = condition_of(reading)
+        action = make(reading, {"condition": condition} if condition else {})
+        reading.finish()
+    except LaunchFileError:
+        raise
+    except (TypeError, ValueError, KeyError, RuntimeError) as error:
+        raise LaunchFileError(path, str(error), line=int(line)) from error
+    action.where = element.where
+    return action
+
+
+def condition_of(reading: Reading) -> Any:
+    """Return the condition in ``if`` or ``unless``."""
+    holds, fails = reading.raw("if"), reading.raw("unless")
+    if holds is not None and fails is not None:
+        raise ValueError(f"'{reading.element.name}' has 'if' and 'unless'; one of them fits")
+    if holds is not None:
+        return IfCondition(words_of(truth_text(holds)))
+    return None if fails is None else UnlessCondition(words_of(truth_text(fails)))
+
+
+def truth_text(value: Any) -> str:
+    """Return a truth as text."""
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def simple(
+    kind: Callable[..., actions.Action], names: Iterable[str], reading: Reading, options: Options
+) -> actions.Action:
+    """Return an action of which each option is an attribute; ``name=attribute`` renames one."""
+    for name in names:
+        option, _, attribute = name.partition("=")
+        optional = option.endswith("?")
+        attribute = (attribute or option).rstrip("?")
+        value = reading.text(attribute) if optional else words_of(reading.need(attribute))
+        if value is not None:
+            options[option.rstrip("?")] = value
+    return kind(**options)
+
+
+def process_options(reading: Reading) -> Options:
+    """Return the options that every process has."""
+    return given(
+        cwd=reading.text("cwd"),
+        prefix=reading.text("launch-prefix"),
+        output=reading.text("output"),
+        respawn=reading.flag("respawn"),
+        respawn_delay=number(reading.raw("respawn_delay")),
+        respawn_max_retries=integer(reading.raw("respawn_max_retries")),
+        sigkill_timeout=number(reading.raw("sigkill_timeout")),
+        sigterm_timeout=number(reading.raw("sigterm_timeout")),
+        emulate_tty=reading.flag("emulate_tty"),
+        shell=reading.flag("shell"),
+        additional_env={tuple(name): value for name, value in reading.pairs("env", "name", "value")}
+        or None,
+    )
+
+
+def number(value: Any) -> float | None:
+    """Return a number."""
+    return None if value is None else float(value)
+
+
+def integer(value: Any) -> int | None:
+    """Return a whole number."""
+    return None if value is None else int(value)
+
+
+def executable(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of an ``executable``."""
+    cmd = command_words(str(reading.need("cmd")))
+    args = reading.raw("args")
+    if args is not None:
+        cmd += command_words(str(args))
+    named = given(name=reading.text("name"))
+    return actions.ExecuteProcess(cmd=cmd, **named, **process_options(reading), **options)
+
+
+def node_options(reading: Reading) -> Options:
+    """Return the options of a node."""
+    args, ros_args = reading.raw("args"), reading.raw("ros_args")
+    return given(
+        package=reading.text("pkg"),
+        name=reading.text("name"),
+        namespace=reading.text("namespace"),
+        exec_name=reading.text("exec_name"),
+        arguments=None if args is None else command_words(str(args)),
+        ros_arguments=None if ros_args is None else command_words(str(ros_args)),
+        parameters=parameters_of(reading) or None,
+        remappings=reading.pairs("remap", "from", "to") or None,
+        **process_options(reading),
+    )
+
+
+def node(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``node``."""
+    exec_ = words_of(reading.need("exec"))
+    return ros_actions.Node(executable=exec_, **node_options(reading), **options)
+
+
+def lifecycle_node(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``lifecycle_node``."""
+    exec_ = words_of(reading.need("exec"))
+    options |= {"namespace": "", "name": reading.element.attributes.get("name", "")}
+    options |= node_options(reading) | given(autostart=reading.flag("autostart"))
+    return ros_actions.LifecycleNode(executable=exec_, **options)
+
+
+def parameters_of(reading: Reading) -> list[Any]:
+    """Return the parameters inside an element, one by one."""
+    found: list[Any] = []
+    for child in reading.inner("param"):
+        inside = Reading(child)
+        file = inside.text("from")
+        if file is not None:
+            allow = inside.flag("allow_substs")
+            found.append(descriptions.ParameterFile(file, allow_substs=allow or False))
+        else:
+            found.append(parameter(inside))
+        inside.finish()
+    return found
+
+
+def parameter(reading: Reading) -> dict[Any, Any]:
+    """Return a parameter, or nested ones, as a dictionary."""
+    name = tuple(words_of(reading.need("name")))
+    value, kind = reading.raw("value"), reading.raw("type")
+    separator = reading.raw("value-sep")
+    if value is None:
+        inner: dict[Any, Any] = {}
+        for child in reading.inner("param"):
+            inside = Reading(child)
+            inner.update(parameter(inside))
+            inside.finish()
+        if not inner:
+            raise ValueError("'param' needs 'value', 'from' or a 'param' inside")
+        return {name: inner}
+    if separator is not None:
+        value = [item.strip() for item in str(value).split(str(separator))]
+    return {name: typed(value, kind)}
+
+
+TYPES = {
+    "bool": bool,
+    "float": float,
+    "int": int,
+    "str": str,
+    "list_of_bool": list[bool],
+    "list_of_float": list[float],
+    "list_of_int": list[int],
+    "list_of_str": list[str],
+}
+
+
+def typed(value: Any, kind: str | None) -> Any:
+    """Return the value of a parameter, whose text may have substitutions."""
+    if kind is not None and kind not in TYPES:
+        raise ValueError(f"type {kind!r} is not known; there are: {', '.join(TYPES)}")
+    if isinstance(value, list):
+        return [words_of(item) if isinstance(item, str) else item for item in value]
+    if not isinstance(value, str):
+        return value
+    words = words_of(value)
+    return descriptions.ParameterValue(words, value_type=TYPES[kind]) if kind else words
+
+
+def component(element: Element) -> descriptions.ComposableNode:
+    """Return a node of a container."""
+    reading = Reading(element)
+    extra = reading.pairs("extra_arg", "name", "value")
+    made = descriptions.ComposableNode(
+        package=words_of(reading.need("pkg")),
+        plugin=words_of(reading.need("plugin")),
+        condition=condition_of(reading),
+        **given(
+            name=reading.text("name"),
+            namespace=reading.text("namespace"),
+            parameters=parameters_of(reading) or None,
+            remappings=reading.pairs("remap", "from", "to") or None,
+            extra_arguments=[{tuple(name): value} for name, value in extra] or None,
+        ),
+    )
+    reading.finish()
+    return made
+
+
+def container(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``node_container``."""
+    exec_ = words_of(reading.need("exec"))
+    inner = [component(child) for child in reading.inner("composable_node")]
+    options |= {"namespace": "", "name": reading.element.attributes.get("name", "")}
+    options |= node_options(reading)
+    return ros_actions.ComposableNodeContainer(
+        executable=exec_, composable_node_descriptions=inner, **options
+    )
+
+
+def load(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``load_composable_node``."""
+    inner = [component(child) for child in reading.inner("composable_node")]
+    target = words_of(reading.need("target"))
+    return ros_actions.LoadComposableNodes(
+        composable_node_descriptions=inner, target_container=target, **options
+    )
+
+
+def argument(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of an ``arg``."""
+    choices = [str(child.attributes.get("value", "")) for child in reading.inner("choice")]
+    options |= given(
+        default_value=reading.text("default"),
+        description=reading.raw("description"),
+        choices=choices or None,
+    )
+    return actions.DeclareLaunchArgument(str(reading.need("name")), **options)
+
+
+def include(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of an ``include``."""
+    source = AnyLaunchDescriptionSource(words_of(reading.need("file")))
+    arguments = [
+        *reading.pairs("arg", "name", "value"),
+        *reading.pairs("let", "name", "value"),
+    ]
+    return actions.IncludeLaunchDescription(source, launch_arguments=arguments, **options)
+
+
+def inner_actions(reading: Reading, without: Iterable[str] = ()) -> list[actions.Action]:
+    """Return the actions inside an element."""
+    reading.names.clear()
+    return [action_of(child) for child in reading.element.children if child.name not in without]
+
+
+def group(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``group``."""
+    kept = {tuple(name): value for name, value in reading.pairs("keep", "name", "value")}
+    options |= given(
+        scoped=reading.flag("scoped"),
+        forwarding=reading.flag("forwarding"),
+        launch_configurations=kept or None,
+    )
+    return actions.GroupAction(inner_actions(reading, without=("keep",)), **options)
+
+
+def timer(kind: Any, reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``timer``."""
+    period = words_of(reading.need("period"))
+    made: actions.Action = kind(period=period, actions=inner_actions(reading), **options)
+    return made
+
+
+def set_parameter(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``set_parameter``."""
+    name = words_of(reading.need("name"))
+    value = typed(reading.need("value"), reading.raw("type"))
+    return ros_actions.SetParameter(name, value, **options)
+
+
+def append_env(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of an ``append_env``."""
+    options |= given(prepend=reading.flag("prepend"), separator=reading.text("separator"))
+    name, value = words_of(reading.need("name")), words_of(reading.need("value"))
+    return actions.AppendEnvironmentVariable(name, value, **options)
+
+
+def reset(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``reset``."""
+    kept: dict[Any, Any] = {
+        tuple(name): value for name, value in reading.pairs("keep", "name", "value")
+    }
+    return actions.ResetLaunchConfigurations(kept, **options)
+
+
+def of(kind: Callable[..., actions.Action], *names: str) -> Callable[..., actions.Action]:
+    """Return how an action is made of which each option is an attribute."""
+    return partial(simple, kind, names)
+
+
+ACTIONS: dict[str, Callable[[Reading, Options], actions.Action]] = {
+    "append_env": append_env,
+    "arg": argument,
+    "executable": executable,
+    "group": group,
+    "include": include,
+    "let": of(actions.SetLaunchConfiguration, "name", "value"),
+    "lifecycle_node": lifecycle_node,
+    "load_composable_node": load,
+    "log": of(actions.LogInfo, "msg=message"),
+    "log_info": of(actions.LogInfo, "msg=message"),
+    "node": node,
+    "node_container": container,
+    "push-ros-namespace": of(ros_actions.PushROSNamespace, "namespace"),
+    "push_ros_namespace": of(ros_actions.PushROSNamespace, "namespace"),
+    "reset": reset,
+    "reset_env": of(actions.ResetEnvironment),
+    "ros_timer": partial(timer, ros_actions.ROSTimer),
+    "set_env": of(actions.SetEnvironmentVariable, "name", "value"),
+    "set_parameter": set_parameter,
+    "set_parameters_from_file": of(ros_actions.SetParametersFromFile, "filename"),
+    "set_remap": of(ros_actions.SetRemap, "src=from", "dst=to"),
+    "set_ros_log_dir": of(ros_actions.SetROSLogDir, "new_log_dir"),
+    "set_use_sim_time": of(ros_actions.SetUseSimTime, "value"),
+    "shutdown": of(actions.Shutdown, "reason?"),
+    "timer": partial(timer, actions.TimerAction),
+    "unset_env": of(actions.UnsetEnvironmentVariable, "name"),
+}

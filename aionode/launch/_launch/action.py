@@ -1,0 +1,40 @@
+"""`launch.action`: what a description does."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from aionode.launch._launch.condition import Condition
+from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
+
+if TYPE_CHECKING:
+    from aionode.launch._launch.launch_context import LaunchContext
+
+__all__ = ["Action"]
+
+
+class Action(LaunchDescriptionEntity):
+    """A thing to be done, unless its condition is false."""
+
+    def __init__(self, *, condition: Condition | None = None) -> None:
+        if condition is not None and not isinstance(condition, Condition):
+            raise TypeError(
+                f"{type(self).__name__}: condition= is {condition!r}, and not a condition; "
+                "launch.conditions has them, such as IfCondition('true')"
+            )
+        self._condition = condition
+
+    @property
+    def condition(self) -> Condition | None:
+        """The condition."""
+        return self._condition
+
+    def visit(self, context: LaunchContext) -> Any:
+        """Do it if the condition holds."""
+        if self._condition is not None and not self._condition.evaluate(context):
+            return None
+        return self.execute(context)
+
+    def execute(self, context: LaunchContext) -> Any:
+        """Do it, and return further entities or None."""
+        return None

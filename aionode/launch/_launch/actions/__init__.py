@@ -1,0 +1,64 @@
+"""`launch.actions`."""
+
+from __future__ import annotations
+
+from aionode.launch._launch.action import Action
+from aionode.launch._launch.actions._environment import (
+    AppendEnvironmentVariable,
+    PopEnvironment,
+    PrependEnvironmentVariable,
+    PushEnvironment,
+    ResetEnvironment,
+    SetEnvironmentVariable,
+    UnsetEnvironmentVariable,
+)
+from aionode.launch._launch.actions._events import (
+    EmitEvent,
+    LogInfo,
+    RegisterEventHandler,
+    Shutdown,
+    TimerAction,
+    UnregisterEventHandler,
+)
+from aionode.launch._launch.actions._execute import ExecuteLocal, ExecuteProcess
+from aionode.launch._launch.actions._include import IncludeLaunchDescription
+from aionode.launch._launch.actions._scope import (
+    DeclareLaunchArgument,
+    GroupAction,
+    OpaqueCoroutine,
+    OpaqueFunction,
+    PopLaunchConfigurations,
+    PushLaunchConfigurations,
+    ResetLaunchConfigurations,
+    SetLaunchConfiguration,
+    UnsetLaunchConfiguration,
+)
+
+__all__ = [
+    "Action",
+    "AppendEnvironmentVariable",
+    "DeclareLaunchArgument",
+    "EmitEvent",
+    "ExecuteLocal",
+    "ExecuteProcess",
+    "GroupAction",
+    "IncludeLaunchDescription",
+    "LogInfo",
+    "OpaqueCoroutine",
+    "OpaqueFunction",
+    "PopEnvironment",
+    "PopLaunchConfigurations",
+    "PrependEnvironmentVariable",
+    "PushEnvironment",
+    "PushLaunchConfigurations",
+    "RegisterEventHandler",
+    "ResetEnvironment",
+    "ResetLaunchConfigurations",
+    "SetEnvironmentVariable",
+    "SetLaunchConfiguration",
+    "Shutdown",
+    "TimerAction",
+    "UnregisterEventHandler",
+    "UnsetEnvironmentVariable",
+    "UnsetLaunchConfiguration",
+]

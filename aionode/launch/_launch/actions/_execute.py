@@ -1,0 +1,175 @@
+"""Actions that start processes."""
+
+from __future__ import annotations
+
+import os
+import re
+import shlex
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+from aionode.launch._launch.action import Action
+from aionode.launch._launch.descriptions import Executable
+from aionode.launch._launch.event_handlers import OnProcessExit
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from aionode.launch._launch.utilities.type_utils import perform_typed_substitution
+from aionode.launch._plan import ParameterValues, Process
+
+__all__ = ["ExecuteLocal", "ExecuteProcess"]
+
+
+class ExecuteLocal(Action):
+    """Starts a process."""
+
+    def __init__(
+        self,
+        *,
+        process_description: Executable,
+        shell: bool = False,
+        output: SomeSubstitutionsType = "log",
+        on_exit: Any = None,
+        respawn: Any = False,
+        respawn_delay: float | None = None,
+        respawn_max_retries: int = -1,
+        sigterm_timeout: Any = None,
+        sigkill_timeout: Any = None,
+        emulate_tty: bool = False,
+        output_format: str | None = None,
+        cached_output: bool = False,
+        log_cmd: bool = False,
+        condition: Any = None,
+    ) -> None:
+        super().__init__(condition=condition)
+        self.process_description = process_description
+        self.shell = shell
+        self.output = output
+        self.on_exit = on_exit
+        self.respawn = respawn
+        self.respawn_delay = respawn_delay
+        self.respawn_max_retries = respawn_max_retries
+        self.process_details: dict[str, Any] | None = None
+        """What is known of the process while it runs: name, cmd, pid, …."""
+        self.return_code: int | None = None
+
+    def arguments_of_ros(self, context: LaunchContext) -> list[str | ParameterValues]:
+        """Return what follows the arguments of the description."""
+        return []
+
+    def executable_words(self, context: LaunchContext) -> list[str]:
+        """Return the program and its arguments."""
+        return [perform_substitutions(context, word) for word in self.process_description.cmd]
+
+    def program_name(self, words: list[str]) -> str:
+        """Return the name of the program, by which the process is called."""
+        return Path(words[0]).name
+
+    def node_name_in(self, context: LaunchContext) -> str | None:
+        """Return the full name of the node that the process is, if that is known."""
+        return None
+
+    def execute(self, context: LaunchContext) -> None:
+        """Note what is to be started."""
+        described = self.process_description
+        words = self.executable_words(context)
+        program = self.program_name(words)
+        prefix = self._prefix(context, program)
+        argv = [*prefix, *words, *self.arguments_of_ros(context)]
+        base = Path(prefix[0]).name if prefix else program
+        if described.name is not None:
+            base = perform_substitutions(context, described.name)
+        if self.on_exit is not None:
+            handler = OnProcessExit(target_action=self, on_exit=self.on_exit)
+            context.register_event_handler(handler)
+        context.steps.append(
+            Process(
+                action=self,
+                name=context.unique_name(base),
+                argv=argv,
+                env=self._environment(context),
+                cwd=None
+                if described.cwd is None
+                else perform_substitutions(context, described.cwd),
+                where=self.where,
+                node_name=self.node_name_in(context),
+                shell=self.shell,
+                respawn=bool(perform_typed_substitution(context, self.respawn, bool)),
+                respawn_delay_sec=self.respawn_delay or 0.0,
+                respawn_max_retries=self.respawn_max_retries,
+                output=self._output(context),
+            )
+        )
+
+    def _prefix(self, context: LaunchContext, program: str) -> list[str]:
+        """Return the command that stands before the program, such as ``gdb --args``."""
+        described = self.process_description
+        if described.prefix is not None:
+            return shlex.split(perform_substitutions(context, described.prefix))
+        pattern = str(context.launch_configurations.get("launch-prefix-filter", ""))
+        if not re.match(pattern, program):
+            return []
+        return shlex.split(str(context.launch_configurations.get("launch-prefix", "")))
+
+    def _environment(self, context: LaunchContext) -> dict[str, str]:
+        described = self.process_description
+
+        def texts(pairs: Mapping[Any, Any]) -> dict[str, str]:
+            return {
+                perform_substitutions(
+                    context, normalize_to_list_of_substitutions(name)
+                ): perform_substitutions(context, normalize_to_list_of_substitutions(value))
+                for name, value in pairs.items()
+            }
+
+        base = context.environment if described.env is None else texts(described.env)
+        return {**base, **texts(described.additional_env or {})}
+
+    def _output(self, context: LaunchContext) -> str:
+        if isinstance(self.output, Mapping):
+            return ",".join(f"{name}={value}" for name, value in self.output.items())
+        return perform_substitutions(context, normalize_to_list_of_substitutions(self.output))
+
+    def describe(self) -> str:
+        """Return which program it starts, and where that is said."""
+        return f"{type(self).__name__} of {os.path.basename(self.where)}"  # noqa: PTH119  # with the line
+
+    def get_stdout(self) -> str:
+        """Return nothing: the log has what processes write."""
+        return ""
+
+    get_stderr = get_stdout
+
+
+class ExecuteProcess(ExecuteLocal):
+    """Starts a command."""
+
+    def __init__(
+        self,
+        *,
+        cmd: Iterable[SomeSubstitutionsType],
+        prefix: SomeSubstitutionsType | None = None,
+        name: SomeSubstitutionsType | None = None,
+        cwd: SomeSubstitutionsType | None = None,
+        env: Mapping[Any, Any] | None = None,
+        additional_env: Mapping[Any, Any] | None = None,
+        **options: Any,
+    ) -> None:
+        described = Executable(
+            cmd=cmd, prefix=prefix, name=name, cwd=cwd, env=env, additional_env=additional_env
+        )
+        super().__init__(process_description=described, **options)
+
+    @property
+    def cmd(self) -> list[Any]:
+        """The words of the command."""
+        return self.process_description.cmd
+
+    @property
+    def name(self) -> Any:
+        """The name of the process."""
+        return self.process_description.name

@@ -1,0 +1,215 @@
+"""Actions that set, keep and restore launch configurations, and functions as actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from aionode.launch._launch.action import Action
+from aionode.launch._launch.actions._environment import (
+    PopEnvironment,
+    PushEnvironment,
+    ResetEnvironment,
+)
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+__all__ = [
+    "DeclareLaunchArgument",
+    "GroupAction",
+    "OpaqueCoroutine",
+    "OpaqueFunction",
+    "PopLaunchConfigurations",
+    "PushLaunchConfigurations",
+    "ResetLaunchConfigurations",
+    "SetLaunchConfiguration",
+    "UnsetLaunchConfiguration",
+]
+
+
+class DeclareLaunchArgument(Action):
+    """Says that a description takes an argument."""
+
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: SomeSubstitutionsType | None = None,
+        description: str | None = None,
+        choices: Iterable[str] | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(**options)
+        self.name = name
+        self.default_value = (
+            None if default_value is None else normalize_to_list_of_substitutions(default_value)
+        )
+        self.description = description or ""
+        self.choices = None if choices is None else list(choices)
+        if self.choices is not None and isinstance(default_value, str):
+            self._check(default_value)
+
+    def _check(self, value: str) -> None:
+        if self.choices is not None and value not in self.choices:
+            raise ValueError(
+                f"argument '{self.name}' is {value!r}; these fit: {', '.join(self.choices)}"
+            )
+
+    def execute(self, context: LaunchContext) -> None:
+        """Give it its default, unless it has a value."""
+        if self.name not in context.launch_configurations:
+            if self.default_value is None:
+                described = f" ({self.description})" if self.description else ""
+                raise ValueError(
+                    f"argument '{self.name}'{described} is needed and has no default; "
+                    f"add {self.name}:=VALUE"
+                )
+            value = perform_substitutions(context, self.default_value)
+            context.launch_configurations[self.name] = value
+        self._check(context.launch_configurations[self.name])
+
+
+class SetLaunchConfiguration(Action):
+    """Gives a launch configuration a value."""
+
+    def __init__(
+        self, name: SomeSubstitutionsType, value: SomeSubstitutionsType, **options: Any
+    ) -> None:
+        super().__init__(**options)
+        self.name = normalize_to_list_of_substitutions(name)
+        self.value = normalize_to_list_of_substitutions(value)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Give it the value."""
+        name = perform_substitutions(context, self.name)
+        context.launch_configurations[name] = perform_substitutions(context, self.value)
+
+
+class UnsetLaunchConfiguration(Action):
+    """Removes a launch configuration."""
+
+    def __init__(self, name: SomeSubstitutionsType, **options: Any) -> None:
+        super().__init__(**options)
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove it."""
+        context.launch_configurations.pop(perform_substitutions(context, self.name), None)
+
+
+class PushLaunchConfigurations(Action):
+    """Remembers the launch configurations."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remember them."""
+        context.push_launch_configurations()
+
+
+class PopLaunchConfigurations(Action):
+    """Restores what was remembered last."""
+
+    def execute(self, context: LaunchContext) -> None:
+        """Restore it."""
+        context.pop_launch_configurations()
+
+
+class ResetLaunchConfigurations(Action):
+    """Removes all launch configurations but those given."""
+
+    def __init__(
+        self,
+        launch_configurations: Mapping[SomeSubstitutionsType, SomeSubstitutionsType] | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(**options)
+        self.launch_configurations = dict(launch_configurations or {})
+
+    def execute(self, context: LaunchContext) -> None:
+        """Remove the others."""
+        kept = {
+            perform_substitutions(context, normalize_to_list_of_substitutions(name)): (
+                perform_substitutions(context, normalize_to_list_of_substitutions(value))
+            )
+            for name, value in self.launch_configurations.items()
+        }
+        context.launch_configurations.clear()
+        context.launch_configurations.update(kept)
+
+
+class GroupAction(Action):
+    """Actions together; what they set ends with the group, unless it is not scoped."""
+
+    def __init__(
+        self,
+        actions: Iterable[Any],
+        *,
+        scoped: bool = True,
+        forwarding: bool = True,
+        launch_configurations: Mapping[Any, Any] | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(**options)
+        self.actions = list(actions)
+        self.scoped = scoped
+        self.forwarding = forwarding
+        self.launch_configurations = dict(launch_configurations or {})
+
+    def get_sub_entities(self) -> list[Any]:
+        """Return the actions, and those that begin and end the scope."""
+        given = self.launch_configurations
+        sets: list[Action] = [SetLaunchConfiguration(*pair) for pair in given.items()]
+        if not self.scoped:
+            return [*sets, *self.actions]
+        if not self.forwarding:
+            sets = [ResetEnvironment(), ResetLaunchConfigurations(given)]
+        begin = [PushLaunchConfigurations(), PushEnvironment()]
+        end = [PopEnvironment(), PopLaunchConfigurations()]
+        return [*begin, *sets, *self.actions, *end]
+
+    def execute(self, context: LaunchContext) -> list[Any]:
+        """Return the actions."""
+        return self.get_sub_entities()
+
+
+class OpaqueFunction(Action):
+    """Calls a function with the context; it may return further actions."""
+
+    def __init__(
+        self,
+        *,
+        function: Callable[..., Any],
+        args: Sequence[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        **options: Any,
+    ) -> None:
+        super().__init__(**options)
+        self.function = function
+        self.args = list(args or ())
+        self.kwargs = dict(kwargs or {})
+
+    def execute(self, context: LaunchContext) -> Any:
+        """Call it."""
+        return self.function(context, *self.args, **self.kwargs)
+
+    def describe(self) -> str:
+        """Return which function it calls."""
+        return f"OpaqueFunction({getattr(self.function, '__name__', self.function)})"
+
+
+class OpaqueCoroutine(Action):
+    """Is refused: a description is evaluated before anything runs."""
+
+    def __init__(self, *, coroutine: Callable[..., Any], **options: Any) -> None:
+        options = {name: value for name, value in options.items() if name == "condition"}
+        super().__init__(**options)
+        self.coroutine = coroutine
+
+    def execute(self, context: LaunchContext) -> None:
+        """Refuse."""
+        raise NotImplementedError(
+            "OpaqueCoroutine does not run here; write `async def main(system)` in the file instead"
+        )

@@ -1,0 +1,89 @@
+"""`launch.conditions`."""
+
+from __future__ import annotations
+
+from aionode.launch._launch.condition import Condition
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+__all__ = [
+    "IfCondition",
+    "InvalidConditionExpressionError",
+    "LaunchConfigurationEquals",
+    "LaunchConfigurationNotEquals",
+    "UnlessCondition",
+    "evaluate_condition_expression",
+]
+
+
+class InvalidConditionExpressionError(Exception):
+    """A condition is neither true nor false."""
+
+
+def evaluate_condition_expression(
+    context: LaunchContext, expression: SomeSubstitutionsType
+) -> bool:
+    """Return whether a text says true or 1, and not false or 0.
+
+    Raises:
+        InvalidConditionExpressionError: It is another text.
+    """
+    text = perform_substitutions(context, normalize_to_list_of_substitutions(expression))
+    known = {"true": True, "1": True, "false": False, "0": False}
+    try:
+        return known[text.strip().lower()]
+    except KeyError:
+        raise InvalidConditionExpressionError(
+            f"condition is {text!r}; true, 1, false and 0 fit"
+        ) from None
+
+
+class IfCondition(Condition):
+    """Holds if a text says true."""
+
+    def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
+        super().__init__()
+        self.expression = normalize_to_list_of_substitutions(predicate_expression)
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds."""
+        return evaluate_condition_expression(context, self.expression)
+
+
+class UnlessCondition(IfCondition):
+    """Holds if a text says false."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds."""
+        return not super().evaluate(context)
+
+
+class LaunchConfigurationEquals(Condition):
+    """Holds if a launch configuration has a value; None: if there is no such configuration."""
+
+    def __init__(
+        self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None
+    ) -> None:
+        super().__init__()
+        self.name = launch_configuration_name
+        self.expected = expected_value
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds."""
+        value = context.launch_configurations.get(self.name)
+        if self.expected is None or value is None:
+            return value is None and self.expected is None
+        expected = normalize_to_list_of_substitutions(self.expected)
+        return bool(value == perform_substitutions(context, expected))
+
+
+class LaunchConfigurationNotEquals(LaunchConfigurationEquals):
+    """Holds if a launch configuration has another value."""
+
+    def evaluate(self, context: LaunchContext) -> bool:
+        """Return whether it holds."""
+        return not super().evaluate(context)

@@ -1,0 +1,78 @@
+"""`launch.event_handler`: what is done when something happens."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from aionode.launch._launch.event import Event
+from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
+
+if TYPE_CHECKING:
+    from aionode.launch._launch.launch_context import LaunchContext
+
+__all__ = ["BaseEventHandler", "EventHandler", "entities_of"]
+
+
+def entities_of(result: Any) -> list[LaunchDescriptionEntity]:
+    """Return the entities that a function or a visit returned: none, one or several."""
+    if result is None:
+        return []
+    if isinstance(result, LaunchDescriptionEntity):
+        return [result]
+    if not isinstance(result, Iterable):
+        raise TypeError(f"expected launch actions, got {result!r}")
+    found: list[LaunchDescriptionEntity] = []
+    for entity in result:
+        if not isinstance(entity, LaunchDescriptionEntity):
+            raise TypeError(f"expected launch actions, got {entity!r} among them")
+        found.append(entity)
+    return found
+
+
+class BaseEventHandler:
+    """Decides which events it handles."""
+
+    def __init__(
+        self, *, matcher: Callable[[Event], bool], handle_once: bool = False, **_: Any
+    ) -> None:
+        self._matcher = matcher
+        self.handle_once = handle_once
+
+    def matches(self, event: Event) -> bool:
+        """Return whether an event concerns this handler."""
+        return bool(self._matcher(event))
+
+    def handle(self, event: Event, context: LaunchContext) -> Any:
+        """Handle the event, and return the entities that are to be done, or None."""
+        context.extend_locals({"event": event})
+        if self.handle_once:
+            context.unregister_event_handler(self)
+        return None
+
+    def known_entities(self) -> list[LaunchDescriptionEntity] | None:
+        """Return the entities that are done at any event; None if a function decides."""
+        return None
+
+    def describe(self) -> str:
+        """Return to what it reacts, such as ``exit of talker-1``."""
+        return f"an event of {type(self).__name__}"
+
+
+class EventHandler(BaseEventHandler):
+    """Does the same things at each event that fits."""
+
+    def __init__(
+        self, *, matcher: Callable[[Event], bool], entities: Any = None, handle_once: bool = False
+    ) -> None:
+        super().__init__(matcher=matcher, handle_once=handle_once)
+        self.entities = entities_of(entities)
+
+    def handle(self, event: Event, context: LaunchContext) -> Any:
+        """Return the entities."""
+        super().handle(event, context)
+        return self.entities
+
+    def known_entities(self) -> list[LaunchDescriptionEntity] | None:
+        """Return the entities."""
+        return self.entities

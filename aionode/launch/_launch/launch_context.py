@@ -1,0 +1,107 @@
+"""`launch.launch_context`: the state in which a description is evaluated."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from types import SimpleNamespace
+from typing import Any, Self
+
+from aionode._packages import Packages
+from aionode.launch._plan import Emit, Step, Watch
+
+__all__ = ["LaunchContext"]
+
+
+def cannot_load(path: str, kind: str) -> Any:
+    """Refuse to load a file: only an evaluation can."""
+    raise NotImplementedError(f"{path}: this context does not read launch files")
+
+
+class LaunchContext:
+    """The launch configurations and the environment; and the steps that have been found.
+
+    The environment is a copy: nothing changes that of this process. Substitutions, events and
+    handlers know this class, so it does not know theirs.
+    """
+
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
+        self.argv = list(argv or ())
+        self.noninteractive = noninteractive
+        self.launch_configurations: dict[str, Any] = {}
+        self.environment: dict[str, str] = dict(os.environ)
+        self.locals = SimpleNamespace()
+        self.is_shutdown = False
+        self.steps: list[Step] = []
+        self.load_file: Callable[[str, str], Any] = cannot_load
+        """Returns the description in a file of this path and kind: python, xml, yaml or any."""
+        self.packages = Packages()
+        """The packages in which executables and files are looked up."""
+        self.names: dict[str, int] = {}
+        """How many processes had a name so far."""
+        self._configurations: list[dict[str, Any]] = []
+        self._environments: list[dict[str, str]] = []
+
+    def fork(self) -> Self:
+        """Return a context with the same state and no steps, for what is done later."""
+        later = type(self)(argv=self.argv, noninteractive=self.noninteractive)
+        later.launch_configurations = dict(self.launch_configurations)
+        later.environment = dict(self.environment)
+        later.locals = SimpleNamespace(**vars(self.locals))
+        later.load_file = self.load_file
+        later.packages = self.packages
+        later.names = self.names  # one count for the whole description
+        return later
+
+    def perform_substitution(self, sub: Any) -> str:
+        """Return the text of a substitution."""
+        return str(sub.perform(self))
+
+    def extend_locals(self, extensions: Mapping[str, Any]) -> None:
+        """Add values that the following entities find in `locals`."""
+        vars(self.locals).update(extensions)
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        """Return the values in `locals`."""
+        return dict(vars(self.locals))
+
+    def push_launch_configurations(self) -> None:
+        """Remember the launch configurations until the matching pop."""
+        self._configurations.append(dict(self.launch_configurations))
+
+    def pop_launch_configurations(self) -> None:
+        """Restore what the matching push remembered."""
+        self.launch_configurations = self._configurations.pop()
+
+    def push_environment(self) -> None:
+        """Remember the environment until the matching pop."""
+        self._environments.append(dict(self.environment))
+
+    def pop_environment(self) -> None:
+        """Restore what the matching push remembered."""
+        self.environment = self._environments.pop()
+
+    def reset_environment(self) -> None:
+        """Make the environment that of this process again."""
+        self.environment = dict(os.environ)
+
+    def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
+        """Have a handler called from now on."""
+        self.steps.append(Watch(handler=event_handler, context=self.fork()))
+
+    def unregister_event_handler(self, event_handler: Any) -> None:
+        """Have a handler called no more."""
+        self.steps.append(Watch(handler=event_handler, context=self.fork(), ends=True))
+
+    def emit_event_sync(self, event: Any) -> None:
+        """Hand an event to the handlers."""
+        self.steps.append(Emit(event=event))
+
+    async def emit_event(self, event: Any) -> None:
+        """Hand an event to the handlers."""
+        self.emit_event_sync(event)
+
+    def unique_name(self, name: str) -> str:
+        """Return the name of one more process: the name and a number, as ros2 launch does."""
+        number = self.names[""] = self.names.get("", 0) + 1
+        return f"{name}-{number}"

@@ -1,0 +1,78 @@
+"""`launch.launch_description_sources`: the files that are included."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+
+__all__ = [
+    "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "LaunchDescriptionSource",
+    "PythonLaunchDescriptionSource",
+    "XMLLaunchDescriptionSource",
+    "YAMLLaunchDescriptionSource",
+]
+
+
+class LaunchDescriptionSource:
+    """A description, or a file that has one."""
+
+    kind: ClassVar[str] = "any"
+
+    def __init__(
+        self,
+        launch_description: Any = None,
+        location: SomeSubstitutionsType = "<script>",
+        method: str = "unspecified mechanism from a script",
+    ) -> None:
+        self._description = launch_description
+        self._subs = normalize_to_list_of_substitutions(location)
+        self.location = "".join(getattr(sub, "text", sub.describe()) for sub in self._subs)
+        self.method = method
+
+    def get_launch_description(self, context: LaunchContext) -> Any:
+        """Return the description, reading the file."""
+        if self._description is not None:
+            return self._description
+        self.location = perform_substitutions(context, self._subs)
+        return context.load_file(self.location, self.kind)
+
+    def try_get_launch_description_without_context(self) -> Any:
+        """Return the description if it is known."""
+        return self._description
+
+
+class AnyLaunchDescriptionSource(LaunchDescriptionSource):
+    """A file in Python, XML or YAML."""
+
+    def __init__(self, launch_file_path: SomeSubstitutionsType, **_: Any) -> None:
+        super().__init__(None, launch_file_path, "interpreted launch file")
+
+
+class PythonLaunchDescriptionSource(AnyLaunchDescriptionSource):
+    """A file in Python."""
+
+    kind = "python"
+
+
+class FrontendLaunchDescriptionSource(AnyLaunchDescriptionSource):
+    """A file in XML or YAML."""
+
+
+class XMLLaunchDescriptionSource(AnyLaunchDescriptionSource):
+    """A file in XML."""
+
+    kind = "xml"
+
+
+class YAMLLaunchDescriptionSource(AnyLaunchDescriptionSource):
+    """A file in YAML."""
+
+    kind = "yaml"

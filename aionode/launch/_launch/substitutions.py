@@ -1,0 +1,434 @@
+"""`launch.substitutions`."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import os
+import shlex
+import shutil
+import subprocess
+import uuid
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, Self
+
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.substitution import (
+    SomeSubstitutionsType,
+    Substitution,
+    SubstitutionFailure,
+    TextSubstitution,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from aionode.launch._launch.utilities.type_utils import coerce_to_type
+
+__all__ = [
+    "AllSubstitution",
+    "AndSubstitution",
+    "AnonName",
+    "AnySubstitution",
+    "Command",
+    "EnvironmentVariable",
+    "EqualsSubstitution",
+    "FileContent",
+    "FindExecutable",
+    "IfElseSubstitution",
+    "LaunchConfiguration",
+    "LaunchLogDir",
+    "LocalSubstitution",
+    "NotEqualsSubstitution",
+    "NotSubstitution",
+    "OrSubstitution",
+    "PathJoinSubstitution",
+    "PathSubstitution",
+    "PythonExpression",
+    "StringJoinSubstitution",
+    "SubstitutionFailure",
+    "TextSubstitution",
+    "ThisLaunchFile",
+    "ThisLaunchFileDir",
+]
+
+
+def text_of(context: LaunchContext, subs: SomeSubstitutionsType) -> str:
+    """Return the text of a substitution, or of several joined."""
+    return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
+
+
+def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
+    """Return the truth of a text."""
+    text = text_of(context, sub)
+    try:
+        return bool(coerce_to_type(text, bool))
+    except ValueError as error:
+        raise SubstitutionFailure(f"{error}; true and false fit") from error
+
+
+class LaunchConfiguration(Substitution):
+    """The value of a launch configuration, such as an argument."""
+
+    def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None) -> None:
+        self.variable_name = normalize_to_list_of_substitutions(variable_name)
+        if default is None:
+            self.default = None
+        elif isinstance(default, str | Substitution):
+            self.default = normalize_to_list_of_substitutions(default)
+        elif isinstance(default, Iterable):
+            self.default = normalize_to_list_of_substitutions(
+                [one if isinstance(one, str | Substitution) else str(one) for one in default]
+            )
+        else:
+            self.default = normalize_to_list_of_substitutions(str(default))
+
+    @classmethod
+    def of_words(cls, *words: Any) -> Self:
+        """Return that of ``$(var name default)``."""
+        return cls(words[0], default=words[1] if len(words) > 1 else None)
+
+    def describe(self) -> str:
+        """Return the name."""
+        return f"LaunchConfig({''.join(sub.describe() for sub in self.variable_name)})"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value, or the default."""
+        name = perform_substitutions(context, self.variable_name)
+        if name in context.launch_configurations:
+            return str(context.launch_configurations[name])
+        if self.default is None:
+            known = ", ".join(sorted(context.launch_configurations)) or "none"
+            raise SubstitutionFailure(
+                f"launch configuration '{name}' does not exist here; there are: {known}"
+            )
+        return perform_substitutions(context, self.default)
+
+
+class EnvironmentVariable(Substitution):
+    """The value of an environment variable."""
+
+    def __init__(
+        self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
+    ) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+        self.default_value = default_value
+
+    @classmethod
+    def of_words(cls, *words: Any) -> Self:
+        """Return that of ``$(env NAME default)``."""
+        return cls(words[0], default_value=words[1] if len(words) > 1 else None)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value, or the default."""
+        name = perform_substitutions(context, self.name)
+        value = context.environment.get(name)
+        if value is not None:
+            return value
+        if self.default_value is None:
+            raise SubstitutionFailure(f"environment variable '{name}' does not exist")
+        return text_of(context, self.default_value)
+
+
+class PathJoinSubstitution(Substitution):
+    """Parts of a path, joined."""
+
+    def __init__(self, substitutions: Iterable[Any]) -> None:
+        self.substitutions = [normalize_to_list_of_substitutions(one) for one in substitutions]
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path."""
+        return os.path.join(*(perform_substitutions(context, one) for one in self.substitutions))  # noqa: PTH118  # as launch: a trailing slash stays
+
+    def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:
+        return PathJoinSubstitution([*self.substitutions, other])
+
+
+class PathSubstitution(PathJoinSubstitution):
+    """A path, to which parts are added with ``/``."""
+
+    def __init__(self, path: SomeSubstitutionsType) -> None:
+        super().__init__([path])
+
+
+class StringJoinSubstitution(Substitution):
+    """Texts, joined by a delimiter."""
+
+    def __init__(self, substitutions: Iterable[Any], delimiter: SomeSubstitutionsType = "") -> None:
+        self.substitutions = [normalize_to_list_of_substitutions(one) for one in substitutions]
+        self.delimiter = delimiter
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text."""
+        texts = (perform_substitutions(context, one) for one in self.substitutions)
+        return text_of(context, self.delimiter).join(texts)
+
+
+class ThisLaunchFile(Substitution):
+    """The path of the launch file."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path."""
+        return str(context.locals.current_launch_file_path)
+
+
+class ThisLaunchFileDir(Substitution):
+    """The folder of the launch file."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path."""
+        return str(context.locals.current_launch_file_directory)
+
+
+class LaunchLogDir(Substitution):
+    """The folder of logs."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path: ROS_LOG_DIR, or log below ROS_HOME."""
+        home = context.environment.get("ROS_HOME") or str(Path.home() / ".ros")
+        return context.environment.get("ROS_LOG_DIR") or str(Path(home, "log"))
+
+
+class LocalSubstitution(Substitution):
+    """A value that an entity left for those after it."""
+
+    def __init__(self, expression: str, description: str | None = None) -> None:
+        self.expression = expression
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value of an expression such as ``event.returncode``."""
+        return str(eval("context.locals." + self.expression, {}, {"context": context}))  # noqa: S307  # the launch file is the user's own program
+
+
+class AnonName(Substitution):
+    """A name with a random end, the same each time within one description."""
+
+    def __init__(self, name: SomeSubstitutionsType) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the name."""
+        name = perform_substitutions(context, self.name)
+        key = f"anon{name}"
+        if key not in context.launch_configurations:
+            end = f"{os.uname().nodename}_{os.getpid()}_{uuid.uuid4().hex[:16]}"
+            safe = "".join(char if char.isalnum() else "_" for char in end)
+            context.launch_configurations[key] = f"{name}_{safe}"
+        return str(context.launch_configurations[key])
+
+
+class FindExecutable(Substitution):
+    """The path of a program, found as a shell does."""
+
+    def __init__(self, *, name: SomeSubstitutionsType) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+
+    @classmethod
+    def of_words(cls, *words: Any) -> Self:
+        """Return that of ``$(find-exec name)``."""
+        return cls(name=words[0])
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the path."""
+        name = perform_substitutions(context, self.name)
+        found = shutil.which(name, path=context.environment.get("PATH"))
+        if found is None:
+            raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
+        return found
+
+
+class FileContent(Substitution):
+    """The text of a file."""
+
+    def __init__(self, path: SomeSubstitutionsType) -> None:
+        self.path = normalize_to_list_of_substitutions(path)
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text."""
+        path = Path(perform_substitutions(context, self.path))
+        try:
+            return path.read_text(encoding="utf-8")
+        except OSError as error:
+            raise SubstitutionFailure(f"failed to open {path}: {error.strerror}") from error
+
+
+class Command(Substitution):
+    """What a command prints, such as xacro."""
+
+    def __init__(
+        self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail"
+    ) -> None:
+        self.command = normalize_to_list_of_substitutions(command)
+        self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
+
+    @classmethod
+    def of_words(cls, *words: Any) -> Self:
+        """Return that of ``$(command 'xacro robot.xacro' warn)``."""
+        return cls(words[0], on_stderr=words[1] if len(words) > 1 else "fail")
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the output."""
+        line = perform_substitutions(context, self.command)
+        on_stderr = perform_substitutions(context, self.on_stderr)
+        if on_stderr not in ("fail", "ignore", "warn", "capture"):
+            raise SubstitutionFailure(
+                f"on_stderr is {on_stderr!r}; fail, ignore, warn and capture fit"
+            )
+        stderr = subprocess.STDOUT if on_stderr == "capture" else subprocess.PIPE
+        try:
+            done = subprocess.run(  # noqa: S603  # the command of the user's file
+                shlex.split(line),
+                stdout=subprocess.PIPE,
+                stderr=stderr,
+                text=True,
+                check=False,
+                env=context.environment,
+            )
+        except OSError as error:
+            raise SubstitutionFailure(f"command {line!r} cannot be run: {error}") from error
+        if done.returncode != 0:
+            raise SubstitutionFailure(
+                f"command {line!r} ended with status {done.returncode}: {done.stderr or ''}"
+            )
+        if done.stderr and on_stderr == "fail":
+            raise SubstitutionFailure(
+                f"command {line!r} wrote to stderr: {done.stderr.rstrip()}; "
+                "on_stderr='ignore' accepts that"
+            )
+        return done.stdout
+
+
+class PythonExpression(Substitution):
+    """The value of an expression of Python, as text."""
+
+    def __init__(
+        self,
+        expression: SomeSubstitutionsType,
+        python_modules: SomeSubstitutionsType = ("math",),
+    ) -> None:
+        self.expression = normalize_to_list_of_substitutions(expression)
+        self.python_modules = normalize_to_list_of_substitutions(python_modules)
+
+    @classmethod
+    def of_words(cls, *words: Any) -> Self:
+        """Return that of ``$(eval 'expression' 'module, module')``."""
+        if len(words) < 2:
+            return cls(words[0])
+        names = "".join(getattr(word, "text", "") for word in words[1]).split(",")
+        return cls(words[0], [name.strip() for name in names])
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value."""
+        known: dict[str, Any] = {}
+        for sub in self.python_modules:
+            module = importlib.import_module(context.perform_substitution(sub))
+            if module is math:
+                known.update(vars(math))
+            known[module.__name__] = module
+        expression = perform_substitutions(context, self.expression)
+        try:
+            return str(eval(expression, {}, known))  # noqa: S307  # the launch file is the user's own program
+        except Exception as error:
+            raise SubstitutionFailure(
+                f"expression {expression!r} fails: {type(error).__name__}: {error}"
+            ) from error
+
+
+def as_text(value: Any) -> Any:
+    """Return a value as `EqualsSubstitution` compares it."""
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return value if isinstance(value, Substitution | list | tuple | str) else str(value)
+
+
+class EqualsSubstitution(Substitution):
+    """Whether two texts are equal, as truths, as numbers or as they are."""
+
+    def __init__(self, left: Any, right: Any) -> None:
+        self.left = normalize_to_list_of_substitutions(as_text(left))
+        self.right = normalize_to_list_of_substitutions(as_text(right))
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return true or false."""
+        left = perform_substitutions(context, self.left)
+        right = perform_substitutions(context, self.right)
+        truths = {"true": True, "1": True, "false": False, "0": False}
+        if left.lower() in truths and right.lower() in truths:
+            return str(truths[left.lower()] == truths[right.lower()]).lower()
+        try:
+            return str(math.isclose(float(left), float(right))).lower()
+        except ValueError:
+            return str(left == right).lower()
+
+
+class NotEqualsSubstitution(EqualsSubstitution):
+    """Whether two texts differ."""
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return true or false."""
+        return "false" if super().perform(context) == "true" else "true"
+
+
+class NotSubstitution(Substitution):
+    """The contrary."""
+
+    def __init__(self, value: SomeSubstitutionsType) -> None:
+        self.value = value
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return true or false."""
+        return str(not boolean(context, self.value)).lower()
+
+
+class AnySubstitution(Substitution):
+    """Whether one of several holds."""
+
+    def __init__(self, *args: SomeSubstitutionsType) -> None:
+        self.parts = args
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return true or false."""
+        return str(any(boolean(context, part) for part in self.parts)).lower()
+
+
+class AllSubstitution(Substitution):
+    """Whether all of several hold."""
+
+    def __init__(self, *args: SomeSubstitutionsType) -> None:
+        self.parts = args
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return true or false."""
+        return str(all(boolean(context, part) for part in self.parts)).lower()
+
+
+class AndSubstitution(AllSubstitution):
+    """Whether both hold."""
+
+    def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
+        super().__init__(left, right)
+
+
+class OrSubstitution(AnySubstitution):
+    """Whether one of two holds."""
+
+    def __init__(self, left: SomeSubstitutionsType, right: SomeSubstitutionsType) -> None:
+        super().__init__(left, right)
+
+
+class IfElseSubstitution(Substitution):
+    """One of two texts."""
+
+    def __init__(
+        self,
+        condition: SomeSubstitutionsType,
+        if_value: SomeSubstitutionsType = "",
+        else_value: SomeSubstitutionsType = "",
+    ) -> None:
+        self.condition, self.if_value, self.else_value = condition, if_value, else_value
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the text that the condition chooses."""
+        chosen = self.if_value if boolean(context, self.condition) else self.else_value
+        return text_of(context, chosen)

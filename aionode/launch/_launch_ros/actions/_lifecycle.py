@@ -1,0 +1,64 @@
+"""Managed nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from aionode.launch._launch.action import Action
+from aionode.launch._launch.actions import EmitEvent
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.substitution import SomeSubstitutionsType
+from aionode.launch._launch_ros.actions._node import Node
+from aionode.launch._launch_ros.events.lifecycle import ChangeState, matches_node_name
+from aionode.launch._launch_ros.namespaces import text_or_none
+
+__all__ = ["LifecycleNode", "LifecycleTransition"]
+
+
+class LifecycleNode(Node):
+    """Starts a managed node."""
+
+    def __init__(
+        self,
+        *,
+        name: SomeSubstitutionsType,
+        namespace: SomeSubstitutionsType,
+        autostart: Any = False,
+        **options: Any,
+    ) -> None:
+        super().__init__(name=name, namespace=namespace, **options)
+        self.autostart = autostart
+
+    @property
+    def is_lifecycle(self) -> bool:
+        """Always true."""
+        return True
+
+
+class LifecycleTransition(Action):
+    """Has nodes make transitions."""
+
+    def __init__(
+        self,
+        *,
+        lifecycle_node_names: Iterable[SomeSubstitutionsType],
+        transition_ids: Iterable[int],
+        **options: Any,
+    ) -> None:
+        super().__init__(**options)
+        self.lifecycle_node_names = list(lifecycle_node_names)
+        self.transition_ids = list(transition_ids)
+
+    def execute(self, context: LaunchContext) -> list[Action]:
+        """Return the requests."""
+        names = [text_or_none(context, name) or "" for name in self.lifecycle_node_names]
+        return [
+            EmitEvent(
+                event=ChangeState(
+                    lifecycle_node_matcher=matches_node_name(name), transition_id=transition
+                )
+            )
+            for name in names
+            for transition in self.transition_ids
+        ]

@@ -1,0 +1,55 @@
+"""`launch_ros.event_handlers`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from aionode.launch._launch.event import Event
+from aionode.launch._launch.event_handler import BaseEventHandler, entities_of
+from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch_ros.events.lifecycle import StateTransition
+
+__all__ = ["OnStateTransition"]
+
+
+class OnStateTransition(BaseEventHandler):
+    """Reacts to the transitions of managed nodes."""
+
+    def __init__(
+        self,
+        *,
+        entities: Any,
+        target_lifecycle_node: Any = None,
+        transition: str | None = None,
+        start_state: str | None = None,
+        goal_state: str | None = None,
+        **options: Any,
+    ) -> None:
+        def matcher(event: Event) -> bool:
+            return (
+                isinstance(event, StateTransition)
+                and target_lifecycle_node in (None, event.action)
+                and transition in (None, event.transition)
+                and start_state in (None, event.start_state)
+                and goal_state in (None, event.goal_state)
+            )
+
+        super().__init__(matcher=matcher, **options)
+        self.target_lifecycle_node = target_lifecycle_node
+        self.goal_state = goal_state
+        self._entities = entities_of(entities)
+
+    def handle(self, event: Event, context: LaunchContext) -> Any:
+        """Return the entities."""
+        super().handle(event, context)
+        return self._entities
+
+    def known_entities(self) -> list[Any] | None:
+        """Return the entities."""
+        return self._entities
+
+    def describe(self) -> str:
+        """Return what happens to whom."""
+        node = self.target_lifecycle_node
+        named = "a managed node" if node is None else node.describe()
+        return f"{named} is {self.goal_state}" if self.goal_state else f"a transition of {named}"

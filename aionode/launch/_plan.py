@@ -1,0 +1,111 @@
+"""What a launch description does, in order: the result of its evaluation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+__all__ = [
+    "Component",
+    "Emit",
+    "LoadNodes",
+    "Log",
+    "ParameterValues",
+    "Process",
+    "Step",
+    "Timer",
+    "Watch",
+]
+
+
+class Step:
+    """One thing that a description does."""
+
+
+@dataclass(frozen=True)
+class ParameterValues:
+    """An argument of a process: the path of a parameter file that is written as it starts."""
+
+    content: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Process(Step):
+    """A process to be started."""
+
+    action: Any
+    """The action that stands in the description, by which event handlers name the process."""
+    name: str
+    argv: list[str | ParameterValues]
+    env: dict[str, str]
+    cwd: str | None
+    where: str
+    node_name: str | None = None
+    """The full name of its node, if that is known."""
+    shell: bool = False
+    respawn: bool = False
+    respawn_delay_sec: float = 0.0
+    respawn_max_retries: int = -1
+    output: str = "log"
+    on_exit: Any = None
+
+
+@dataclass(frozen=True)
+class Component:
+    """A node of a container."""
+
+    plugin: str
+    package: str
+    name: str | None
+    namespace: str | None
+    parameters: dict[str, Any]
+    remappings: list[tuple[str, str]]
+    extra_arguments: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def is_aionode(self) -> bool:
+        """Whether it is a class of Python, as ``module:Class``."""
+        return ":" in self.plugin and "::" not in self.plugin
+
+
+@dataclass(frozen=True)
+class LoadNodes(Step):
+    """Nodes that a container gets."""
+
+    container: str
+    components: list[Component]
+    where: str
+
+
+@dataclass(frozen=True)
+class Timer(Step):
+    """Entities that are done later."""
+
+    action: Any
+    period_sec: float
+    entities: list[Any]
+    context: Any
+
+
+@dataclass(frozen=True)
+class Watch(Step):
+    """An event handler that begins, or ends, to be called."""
+
+    handler: Any
+    context: Any
+    ends: bool = False
+
+
+@dataclass(frozen=True)
+class Emit(Step):
+    """An event for the handlers."""
+
+    event: Any
+
+
+@dataclass(frozen=True)
+class Log(Step):
+    """A text for the user."""
+
+    text: str
+    level: str = "INFO"

@@ -1,0 +1,136 @@
+"""What a plan starts, as records and as text; nothing of it is started."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import yaml
+
+from aionode.launch._evaluation import evaluate
+from aionode.launch._plan import (
+    Component,
+    Emit,
+    LoadNodes,
+    Log,
+    ParameterValues,
+    Process,
+    Step,
+    Timer,
+    Watch,
+)
+
+__all__ = ["records", "text_of"]
+
+
+def records(steps: list[Step], when: tuple[str, ...] = ()) -> Iterator[dict[str, Any]]:
+    """Yield what steps start, in order; timers and event handlers are followed.
+
+    Functions of event handlers are named only: they are called when something happens.
+    """
+    for step in steps:
+        match step:
+            case Process():
+                yield of_process(step, when)
+            case LoadNodes():
+                for component in step.components:
+                    yield of_component(step, component, when)
+            case Timer():
+                later = evaluate(step.entities, step.context.fork())
+                yield from records(later, (*when, f"after {step.period_sec:g} s"))
+            case Watch(ends=False):
+                yield from of_handler(step, when)
+            case Log():
+                yield {"when": list(when), "log": step.text}
+            case Emit():
+                yield {"when": list(when), "event": step.event.name}
+            case _:
+                pass
+
+
+def of_handler(step: Watch, when: tuple[str, ...]) -> Iterator[dict[str, Any]]:
+    """Yield what an event handler does."""
+    condition = f"at the {step.handler.describe()}"
+    entities = step.handler.known_entities()
+    if entities is None:
+        yield {"when": [*when, condition], "calls": "a function"}
+    else:
+        yield from records(evaluate(entities, step.context.fork()), (*when, condition))
+
+
+def of_process(step: Process, when: tuple[str, ...]) -> dict[str, Any]:
+    """Return what is started as one process."""
+    return {
+        "when": list(when),
+        "name": step.name,
+        "argv": [word.content if isinstance(word, ParameterValues) else word for word in step.argv],
+        "env": changed(step.env),
+        "cwd": step.cwd,
+        "where": step.where,
+    }
+
+
+def changed(env: Mapping[str, str]) -> dict[str, str]:
+    """Return the variables that differ from those of this process."""
+    return {name: value for name, value in env.items() if os.environ.get(name) != value}
+
+
+def of_component(step: LoadNodes, component: Component, when: tuple[str, ...]) -> dict[str, Any]:
+    """Return what is added to a container."""
+    return {
+        "when": list(when),
+        "container": step.container,
+        "plugin": component.plugin,
+        "package": component.package,
+        "node": component.name or "",
+        "namespace": component.namespace or "",
+        "remappings": [f"{source}:={target}" for source, target in component.remappings],
+        "parameters": component.parameters,
+        "where": step.where,
+    }
+
+
+def text_of(record: Mapping[str, Any]) -> str:
+    """Return a record for readers, in some lines."""
+    prefix = "".join(f"{condition}: " for condition in record["when"])
+    if "argv" in record:
+        return prefix + "\n".join(process_lines(record))
+    if "container" in record:
+        return prefix + "\n".join(component_lines(record))
+    if "log" in record:
+        return f"{prefix}log: {record['log']}"
+    if "calls" in record:
+        return f"{prefix}{record['calls']}"
+    return f"{prefix}event {record['event']}"
+
+
+def process_lines(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the lines of a process: its command, and below it what it gets."""
+    words, files = [], []
+    for word in record["argv"]:
+        if isinstance(word, str):
+            words.append(shlex.quote(word))
+        else:
+            files.append(word)
+            words.append(f"<parameters {len(files)}>")
+    yield f"{record['name']}: {' '.join(words)}"
+    if record["cwd"]:
+        yield f"    in {record['cwd']}"
+    for name, value in record["env"].items():
+        yield f"    {name}={value}"
+    for number, content in enumerate(files, start=1):
+        yield f"    parameters {number}:"
+        text = yaml.safe_dump(content, default_flow_style=False, sort_keys=False)
+        yield from (f"        {line}" for line in text.splitlines())
+
+
+def component_lines(record: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the lines of a node of a container."""
+    named = f" as {record['namespace'].rstrip('/')}/{record['node']}" if record["node"] else ""
+    yield f"{record['container']} gets {record['plugin']} of {record['package']}{named}"
+    for rule in record["remappings"]:
+        yield f"    {rule}"
+    for name, value in record["parameters"].items():
+        yield f"    {name}: {value}"

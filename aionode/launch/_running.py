@@ -1,0 +1,328 @@
+"""A launch description that runs: its processes, timers and events, on a system."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import tempfile
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import yaml
+
+from aionode.clock import SteadyClock
+from aionode.errors import LaunchFileError
+from aionode.interfaces.composition_interfaces.srv import LoadNode
+from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
+from aionode.interfaces.lifecycle_msgs.srv import ChangeState
+from aionode.launch._evaluation import evaluate
+from aionode.launch._launch.event import Event
+from aionode.launch._launch.event_handler import entities_of
+from aionode.launch._launch.events import Shutdown
+from aionode.launch._launch.events.process import (
+    ProcessExited,
+    ProcessStarted,
+    ProcessTargetedEvent,
+    ShutdownProcess,
+    SignalProcess,
+)
+from aionode.launch._launch_ros.actions import LifecycleNode
+from aionode.launch._launch_ros.events import lifecycle
+from aionode.launch._plan import (
+    Component,
+    Emit,
+    LoadNodes,
+    Log,
+    ParameterValues,
+    Process,
+    Step,
+    Timer,
+    Watch,
+)
+from aionode.parameter import Parameter
+
+if TYPE_CHECKING:
+    from aionode.system import Member, System
+
+__all__ = ["RunningLaunch"]
+
+
+class RunningLaunch:
+    """What a launch description does while it runs.
+
+    Args:
+        system: The system that its processes and nodes are added to.
+        waits_for_nodes: Whether a process is ready only when its node is in the graph.
+    """
+
+    def __init__(self, system: System, *, waits_for_nodes: bool = False) -> None:
+        self.system = system
+        self.waits_for_nodes = waits_for_nodes
+        self.members: dict[Any, Member] = {}
+        """The process that each action has started last."""
+        self._watches: list[Watch] = []
+        self._events: asyncio.Queue[Event] = asyncio.Queue()
+        self._clock = SteadyClock()
+        self._work: set[asyncio.Task[None]] = set()
+        """What may start something more: timers, requests, processes that run."""
+        self._idle = asyncio.Event()
+        self._is_shutdown = False
+
+    async def run(self, steps: Iterable[Step]) -> None:
+        """Do the steps, and return when nothing runs any more, or a shutdown was asked for.
+
+        Event handlers see a shutdown in any case, also if this is cancelled.
+
+        Raises:
+            LaunchFileError: What an event handler or a timer does cannot be evaluated.
+        """
+        with tempfile.TemporaryDirectory(prefix="aionode_launch_") as folder:
+            self._folder = Path(folder)
+            try:
+                async with asyncio.TaskGroup() as self._tasks:
+                    handling = self._tasks.create_task(self._handle_events())
+                    self.carry_out(steps)
+                    self._note_idle()
+                    await self._idle.wait()
+                    handling.cancel()
+                    for task in self._work:
+                        task.cancel()
+            except* LaunchFileError as group:
+                raise group.exceptions[0] from None
+            finally:
+                if not self._is_shutdown:
+                    self._dispatch(Shutdown(reason="the launch ends"))
+
+    def _spawn(self, work: Any) -> None:
+        task = self._tasks.create_task(work)
+        self._work.add(task)
+        task.add_done_callback(self._forget)
+
+    def _forget(self, task: asyncio.Task[None]) -> None:
+        self._work.discard(task)
+        self._note_idle()
+
+    def _note_idle(self) -> None:
+        if self._is_shutdown or not (self._work or self._events.qsize()):
+            self._idle.set()
+
+    # Steps
+
+    def carry_out(self, steps: Iterable[Step]) -> None:
+        """Do steps: processes are started, timers and handlers begin."""
+        for step in steps:
+            match step:
+                case Process():
+                    self._start(step)
+                case LoadNodes():
+                    self._load(step)
+                case Timer():
+                    self._spawn(self._wait_for(step))
+                case Watch(ends=False):
+                    self._watches.insert(0, step)
+                case Watch():
+                    self._watches = [one for one in self._watches if one.handler != step.handler]
+                case Log():
+                    self.system.log.note(step.text)
+                case Emit():
+                    self._events.put_nowait(step.event)
+                case _:
+                    raise AssertionError(step)
+
+    def _start(self, step: Process) -> None:
+        """Start a process, and follow it."""
+        from aionode.system import NodeExists  # which needs much, and --print does not
+
+        if self._is_shutdown:
+            return
+        argv = self._written(step)
+        if step.shell:
+            argv = ["/bin/sh", "-c", " ".join(argv)]
+        name = step.node_name
+        is_awaited = self.waits_for_nodes and name is not None
+        retries = step.respawn_max_retries
+        member = self.system.process(
+            step.name,
+            argv,
+            env=step.env,
+            cwd=step.cwd,
+            restart="always" if step.respawn else "never",
+            min_delay_sec=step.respawn_delay_sec or 0.5,
+            max_restarts=None if retries < 0 else retries,
+            ready=NodeExists(name) if is_awaited and name is not None else None,
+        )
+        self.members[step.action] = member
+        if isinstance(step.action, LifecycleNode):
+            self._spawn(self._follow_states(step.action))
+        self._spawn(self._follow(step, member, argv))
+
+    def _written(self, step: Process) -> list[str]:
+        """Return the command line, its parameters written into files."""
+        argv: list[str] = []
+        for number, word in enumerate(step.argv):
+            if isinstance(word, ParameterValues):
+                file = self._folder / f"{step.name}_{number}.yaml"
+                file.write_text(yaml.safe_dump(word.content), encoding="utf-8")
+                argv.append(str(file))
+            else:
+                argv.append(word)
+        return argv
+
+    async def _follow(self, step: Process, member: Member, argv: list[str]) -> None:
+        """Tell the event handlers of each start and end of a process."""
+        pid, end = None, None
+        facts = {"action": step.action, "name": step.name, "cmd": argv}
+        facts |= {"cwd": step.cwd, "env": step.env}
+        while True:
+            if member.pid is not None and member.pid != pid:
+                pid = member.pid
+                step.action.process_details = {"name": step.name, "cmd": argv, "pid": pid}
+                self._events.put_nowait(ProcessStarted(pid=pid, **facts))
+            if member.last_end is not end and member.last_end is not None:
+                end = member.last_end
+                step.action.return_code = end.status
+                self._events.put_nowait(ProcessExited(pid=pid or 0, returncode=end.status, **facts))
+            if member.is_over():
+                return
+            await self.system._next_change()
+
+    async def _wait_for(self, step: Timer) -> None:
+        await self._clock.sleep(step.period_sec)
+        if not (step.action.is_canceled or self._is_shutdown):
+            self.carry_out(evaluate(step.entities, step.context))
+
+    # Events
+
+    async def _handle_events(self) -> None:
+        while True:
+            event = await self._events.get()
+            self._dispatch(event)
+            self._note_idle()
+
+    def _dispatch(self, event: Event) -> None:
+        """Have the handlers handle an event, and do what they want; the newest comes first."""
+        if isinstance(event, Shutdown):
+            self._is_shutdown = True
+            self.system.log.note(f"shutdown: {event.reason}")
+        for watch in list(self._watches):
+            if watch not in self._watches or not watch.handler.matches(event):
+                continue
+            context = watch.context.fork()
+            context.is_shutdown = self._is_shutdown
+            entities = entities_of(watch.handler.handle(event, context))
+            self.carry_out([*evaluate(entities, context)])
+        if isinstance(event, ProcessTargetedEvent):
+            self._ask_processes(event)
+        if isinstance(event, lifecycle.ChangeState):
+            self._ask_managed(event)
+
+    def _ask_processes(self, event: ProcessTargetedEvent) -> None:
+        for action, member in self.members.items():
+            if member.pid is None or not event.process_matcher(action):
+                continue
+            if isinstance(event, ShutdownProcess):
+                self._spawn(self.system.stop(member.name))
+            elif isinstance(event, SignalProcess):
+                os.kill(member.pid, event.signal)
+
+    # Managed nodes
+
+    def _ask_managed(self, event: lifecycle.ChangeState) -> None:
+        for action in self.members:
+            if isinstance(action, LifecycleNode) and event.lifecycle_node_matcher(action):
+                self._spawn(self._change_state(action.node_name, event.transition_id))
+
+    async def _change_state(self, node_name: str, transition_id: int) -> None:
+        """Have a managed node make a transition, once it answers."""
+        node = self.system.graph_node
+        client = node.create_client(ChangeState, f"{node_name}/change_state")
+        try:
+            while not await client.wait_for_service(timeout_sec=5.0):
+                self.system.log.note(f"waiting for the managed node {node_name}")
+            request = ChangeState.Request()
+            request.transition.id = transition_id
+            response = await client.call(request)
+        finally:
+            client.destroy()
+        if not response.success:
+            self.system.log.note(f"{node_name} has not made transition {transition_id}")
+
+    async def _follow_states(self, action: LifecycleNode) -> None:
+        """Tell the event handlers of each transition of a managed node, while it runs."""
+        member = self.members[action]
+
+        def tell(message: TransitionEvent) -> None:
+            self._events.put_nowait(lifecycle.StateTransition(action=action, msg=message))
+
+        topic = f"{action.node_name}/transition_event"
+        subscription = self.system.graph_node.create_subscription(TransitionEvent, topic, tell, 10)
+        try:
+            while not member.is_over():
+                await self.system._next_change()
+        finally:
+            subscription.destroy()
+
+    # Nodes of containers
+
+    def _load(self, step: LoadNodes) -> None:
+        """Give a container its nodes: classes of aionode run as tasks of this process."""
+        foreign = [one for one in step.components if not one.is_aionode]
+        for component in step.components:
+            if component.is_aionode:
+                self._add_node(component)
+        if foreign:
+            self._spawn(self._load_foreign(step.container, foreign))
+
+    def _add_node(self, component: Component) -> None:
+        name = component.name or snake_case(component.plugin.rpartition(":")[2])
+        member = self.system.node(
+            name,
+            component.plugin,
+            parameters=component.parameters or None,
+            remappings=component.remappings or None,
+            namespace=component.namespace,
+        )
+        self._spawn(self._until_ended(member))
+
+    async def _until_ended(self, member: Member) -> None:
+        while not member.is_over():
+            await self.system._next_change()
+
+    async def _load_foreign(self, container: str, components: list[Component]) -> None:
+        """Have a container of another program load its nodes, one after the other."""
+        node = self.system.graph_node
+        client = node.create_client(LoadNode, f"{container}/_container/load_node")
+        try:
+            while not await client.wait_for_service(timeout_sec=5.0):
+                self.system.log.note(f"waiting for the container {container}")
+            for component in components:
+                response = await client.call(load_request(component))
+                done = f"loaded {response.full_node_name or component.plugin}"
+                failed = f"cannot load {component.plugin}: {response.error_message}"
+                self.system.log.note(f"{container}: {done if response.success else failed}")
+        finally:
+            client.destroy()
+
+
+def load_request(component: Component) -> LoadNode.Request:
+    """Return the request by which a container loads a node."""
+
+    def messages(values: dict[str, Any]) -> list[Any]:
+        return [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
+
+    return LoadNode.Request(
+        package_name=component.package,
+        plugin_name=component.plugin,
+        node_name=component.name or "",
+        node_namespace=component.namespace or "",
+        remap_rules=[f"{source}:={target}" for source, target in component.remappings],
+        parameters=messages(component.parameters),
+        extra_arguments=messages(component.extra_arguments),
+    )
+
+
+def snake_case(name: str) -> str:
+    """Return the name of a class as a name of a node: ``WordCounter`` is ``word_counter``."""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()

@@ -1,0 +1,335 @@
+"""What launch files in Python start."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode.errors import LaunchFileError
+from aionode.launch import Plan
+
+if TYPE_CHECKING:
+    from tests.launch.conftest import Files
+
+
+def commands(records: list[dict[str, Any]]) -> list[list[Any]]:
+    """Return the command lines."""
+    return [record["argv"] for record in records if "argv" in record]
+
+
+def test_a_node_gets_its_name_parameters_and_remappings_in_ros_order(files: Files) -> None:
+    """The same command line as ROS's launch builds, so that any node understands it."""
+    records = files.python(
+        """
+        GroupAction([
+            PushRosNamespace('robot'),
+            SetParameter('use_sim_time', True),
+            SetRemap('scan', 'laser'),
+            Node(executable='talker', name='t', arguments=['--fast'],
+                 ros_arguments=['--log-level', 'debug'],
+                 parameters=[{'a': 1, 'b': {'c': [1, 2]}}], remappings=[('chatter', '/c')]),
+        ]),
+        Node(executable='listener'),
+        """
+    )
+
+    assert commands(records) == [
+        [
+            "talker", "--fast", "--ros-args", "--log-level", "debug",
+            "--ros-args", "-r", "__node:=t", "-r", "__ns:=/robot",
+            "-p", "use_sim_time:=True",
+            "--params-file", {"/robot/t": {"ros__parameters": {"a": 1, "b.c": [1, 2]}}},
+            "-r", "scan:=laser", "-r", "chatter:=/c",
+        ],
+        ["listener", "--ros-args"],
+    ]  # fmt: skip
+
+
+def test_a_group_keeps_what_it_sets(files: Files) -> None:
+    """Namespaces, arguments and the environment end with the group, unless it is not scoped."""
+    records = files.python(
+        """
+        SetLaunchConfiguration('x', '1'),
+        GroupAction([SetLaunchConfiguration('x', '2'), SetEnvironmentVariable('INNER', 'yes')]),
+        GroupAction([SetLaunchConfiguration('y', '3')], scoped=False),
+        ExecuteProcess(cmd=['echo', LaunchConfiguration('x'), LaunchConfiguration('y')]),
+        """
+    )
+
+    assert commands(records) == [["echo", "1", "3"]]
+    assert "INNER" not in records[0]["env"]
+
+
+def test_only_the_process_gets_a_variable(files: Files, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A launch file changes what it starts, and not the process that reads it."""
+    monkeypatch.setenv("PATHS", "a")
+    records = files.python(
+        """
+        AppendEnvironmentVariable('PATHS', 'b'),
+        AppendEnvironmentVariable('PATHS', 'c', prepend=True),
+        ExecuteProcess(cmd=['env'], additional_env={'MORE': EnvironmentVariable('PATHS')}),
+        """
+    )
+
+    assert records[0]["env"] == {"PATHS": "c:a:b", "MORE": "c:a:b"}
+    assert subprocess.os.environ["PATHS"] == "a"  # type: ignore[attr-defined]  # as the process sees it
+
+
+@pytest.mark.parametrize(
+    ("substitution", "text"),
+    [
+        ("PathJoinSubstitution(['/a', 'b', 'c.yaml'])", "/a/b/c.yaml"),
+        ("PathSubstitution('/a') / 'b'", "/a/b"),
+        ("PythonExpression([\"'\", LaunchConfiguration('x'), \"' == '5'\"])", "True"),
+        ("PythonExpression(['round(pi, 2)'])", "3.14"),
+        ("EnvironmentVariable('NOT_THERE', default_value='d')", "d"),
+        ("LaunchConfiguration('none', default=['a', 'b'])", "ab"),
+        ("EqualsSubstitution(LaunchConfiguration('x'), 5.0)", "true"),
+        ("NotEqualsSubstitution('a', 'b')", "true"),
+        ("AndSubstitution('true', NotSubstitution('true'))", "false"),
+        ("OrSubstitution('false', '1')", "true"),
+        ("AnySubstitution('false', 'false')", "false"),
+        ("AllSubstitution('true', 'true')", "true"),
+        ("IfElseSubstitution('true', 'a', 'b')", "a"),
+        ("Command(['printf hello'])", "hello"),
+        ("TextSubstitution(text='t')", "t"),
+        ("StringJoinSubstitution(['a', 'b'], delimiter='-')", "a-b"),
+    ],
+)
+def test_a_substitution_becomes_a_text(files: Files, substitution: str, text: str) -> None:
+    """Each kind, as ROS's launch evaluates it."""
+    records = files.python(
+        f"SetLaunchConfiguration('x', '5'), ExecuteProcess(cmd=['echo', {substitution}]),"
+    )
+
+    assert commands(records) == [["echo", text]]
+
+
+def test_a_condition_leaves_an_action_out(files: Files) -> None:
+    """Of all kinds of conditions."""
+    records = files.python(
+        """
+        DeclareLaunchArgument('sim', default_value='true'),
+        ExecuteProcess(cmd=['a'], condition=IfCondition(LaunchConfiguration('sim'))),
+        ExecuteProcess(cmd=['b'], condition=UnlessCondition(LaunchConfiguration('sim'))),
+        ExecuteProcess(cmd=['c'], condition=LaunchConfigurationEquals('sim', 'true')),
+        ExecuteProcess(cmd=['d'], condition=LaunchConfigurationNotEquals('sim', 'true')),
+        """
+    )
+
+    assert commands(records) == [["a"], ["c"]]
+
+
+def test_an_included_file_gets_its_arguments_and_knows_its_place(files: Files) -> None:
+    """Also a file in another language; the including file knows its own place again."""
+    files.write(
+        "sub/inner.launch.xml",
+        """
+        <launch>
+          <arg name="robot"/>
+          <executable cmd="echo $(var robot) $(dirname)"/>
+        </launch>
+        """,
+    )
+    records = files.python(
+        """
+        IncludeLaunchDescription([ThisLaunchFileDir(), '/sub/inner.launch.xml'],
+                                 launch_arguments={'robot': 'r1'}.items()),
+        ExecuteProcess(cmd=['echo', ThisLaunchFileDir()]),
+        """
+    )
+
+    folder = str(files.folder)
+    assert commands(records) == [["echo", "r1", f"{folder}/sub"], ["echo", folder]]
+
+
+def test_timers_and_event_handlers_are_part_of_the_plan(files: Files) -> None:
+    """Each says when it does what it does, also one inside another."""
+    records = files.python(
+        """
+        first := Node(executable='talker', name='talker'),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[
+            TimerAction(period=2.5, actions=[ExecuteProcess(cmd=['next'])]),
+            EmitEvent(event=ShutdownEvent(reason='over')),
+        ])),
+        RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: None)),
+        """
+    )
+
+    assert [(record["when"], record.get("argv")) for record in records[1:]] == [
+        (["at the exit of talker", "after 2.5 s"], ["next"]),
+        (["at the exit of talker"], None),
+        (["at the shutdown"], None),
+    ]
+
+
+def test_an_opaque_function_sees_the_context_and_returns_actions(files: Files) -> None:
+    """It is called as the file is evaluated, with what was set before it."""
+    records = files.python(
+        "SetLaunchConfiguration('x', '5'), OpaqueFunction(function=more, args=['word']),",
+        imports="""
+        def more(context, word):
+            value = LaunchConfiguration('x').perform(context)
+            return [ExecuteProcess(cmd=['echo', value, word])]
+        """,
+    )
+
+    assert commands(records) == [["echo", "5", "word"]]
+
+
+def test_a_parameter_has_the_type_that_yaml_gives_its_text(files: Files) -> None:
+    """Unless `ParameterValue` says which one it has."""
+    records = files.python(
+        """
+        SetLaunchConfiguration('x', '5'),
+        Node(executable='n', parameters=[{
+            'number': LaunchConfiguration('x'),
+            'text': ParameterValue(LaunchConfiguration('x'), value_type=str),
+            'float': ParameterValue(LaunchConfiguration('x'), value_type=float),
+            'mixed': [1, 2.5],
+        }]),
+        """
+    )
+
+    assert commands(records)[0][-1] == {
+        "/**": {
+            "ros__parameters": {"number": 5, "text": "5", "float": 5.0, "mixed": [1.0, 2.5]},
+        }
+    }
+
+
+def test_an_executable_is_found_in_its_package(files: Files, package: Path) -> None:
+    """Below a prefix of AMENT_PREFIX_PATH, as ROS's tools install it."""
+    records = files.python(
+        "Node(package='robot', executable='driver', arguments=[FindPackageShare('robot')]),"
+    )
+
+    assert records[0]["name"] == "driver-1"
+    assert records[0]["argv"][:2] == [
+        str(package / "lib/robot/driver"),
+        str(package / "share/robot"),
+    ]
+
+
+def test_components_of_a_container_have_their_parameters(files: Files, package: Path) -> None:
+    """A container of classes of aionode needs no process of its own."""
+    (package / "lib" / "robot" / "component_container").write_text("#!/bin/sh\n")
+    (package / "lib" / "robot" / "component_container").chmod(0o755)
+    records = files.python(
+        """
+        ComposableNodeContainer(name='c', namespace='', package='robot',
+            executable='component_container', composable_node_descriptions=[
+                ComposableNode(package='robot', plugin='robot::Talker', name='t',
+                               parameters=[{'a': 1}], remappings=[('x', 'y')])]),
+        ComposableNodeContainer(name='d', namespace='', composable_node_descriptions=[
+            ComposableNode(package='robot', plugin='robot.nodes:Talker', name='t')]),
+        """
+    )
+
+    assert [record.get("plugin") for record in records] == [
+        None,
+        "robot::Talker",
+        "robot.nodes:Talker",
+    ]
+    assert (records[1]["parameters"], records[1]["remappings"]) == ({"a": 1}, ["x:=y"])
+
+
+def test_the_arguments_of_a_file_can_be_listed(files: Files) -> None:
+    """Those of groups and of included files, too."""
+    inner = files.write("inner.launch.yaml", "launch:\n- arg: {name: speed, default: '1.0'}\n")
+    plan = Plan(
+        files.write(
+            "outer.launch.xml",
+            f"""
+            <launch>
+              <arg name="robot" description="Which one"><choice value="a"/><choice value="b"/></arg>
+              <include file="{inner}"/>
+            </launch>
+            """,
+        )
+    )
+
+    assert [(one.name, one.default, one.choices) for one in plan.declared] == [
+        ("robot", None, ("a", "b")),
+        ("speed", "'1.0'", None),
+    ]
+
+
+BAD = {
+    "from launch.actions import Nonsense": (1, "launch.actions has no Nonsense; it has: Action"),
+    "import not_there_at_all": (1, "no module not_there_at_all"),
+    "def generate_launch_description(:": (1, "not valid Python"),
+    "x = 1": (None, "has neither generate_launch_description() nor"),
+    "def generate_launch_description():\n    return 5": (None, "a LaunchDescription fits"),
+    "from launch.actions import LogInfo\nLogInfo()": (
+        2,
+        "missing 1 required keyword-only argument",
+    ),
+}
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_a_bad_file_is_one_error_with_its_line(files: Files, text: str) -> None:
+    """Such an error comes before anything is started."""
+    line, problem = BAD[text]
+    with pytest.raises(LaunchFileError) as caught:
+        Plan(files.write("bad.launch.py", text))
+
+    assert caught.value.line == line
+    assert problem in caught.value.problem
+
+
+BAD_ENTITIES = {
+    "ExecuteProcess(cmd=['a', LaunchConfiguration('nope')])": "'nope' does not exist here",
+    "Node(package='nope', executable='x')": "nope",
+    "DeclareLaunchArgument('x')": "'x' is needed and has no default; add x:=VALUE",
+    "DeclareLaunchArgument('x', default_value='c', choices=['a', 'b'])": "these fit: a, b",
+    "ExecuteProcess(cmd=['a'], condition=IfCondition('maybe'))": "true, 1, false and 0 fit",
+    "Node(executable='n', parameters=[{'a': []}])": "parameter 'a'",
+    "Node(executable='n', name='no/name')": "no/name",
+    "IncludeLaunchDescription('missing.launch.py')": "missing.launch.py",
+    "5": "5",
+}
+
+
+@pytest.mark.parametrize("entity", BAD_ENTITIES)
+def test_a_bad_entity_is_one_error_with_its_line(files: Files, entity: str) -> None:
+    """The line is that of the entity, which is not where the error is noticed."""
+    with pytest.raises(LaunchFileError) as caught:
+        files.python(f"LogInfo(msg='fine'),\n{entity},")
+
+    assert BAD_ENTITIES[entity] in str(caught.value)
+    if entity != "5":
+        assert caught.value.path.endswith(("a.launch.py", "missing.launch.py"))
+        assert caught.value.line is not None
+
+
+def test_a_file_that_includes_itself_is_an_error(files: Files) -> None:
+    """It would never end."""
+    with pytest.raises(LaunchFileError, match="include itself"):
+        files.plan("a.launch.xml", '<launch><include file="$(filename)"/></launch>')
+
+
+def test_reading_a_launch_file_leaves_no_file_beside_it(files: Files) -> None:
+    """The folder may be read-only, or under version control."""
+    files.python("LogInfo(msg='x'),")
+
+    assert [file.name for file in files.folder.iterdir()] == ["a.launch.py"]
+
+
+def test_names_of_launch_are_found_by_programs(tmp_path: Path) -> None:
+    """A program of rclpy, such as a helper of launch files, may import them as well."""
+    program = tmp_path / "program.py"
+    program.write_text("import rclpy, launch, launch_ros.actions\nprint(launch.__name__)\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "aionode.rclpy", str(program)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.stdout.strip() == "aionode.launch._launch", done.stderr
