@@ -18,37 +18,59 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
     from aionode.bag._comparison import Difference, compare
+    from aionode.bag._copy import convert, cut, merge
     from aionode.bag._machine_use import MachineUseWarning
     from aionode.bag._outputs import Outputs
     from aionode.bag._record import Record, TopicInfo
+    from aionode.bag._recorder import Recorder, TopicStats
+    from aionode.bag._repair import Checked, check, reindex
     from aionode.bag._replay import Replay, replay
+    from aionode.bag._selection import Selection
     from aionode.bag._writer import BagWriter
 
 __all__ = [
     "Bag",
     "BagWriter",
+    "Checked",
     "Difference",
     "MachineUseWarning",
     "Outputs",
     "Record",
+    "Recorder",
     "Replay",
+    "Selection",
     "TopicInfo",
+    "TopicStats",
+    "check",
     "compare",
+    "convert",
+    "cut",
+    "merge",
     "open",
+    "reindex",
     "replay",
 ]
 
 PLACES = {
     "Bag": "_bag",
     "BagWriter": "_writer",
+    "Checked": "_repair",
     "Difference": "_comparison",
     "MachineUseWarning": "_machine_use",
     "Outputs": "_outputs",
     "Record": "_record",
+    "Recorder": "_recorder",
     "Replay": "_replay",
+    "Selection": "_selection",
     "TopicInfo": "_record",
+    "TopicStats": "_recorder",
+    "check": "_repair",
     "compare": "_comparison",
+    "convert": "_copy",
+    "cut": "_copy",
+    "merge": "_copy",
     "open": "_bag",
+    "reindex": "_repair",
     "replay": "_replay",
 }
 """The module of each public name, imported on first use: few programs need all of them."""

@@ -13,7 +13,7 @@ import os
 import struct
 import zlib
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import lz4.frame
 import zstandard
@@ -139,6 +139,17 @@ class ChunkWriter:
         return [*pieces, b"".join(small)]
 
 
+class Scanned(Protocol):
+    """What can be used of a file that was not closed; `rest` follows its `end`."""
+
+    end: int
+    rest: bytes
+    spans: list[Span]
+    schemas: dict[int, Schema]
+    channels: dict[int, Channel]
+    metadata: list[MetadataIndex]
+
+
 class McapWriter:
     """One MCAP file of profile ros2, open for writing.
 
@@ -169,7 +180,6 @@ class McapWriter:
         self._channels: dict[int, Channel] = {}
         self._metadata: list[MetadataIndex] = []
         self._chunk = ChunkWriter()
-        self._first_offset = 0
         self._offset = 0
         self._fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         try:
@@ -177,7 +187,33 @@ class McapWriter:
         except BagWriteError:
             self.abandon()
             raise
-        self._first_offset = self._offset
+
+    @classmethod
+    def resume(cls, path: Path, scan: Scanned) -> McapWriter:
+        """Return a file that was not closed, open for writing after its last complete chunk.
+
+        Args:
+            path: The file.
+            scan: What it has.
+
+        Raises:
+            OSError: it cannot be opened.
+            BagWriteError: the disk is full, or fails.
+        """
+        writer = cls.__new__(cls)
+        writer.path, writer.compression, writer.spans = path, "", scan.spans
+        writer._schemas, writer._channels = scan.schemas, scan.channels
+        writer._metadata, writer._chunk = scan.metadata, ChunkWriter()
+        writer.counts = dict.fromkeys(scan.channels, 0)
+        for span in scan.spans:
+            for channel, count in span.counts.items():
+                writer.counts[channel] = writer.counts.get(channel, 0) + count
+        writer._offset = scan.end
+        writer._fd = os.open(path, os.O_WRONLY | os.O_CLOEXEC)
+        os.ftruncate(writer._fd, scan.end)
+        os.lseek(writer._fd, scan.end, os.SEEK_SET)
+        writer._write([scan.rest])
+        return writer
 
     @property
     def size(self) -> int:
@@ -375,6 +411,7 @@ class McapWriter:
         for channel, count in span.counts.items():
             self.counts[channel] -= count
         self._offset = span.index.chunk_start_offset
+        os.lseek(self._fd, self._offset, os.SEEK_SET)
         self._metadata = [entry for entry in self._metadata if entry.offset < self._offset]
         os.ftruncate(self._fd, self._offset)
         return True

@@ -112,9 +112,16 @@ class BagWriter:
             raise BagError(
                 str(path), "this output folder already exists", "give another name, or remove it"
             ) from error
-        (self.path / RESERVE).write_bytes(b"#" * RESERVE_BYTES)
-        self._file = self._new_file()
-        self._write_metadata()
+        except OSError as error:
+            raise BagWriteError(str(path), error.strerror or str(error)) from error
+        try:
+            (self.path / RESERVE).write_bytes(b"#" * RESERVE_BYTES)
+            self._file = self._new_file()
+            self._write_metadata()
+        except BagWriteError:
+            raise
+        except OSError as error:
+            raise BagWriteError(str(path), error.strerror or str(error)) from error
 
     def __enter__(self) -> Self:
         return self

@@ -1,0 +1,126 @@
+"""Copies records from bags into a new one: a piece, several in one, another compression."""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+from aionode.bag._bag import Bag, in_order, open  # noqa: A004  # as in `bag.open(path)`
+from aionode.bag._selection import Selection
+from aionode.bag._writer import BagWriter
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+    from os import PathLike
+
+    from aionode.bag._record import Record
+    from aionode.clock import Duration, Time
+
+__all__ = ["convert", "cut", "merge", "merged_records"]
+
+
+def cut(
+    path: str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    start: Time | Duration | None = None,
+    end: Time | Duration | None = None,
+    topics: Iterable[str] | None = None,
+    **options: Any,
+) -> int:
+    """Copy a piece of a bag, and return how many messages it has.
+
+    Args:
+        path: The bag.
+        out: The folder of the new bag, which must not exist.
+        start: The time of its first message, or how long after the start of the bag that is.
+        end: The time before which it ends, or how long after the start of the bag.
+        topics: The names of its topics; all if not given.
+        options: How it is written, as for `BagWriter`.
+
+    Raises:
+        BagError: the bag cannot be read, has no such topic, or the folder exists.
+        BagWriteError: the disk is full, or fails.
+    """
+    with open(path) as bag:
+        if topics is not None:
+            topics = list(topics)
+        return written(bag.read(topics, start, end), out, bag.custom_data, options)
+
+
+def merge(paths: Iterable[str | PathLike[str]], out: str | PathLike[str], **options: Any) -> int:
+    """Copy several bags into one, in order of time, and return how many messages it has.
+
+    Args:
+        paths: The bags.
+        out: The folder of the new bag, which must not exist.
+        options: How it is written, as for `BagWriter`.
+
+    Raises:
+        BagError: a bag cannot be read, or the folder exists.
+        BagWriteError: the disk is full, or fails.
+    """
+    return convert(paths, out, **options)
+
+
+def convert(
+    paths: Iterable[str | PathLike[str]],
+    out: str | PathLike[str],
+    *,
+    selection: Selection | None = None,
+    start: Time | Duration | None = None,
+    end: Time | Duration | None = None,
+    **options: Any,
+) -> int:
+    """Write bags of any kind anew, as one MCAP bag, and return how many messages it has.
+
+    Args:
+        paths: The bags.
+        out: The folder of the new bag, which must not exist.
+        selection: Which topics it has; all if not given.
+        start: The time of its first message, or how long after the start of each bag that is.
+        end: The time before which it ends, or how long after the start of each bag.
+        options: How it is written, as for `BagWriter`.
+
+    Raises:
+        BagError: a bag cannot be read, or the folder exists.
+        BagWriteError: the disk is full, or fails.
+    """
+    with ExitStack() as stack:
+        bags = [stack.enter_context(open(path)) for path in paths]
+        custom: dict[str, str] = {}
+        for bag in bags:
+            custom |= bag.custom_data
+        records = merged_records(bags, selection, start, end)
+        return written(records, out, custom, options)
+
+
+def merged_records(
+    bags: Iterable[Bag],
+    selection: Selection | None = None,
+    start: Time | Duration | None = None,
+    end: Time | Duration | None = None,
+) -> Iterator[Record]:
+    """Yield the wanted records of several bags in order of time."""
+    streams = []
+    for bag in bags:
+        topics = None
+        if selection is not None:
+            topics = [
+                each.name for each in bag.connections if selection.wants(each.name, each.type)
+            ]
+        streams.append((bag.start_ns, iter(bag.read(topics, start, end))))
+    return in_order(streams)
+
+
+def written(
+    records: Iterable[Record],
+    out: str | PathLike[str],
+    custom_data: dict[str, str],
+    options: dict[str, Any],
+) -> int:
+    """Write records to a new bag."""
+    with BagWriter(out, custom_data=custom_data, **options) as writer:
+        for record in records:
+            writer.write_record(record)
+        return writer.message_count

@@ -1,0 +1,97 @@
+"""Which topics are recorded or played."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from aionode.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Collection
+
+__all__ = ["ACTION_TOPICS", "EVENT_SUFFIX", "Selection", "kind_of"]
+
+EVENT_SUFFIX: Final = "/_service_event"
+ACTION: Final = "/_action/"
+ACTION_TOPICS: Final = (
+    "send_goal/_service_event",
+    "cancel_goal/_service_event",
+    "get_result/_service_event",
+    "feedback",
+    "status",
+)
+"""The topics that show what an action does, below ``<action>/_action/``."""
+
+
+def kind_of(topic: str) -> tuple[str, str]:
+    """Return ``topic``, ``service`` or ``action``, and the name of what a topic belongs to."""
+    if ACTION in topic:
+        return "action", topic.split(ACTION, maxsplit=1)[0]
+    if topic.endswith(EVENT_SUFFIX):
+        return "service", topic.removesuffix(EVENT_SUFFIX)
+    return "topic", topic
+
+
+@dataclass(frozen=True, slots=True)
+class Selection:
+    """Which topics are wanted: with rosbag2's options, and their meaning.
+
+    Attributes:
+        topics: Names of topics.
+        services: Names of services, which are recorded by their introspection events.
+        actions: Names of actions.
+        types: Names of types.
+        regex: What the names of others match that are wanted as well; of topics, services and
+            actions.
+        every: Of which kinds all are wanted: ``topic``, ``service``, ``action``.
+        exclude_regex: What the names match that are not wanted.
+        exclude: Names of topics, services and actions that are not wanted.
+        exclude_types: Names of types that are not wanted.
+        hidden: Whether hidden topics are among all.
+    """
+
+    topics: Collection[str] = ()
+    services: Collection[str] = ()
+    actions: Collection[str] = ()
+    types: Collection[str] = ()
+    regex: str = ""
+    every: Collection[str] = ()
+    exclude_regex: str = ""
+    exclude: Collection[str] = ()
+    exclude_types: Collection[str] = ()
+    hidden: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse what is no regular expression.
+
+        Raises:
+            BagError: it is none.
+        """
+        for text in (self.regex, self.exclude_regex):
+            try:
+                re.compile(text)
+            except re.error as error:
+                raise BagError(text, f"no regular expression: {error}") from error
+
+    def wants(self, topic: str, typename: str) -> bool:
+        """Return whether a topic is wanted."""
+        kind, name = kind_of(topic)
+        named = {"topic": self.topics, "service": self.services, "action": self.actions}[kind]
+        if name in named or topic in self.topics:
+            return True
+        if name in self.exclude or topic in self.exclude or typename in self.exclude_types:
+            return False
+        if self.exclude_regex and re.search(self.exclude_regex, name):
+            return False
+        if typename in self.types:
+            return True
+        if kind == "topic" and not self.hidden and is_hidden(name):
+            return False
+        return kind in self.every or bool(self.regex and re.search(self.regex, name))
+
+
+def is_hidden(name: str) -> bool:
+    """Return whether a part of a name begins with an underscore."""
+    return any(part.startswith("_") for part in name.split("/"))

@@ -1,0 +1,221 @@
+"""The thread that writes a recording, so that the event loop never waits for the disk.
+
+The loop appends rows to a deque, and the thread takes them every 20 ms: one wake-up for many
+messages. Each counter has one writer, so there is no lock.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections import deque
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from aionode.bag._writer import BagWriter
+from aionode.clock import perf_ns
+from aionode.errors import BagWriteError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.bag._record import TopicInfo
+
+__all__ = ["Row", "WriterThread"]
+
+BATCH_S: Final = 0.02
+"""How long the thread sleeps between two looks at what has come, in seconds."""
+
+SYNC_NS: Final = 500_000_000
+"""How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
+the last second, and writing takes time as well."""
+
+
+LEAST_WAITING: Final = 16 << 20
+"""How many bytes may wait for the thread in snapshot mode, however few are kept."""
+
+
+class Row(NamedTuple):
+    """One message on its way to the file.
+
+    Attributes:
+        topic: The number of its topic, as the recorder counts them.
+        time_ns: When it was received, in nanoseconds since 1970.
+        publish_time_ns: When it was published.
+        sequence: Its number, given by its publisher.
+        raw: Its bytes.
+    """
+
+    topic: int
+    time_ns: int
+    publish_time_ns: int
+    sequence: int
+    raw: bytes
+
+
+class WriterThread:
+    """Writes rows to a bag.
+
+    Args:
+        writer: The bag.
+        topics: The topics by number, each with the number of messages that further files begin
+            with; the recorder adds to it.
+        cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
+        snapshot: Whether messages are only kept until somebody asks for a snapshot.
+        on_failure: Called in the thread, once, when nothing can be written any more.
+
+    Attributes:
+        failure: Why nothing is written any more; None while all is well.
+        lost: How many rows of each topic were not written, because the disk was full or failed.
+    """
+
+    def __init__(
+        self,
+        writer: BagWriter,
+        topics: list[tuple[TopicInfo, int]],
+        cache_bytes: int,
+        *,
+        snapshot: bool,
+        on_failure: Callable[[], None],
+    ) -> None:
+        self.failure: BagWriteError | None = None
+        self.lost: dict[int, int] = {}
+        self._writer = writer
+        self._topics = topics
+        self._cache_bytes = cache_bytes
+        self._waiting_bytes = max(cache_bytes, LEAST_WAITING) if snapshot else cache_bytes
+        self._on_failure = on_failure
+        self._rows: deque[Row | Callable[[], None]] = deque()
+        self._put_bytes = 0
+        self._taken_bytes = 0
+        self._written: dict[int, int] = {}
+        self._is_dirty = False
+        self._synced_ns = perf_ns()
+        self._kept: deque[Row] | None = deque() if snapshot else None
+        self._kept_bytes = 0
+        self._latched: dict[int, deque[Row]] = {}
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="aionode-bag-writer", daemon=True)
+        self._thread.start()
+
+    # In the loop
+
+    def put(self, row: Row) -> bool:
+        """Hand a row over, and return whether there was room for it."""
+        size = len(row.raw)
+        if self._rows and self._put_bytes - self._taken_bytes + size > self._waiting_bytes:
+            return False
+        self._put_bytes += size
+        self._rows.append(row)
+        return True
+
+    def call(self, work: Callable[[], None]) -> None:
+        """Have the thread call `work` after it has written the rows that came before."""
+        self._rows.append(work)
+
+    def stop(self) -> None:
+        """Write all rows, close the bag, and wait for both; not in the event loop's thread."""
+        self._stopping.set()
+        self._thread.join()
+
+    # In the thread
+
+    def _run(self) -> None:
+        while not self._stopping.wait(BATCH_S):
+            self._guarded(self._step)
+        self._guarded(self._take_all)
+        try:
+            self._writer.close()
+        except BagWriteError as error:
+            self._fail(error)
+        self._count_lost()
+
+    def _guarded(self, step: Callable[[], None]) -> None:
+        try:
+            step()
+        except BagWriteError as error:
+            self._fail(error)
+        except OSError as error:  # of a file that is removed, or a sync that fails
+            self._fail(BagWriteError(str(self._writer.path), error.strerror or str(error)))
+
+    def _fail(self, error: BagWriteError) -> None:
+        if self.failure is None:
+            self.failure = error
+            self._on_failure()
+
+    def _step(self) -> None:
+        """Take what has come, and see that it is on the disk in time."""
+        if not self._is_dirty:
+            self._synced_ns = perf_ns()
+        self._take_all()
+        if self._is_dirty and perf_ns() - self._synced_ns >= SYNC_NS:
+            self._is_dirty = False
+            self._synced_ns = perf_ns()
+            self._writer.sync()
+
+    def _take_all(self) -> None:
+        rows = self._rows
+        while rows:
+            row = rows.popleft()
+            if not isinstance(row, Row):
+                row()
+                continue
+            self._taken_bytes += len(row.raw)
+            if self.failure is not None:
+                self.lost[row.topic] = self.lost.get(row.topic, 0) + 1
+            elif self._kept is None:
+                self._write(row)
+            else:
+                self._keep(row, self._kept)
+
+    def _write(self, row: Row) -> None:
+        topic, latched_depth = self._topics[row.topic]
+        number = self._writer.add_topic(topic, latched_depth=latched_depth)
+        self._written[row.topic] = self._written.get(row.topic, 0) + 1
+        self._is_dirty = True
+        self._writer.write(
+            number,
+            row.time_ns,
+            row.raw,
+            publish_time_ns=row.publish_time_ns,
+            sequence=row.sequence,
+        )
+
+    def _count_lost(self) -> None:
+        """Count what a full disk has taken back, once the bag is closed."""
+        if self.failure is None:
+            return
+        in_bag = {topic.key: topic.message_count for topic in self._writer.topics}
+        for number, written in self._written.items():
+            missing = written - in_bag.get(self._topics[number][0].key, 0)
+            if missing > 0:
+                self.lost[number] = self.lost.get(number, 0) + missing
+
+    # Snapshots
+
+    def _keep(self, row: Row, kept: deque[Row]) -> None:
+        """Keep a row for a snapshot, and let go of the oldest."""
+        kept.append(row)
+        self._kept_bytes += len(row.raw)
+        while self._kept_bytes > self._cache_bytes and len(kept) > 1:
+            oldest = kept.popleft()
+            self._kept_bytes -= len(oldest.raw)
+            depth = self._topics[oldest.topic][1]
+            if depth:
+                self._latched.setdefault(oldest.topic, deque(maxlen=depth)).append(oldest)
+
+    def write_snapshot(self) -> None:
+        """Write what is kept, after the latched messages before it; only by `call`."""
+        kept, self._kept = self._kept or deque(), deque()
+        self._kept_bytes = 0
+        first_ns = kept[0].time_ns if kept else 0
+        with contextlib.suppress(IndexError):
+            for rows in self._latched.values():
+                for row in rows:
+                    self._write(row._replace(time_ns=first_ns or row.time_ns))
+        for row in kept:
+            self._write(row)
+        self._writer.sync()
+
+    def split(self, time_ns: int) -> None:
+        """Begin a new file; only by `call`."""
+        self._writer.split(time_ns)

@@ -1,0 +1,217 @@
+"""The recorder: what is published is in the bag, or is counted as lost."""
+
+from __future__ import annotations
+
+import resource
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from aionode import bag
+from aionode.bag._recorder import adapted_qos
+from aionode.clock import ClockType, Time
+from aionode.context import Context
+from aionode.errors import BagError, BagWriteError
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.rosbag2_interfaces.srv import IsPaused, Snapshot
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from aionode.testing import local_context, settle
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def texts(path: Path, topic: str = "/words") -> list[str]:
+    """Return the texts of one topic of a bag."""
+    with bag.open(path) as run:
+        return [record.message.data for record in run.read(topic)]
+
+
+async def test_what_is_published_is_in_the_bag(tmp_path: Path) -> None:
+    """Topic by topic, published = recorded + lost."""
+    async with local_context() as context, Node("talker", context=context) as node:
+        words = node.create_publisher(String, "words", 10)
+        async with bag.Recorder(tmp_path / "run", topics=["/words"], context=context) as recorder:
+            for text in "abc":
+                words.publish(String(data=text))
+            await settle()
+            assert recorder.stats["/words"] == (3, 0, 0)
+    assert texts(tmp_path / "run") == ["a", "b", "c"]
+
+
+async def test_a_topic_that_appears_later_is_recorded(tmp_path: Path) -> None:
+    """Robots start their nodes one after the other."""
+    async with (
+        local_context() as context,
+        Node("talker", context=context) as node,
+        bag.Recorder(tmp_path / "run", context=context),
+    ):
+        late = node.create_publisher(String, "late", LATCHED)
+        late.publish(String(data="x"))
+        await settle()
+    assert texts(tmp_path / "run", "/late") == ["x"]
+
+
+async def test_a_message_can_be_recorded_without_being_published(tmp_path: Path) -> None:
+    """A program's own data need not travel."""
+    async with (
+        local_context() as context,
+        bag.Recorder(tmp_path / "run", topics=[], context=context) as recorder,
+    ):
+        recorder.write("/notes", String(data="start"), time=Time(seconds=5))
+    with bag.open(tmp_path / "run") as run:
+        (record,) = run.read()
+        assert record.time == Time(seconds=5, clock_type=ClockType.ROS_TIME)
+
+
+async def test_nothing_is_recorded_while_the_recorder_is_paused(tmp_path: Path) -> None:
+    """rosbag2's service pauses it, as the key does."""
+    async with local_context() as context, Node("talker", context=context) as node:
+        words = node.create_publisher(String, "words", 10)
+        async with bag.Recorder(tmp_path / "run", context=context, start_paused=True) as recorder:
+            words.publish(String(data="a"))
+            await settle()
+            client = node.create_client(IsPaused, "/rosbag2_recorder/is_paused")
+            assert (await client.call(IsPaused.Request())).paused
+            recorder.resume()
+            words.publish(String(data="b"))
+            await settle()
+    assert texts(tmp_path / "run") == ["b"]
+
+
+async def test_a_snapshot_has_the_last_messages_and_the_latched_ones(tmp_path: Path) -> None:
+    """What led to an event is written when it has happened, with the map of that time."""
+    async with local_context() as context, Node("talker", context=context) as node:
+        maps = node.create_publisher(String, "map", LATCHED)
+        words = node.create_publisher(String, "words", 10)
+        async with bag.Recorder(tmp_path / "run", context=context, snapshot=True, cache_bytes=40):
+            maps.publish(String(data="map"))
+            for text in "abcdefgh":
+                words.publish(String(data=text))
+                await settle()
+            client = node.create_client(Snapshot, "/rosbag2_recorder/snapshot")
+            assert (await client.call(Snapshot.Request())).success
+    assert texts(tmp_path / "run", "/map") == ["map"]
+    assert texts(tmp_path / "run")[-1] == "h"
+    assert len(texts(tmp_path / "run")) < 8
+
+
+async def test_messages_that_the_disk_is_too_slow_for_are_counted(tmp_path: Path) -> None:
+    """A recorder without a limit would take the memory of the robot."""
+    async with local_context() as context, Node("talker", context=context) as node:
+        words = node.create_publisher(String, "words", 100)
+        async with bag.Recorder(tmp_path / "run", context=context, cache_bytes=30) as recorder:
+            for _ in range(50):
+                words.publish(String(data="0123456789"))
+            await settle()
+            recorded, _, lost = recorder.stats["/words"]
+            assert recorded + lost == 50
+            assert lost > 0
+    assert len(texts(tmp_path / "run")) == recorded
+
+
+async def test_both_types_of_a_topic_whose_type_changes_are_recorded(tmp_path: Path) -> None:
+    """A node that is started in a new version must not end the recording."""
+    async with (
+        local_context() as context,
+        Node("talker", context=context) as node,
+        bag.Recorder(tmp_path / "run", topics=["/x"], context=context),
+    ):
+        for msg in (String(data="a"), Int32(data=1)):
+            publisher = node.create_publisher(type(msg), "x", LATCHED)
+            publisher.publish(msg)
+            await settle()
+            publisher.destroy()
+    with bag.open(tmp_path / "run") as run:
+        assert [record.message.data for record in run.read()] == ["a", 1]
+
+
+async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:
+    """That is how rosbag2 records services."""
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+
+    async with local_context() as context, Node("adder", context=context) as node:
+        service = node.create_service(AddTwoInts, "add", lambda request, response: response)
+        contents = ServiceIntrospectionState.CONTENTS
+        service.configure_introspection(node.get_clock(), 10, contents)
+        client = node.create_client(AddTwoInts, "add")
+        wanted = bag.Selection(services=["/add"])
+        async with bag.Recorder(tmp_path / "run", selection=wanted, context=context):
+            await client.call(AddTwoInts.Request(a=2))
+            await settle()
+    with bag.open(tmp_path / "run") as run:
+        first = next(iter(run.read("/add/_service_event")))
+        assert first.message.request[0].a == 2
+
+
+async def test_a_folder_that_cannot_be_made_is_one_clear_error(tmp_path: Path) -> None:
+    """Before anything is recorded, and not at the end."""
+    (tmp_path / "file").touch()
+    async with local_context() as context:
+        with pytest.raises(BagWriteError, match="file/run"):
+            async with bag.Recorder(tmp_path / "file" / "run", context=context):
+                pass
+
+
+def test_a_subscription_of_the_recorder_fits_all_publishers() -> None:
+    """It is reliable and transient local only if every publisher is, as in rosbag2."""
+    assert adapted_qos([LATCHED]).durability is DurabilityPolicy.TRANSIENT_LOCAL
+    mixed = adapted_qos([LATCHED, qos_profile_sensor_data])
+    assert mixed.durability is DurabilityPolicy.VOLATILE
+    assert mixed.reliability is ReliabilityPolicy.BEST_EFFORT
+
+
+def test_a_limit_of_files_without_a_limit_of_one_file_is_refused() -> None:
+    """There would never be a second file."""
+    with pytest.raises(BagError, match="max_files"):
+        bag.Recorder("run", max_files=2, context=Context(transport="local"))
+
+
+def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(tmp_path: Path) -> None:
+    """The file may grow to 300 kB; what does not fit is counted as lost, and one line says so."""
+    program = textwrap.dedent("""
+        import asyncio, os, sys
+        from aionode import bag
+        from aionode.errors import BagWriteError
+        from aionode.clock import Time
+        from aionode.interfaces.std_msgs.msg import String
+        from aionode.testing import local_context
+
+        async def main():
+            async with local_context() as context:
+                recorder = bag.Recorder(sys.argv[1], topics=[], context=context)
+                try:
+                    async with recorder:
+                        for at in range(2000):
+                            text = os.urandom(500).hex()
+                            recorder.write("/x", String(data=text), time=Time(nanoseconds=at + 1))
+                            await asyncio.sleep(0.0001)
+                except BagWriteError:
+                    print("stats", *recorder.stats["/x"])
+
+        asyncio.run(main())
+    """)
+
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "run")],
+        preexec_fn=limit,  # no threads here
+        capture_output=True,
+        text=True,
+        timeout=50,
+        check=True,
+    )
+    word, recorded, _, lost = done.stdout.split()[-4:]
+    assert word == "stats"
+    assert int(recorded) + int(lost) == 2000
+    with bag.open(tmp_path / "run") as run:
+        assert run.message_count == len(list(run.read())) == int(recorded) > 0
+    assert done.stderr.count("cannot be written any further") == 1

@@ -1,0 +1,125 @@
+"""Bags after a power cut, and copies of bags."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from mcap.reader import make_reader
+
+from aionode import bag
+from aionode.bag._writer import topic_info
+from aionode.clock import Duration
+from aionode.errors import BagError
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.wire import cdr
+
+
+def record(path: Path, count: int = 3, topic: str = "/words", first_s: int = 1) -> None:
+    """Record texts, a second apart, each in a chunk of its own."""
+    with bag.BagWriter(path) as out:
+        number = out.add_topic(topic_info(topic, String))
+        other = out.add_topic(topic_info("/numbers", Int32))
+        for at in range(count):
+            time_ns = (first_s + at) * 10**9
+            out.write(number, time_ns, cdr.encode(String(data=str(at))))
+            out.write(other, time_ns, cdr.encode(Int32(data=at)))
+            out.flush()
+
+
+def numbers(path: Path) -> list[int]:
+    """Return the numbers that are in a bag."""
+    with bag.open(path) as run:
+        return [each.message.data for each in run.read("/numbers")]
+
+
+def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(tmp_path: Path) -> None:
+    """A power cut ends a file anywhere; only what was not on the disk is lost."""
+    record(tmp_path / "run")
+    file = tmp_path / "run" / "run_0.mcap"
+    whole = file.read_bytes()
+    with file.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    ends = [index.chunk_start_offset + index.chunk_length for index in summary.chunk_indexes]
+    for at in range(ends[0], len(whole)):
+        file.write_bytes(whole[:at])
+        (found,) = bag.check(file)
+        kept = sum(end <= at for end in ends)
+        assert found.messages == 2 * kept, at
+        if at in {ends[0], ends[1] + 5, ends[2], len(whole) - 1}:
+            assert numbers(file) == list(range(kept))
+            with file.open("rb") as stream:
+                read = list(make_reader(stream, validate_crcs=True).iter_messages())
+            assert len(read) == 2 * kept
+
+
+def test_a_tail_of_zeros_is_cut_off(tmp_path: Path) -> None:
+    """Some file systems leave zeros where a power cut interrupted them."""
+    record(tmp_path / "run")
+    file = tmp_path / "run" / "run_0.mcap"
+    whole = file.read_bytes()
+    for at in (len(whole) // 2, len(whole) - 30):
+        file.write_bytes(whole[:at] + bytes(9000))
+        (found,) = bag.check(tmp_path / "run")
+        assert found.repaired
+        assert found.removed_bytes >= 9000
+        assert numbers(tmp_path / "run") == list(range(found.messages // 2))
+
+
+def test_a_bag_without_metadata_gets_new_ones(tmp_path: Path) -> None:
+    """rosbag2 writes them only at the end."""
+    record(tmp_path / "run")
+    (tmp_path / "run" / "metadata.yaml").unlink()
+    with pytest.raises(BagError, match="aionode bag reindex"):
+        bag.open(tmp_path / "run")
+    (found,) = bag.check(tmp_path / "run")
+    assert not found.repaired
+    assert numbers(tmp_path / "run") == [0, 1, 2]
+
+
+def test_a_whole_bag_is_left_as_it_is(tmp_path: Path) -> None:
+    """Checking costs nothing, and changes nothing."""
+    record(tmp_path / "run")
+    before = {file: file.read_bytes() for file in (tmp_path / "run").iterdir()}
+    (found,) = bag.check(tmp_path / "run")
+    assert found == ("run_0.mcap", False, 6, 0)
+    assert before == {file: file.read_bytes() for file in (tmp_path / "run").iterdir()}
+
+
+def test_a_file_that_is_no_mcap_file_is_refused(tmp_path: Path) -> None:
+    """There is nothing to save, and nothing may be destroyed."""
+    file = tmp_path / "x.mcap"
+    file.write_bytes(b"hello, world")
+    with pytest.raises(BagError, match="nothing can be saved"):
+        bag.check(file)
+    assert file.read_bytes() == b"hello, world"
+
+
+def test_a_piece_is_cut_out_of_a_bag(tmp_path: Path) -> None:
+    """Without a YAML file, which rosbag2 wants for that."""
+    record(tmp_path / "run")
+    start, end = Duration(seconds=1), Duration(seconds=2)
+    count = bag.cut(tmp_path / "run", tmp_path / "piece", start=start, end=end, topics=["/words"])
+    assert count == 1
+    with bag.open(tmp_path / "piece") as piece:
+        assert [(r.topic, r.message.data) for r in piece.read()] == [("/words", "1")]
+
+
+def test_bags_are_merged_in_order_of_time(tmp_path: Path) -> None:
+    """Two computers of one robot have recorded at the same time."""
+    record(tmp_path / "one", topic="/one")
+    record(tmp_path / "two", topic="/two", first_s=2)
+    assert bag.merge([tmp_path / "two", tmp_path / "one"], tmp_path / "both") == 12
+    with bag.open(tmp_path / "both") as both:
+        times = [each.time_ns for each in both.read()]
+        assert times == sorted(times)
+        assert both.counts == {"/one": 3, "/two": 3, "/numbers": 6}
+
+
+def test_a_bag_is_converted_to_another_compression(tmp_path: Path) -> None:
+    """The records are the same, byte by byte."""
+    record(tmp_path / "run")
+    wanted = bag.Selection(topics=["/numbers"])
+    bag.convert([tmp_path / "run"], tmp_path / "plain", selection=wanted, compression="none")
+    assert numbers(tmp_path / "plain") == [0, 1, 2]
