@@ -13,6 +13,7 @@ from types import ModuleType
 from typing import Any, Final
 
 from aionode.interfaces import shipped_packages
+from aionode.rclpy._module_names import ALIASES, shared_errors_take_names, take_names
 from aionode.rclpy._reexports import add_names
 from aionode.rclpy._rosidl import (
     add_folder,
@@ -23,28 +24,9 @@ from aionode.rclpy._rosidl import (
     names_in,
 )
 
-__all__ = ["install", "provide"]
+__all__ = ["ALIASES", "install", "provide"]
 
-ALIASES: Final = {
-    "rclpy": "aionode.rclpy",
-    "rosidl_parser": "aionode.rclpy._rosidl_parser",
-    "rosidl_runtime_py": "aionode.rclpy._rosidl_runtime_py",
-    "sensor_msgs_py": "aionode.rclpy._sensor_msgs_py",
-    "ament_index_python": "aionode.rclpy._ament_index_python",
-    "tf2_py": "aionode.rclpy._tf2_py",
-    "tf2_ros": "aionode.rclpy._tf2_ros",
-    "tf2_geometry_msgs": "aionode.rclpy._tf2_geometry_msgs",
-    "tf2_sensor_msgs": "aionode.rclpy._tf2_sensor_msgs",
-    "launch": "aionode.launch._launch",
-    "launch_ros": "aionode.launch._launch_ros",
-    "launch_xml": "aionode.launch._launch_xml",
-    "launch_yaml": "aionode.launch._launch_yaml",
-    "cv_bridge": "aionode.rclpy._cv_bridge",
-    "message_filters": "aionode.rclpy._message_filters",
-    "ros2_numpy": "aionode.rclpy._ros2_numpy",
-    "tf_transformations": "aionode.rclpy._tf_transformations",
-}
-"""The packages of ROS that are packages of aionode; their modules are the same objects."""
+OWN: Final = "aionode.rclpy."
 
 KINDS: Final = ("msg", "srv", "action")
 
@@ -114,6 +96,7 @@ def provide(name: str) -> None:
     """
     if FINDER not in sys.meta_path:
         sys.meta_path.insert(0, FINDER)
+        shared_errors_take_names()
     del sys.modules[name]
     import_module(name)
 
@@ -134,7 +117,7 @@ class AionodeFinder(MetaPathFinder):
             return spec_from_loader(fullname, AliasLoader(own)) if exists(own) else None
         kind, _, module = inside.partition(".")
         if package == "aionode" or package in sys.stdlib_module_names or kind not in ("", *KINDS):
-            return None
+            return load_with_names(fullname, path)
         # A package of the workspace may have messages beside its Python modules.
         if not has_interfaces(package) and not (inside and add_workspace(package)):
             return None if inside else of_workspace(package)
@@ -197,6 +180,27 @@ class AliasLoader(Loader):
         """Undo what the import system has changed: the module keeps its own description."""
         module.__spec__ = self.spec
         add_names()
+        for found in [each for name, each in sys.modules.items() if f"{name}.".startswith(OWN)]:
+            take_names(found)
+
+
+def load_with_names(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
+    """Return how a module of `aionode.rclpy` is loaded, after which its names are those of ROS."""
+    if not fullname.startswith(OWN):
+        return None
+    spec = PathFinder.find_spec(fullname, path)
+    loader = None if spec is None else spec.loader
+    if loader is None:
+        return spec
+    execute = loader.exec_module
+
+    def execute_and_name(module: ModuleType) -> None:
+        execute(module)
+        take_names(module)
+        add_names()
+
+    vars(loader).update(exec_module=execute_and_name)
+    return spec
 
 
 class EmptyLoader(Loader):

@@ -60,6 +60,7 @@ def main(argv: Sequence[str]) -> None:
     """
     folders, is_module, name, arguments = parsed(argv)
     from aionode.rclpy._finder import install  # not to be loaded for a usage text
+    from aionode.rclpy._module_names import shared_errors_take_names
 
     workspace = folders["--workspace"][-1] if folders["--workspace"] else None
     try:
@@ -69,6 +70,7 @@ def main(argv: Sequence[str]) -> None:
     if name == CHECK:
         list_imports(arguments)
     sys.path[:1] = folders["--path"] or sys.path[:1]
+    shared_errors_take_names()
     sys.excepthook = report
     code, module = (of_module if is_module else of_file)(name)
     sys.argv = [str(module.__file__), *arguments]

@@ -200,6 +200,34 @@ def test_a_traceback_shows_the_program_alone(folder: Path) -> None:
     assert lines == TRACEBACK.splitlines()
 
 
+NAMES = """\
+import inspect
+import pickle
+
+import rclpy
+from rclpy._rclpy_pybind11 import RCLError
+
+with rclpy.init():
+    node = rclpy.create_node("node")
+    print(type(node), RCLError, rclpy.node.ParameterDescriptor.__module__)
+    assert pickle.loads(pickle.dumps(type(node))) is type(node)
+    assert inspect.getsource(type(node)).startswith("class Node")
+    node.get_parameter("no")
+"""
+
+
+def test_classes_and_errors_are_shown_by_their_names_in_rclpy(folder: Path) -> None:
+    """Also those of modules that come with others, as that of Node with `create_node`."""
+    (folder / "program.py").write_text(NAMES)
+
+    done = run(folder, "program.py")
+
+    names = "<class 'rclpy.node.Node'> <class 'rclpy._rclpy_pybind11.RCLError'>"
+    assert done.stdout == f"{names} rcl_interfaces.msg._parameter_descriptor\n"
+    error = done.stderr.splitlines()[-1]
+    assert error.startswith("rclpy.exceptions.ParameterNotDeclaredException: ")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX's")
 def test_an_interrupt_that_is_not_caught_ends_by_its_signal(folder: Path) -> None:
     """A shell stops a loop of programs only if it sees the signal."""

@@ -1,5 +1,5 @@
 """Gives access to what rclpy has in its extension module."""
 
-from aionode.rclpy._impl import rclpy_pybind11 as rclpy_implementation
+from aionode.rclpy import _rclpy_pybind11 as rclpy_implementation
 
 __all__ = ["rclpy_implementation"]
