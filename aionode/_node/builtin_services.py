@@ -7,10 +7,10 @@ log messages to the node's event loop.
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from aionode import qos
-from aionode.errors import QueueFullError
+from aionode.errors import QueueFullError, RequestRefusedError
 from aionode.interfaces.rcl_interfaces.msg import (
     Log,
     LoggerLevel,
@@ -20,11 +20,11 @@ from aionode.interfaces.rcl_interfaces.msg import (
 )
 from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
-from aionode.logging import LoggingSeverity, get_logger_level, set_logger_level
+from aionode.logging import get_logger_level, set_logger_level_for_others
 from aionode.parameter import parameter_services
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from aionode._node.endpoints import NodeEndpoints
     from aionode.clock import Clock
@@ -79,12 +79,30 @@ def log_message(event: LogEvent, clock: Clock) -> Log:
     )
 
 
+MOST_LEVELS: Final = 1_000
+"""Maximum loggers in one request."""
+
+
+def refuse_many(loggers: Sequence[object]) -> None:
+    """Refuse a request about more loggers than any tool names.
+
+    Raises:
+        RequestRefusedError: there are more than `MOST_LEVELS`.
+    """
+    if len(loggers) > MOST_LEVELS:
+        raise RequestRefusedError(
+            f"the request has {len(loggers)} loggers, at most {MOST_LEVELS} fit; ask in several "
+            "requests"
+        )
+
+
 def serve_logger_levels(node: NodeEndpoints) -> None:
     """Serve the reading and setting of log levels in this process."""
 
     def get_levels(
         request: GetLoggerLevels.Request, response: GetLoggerLevels.Response
     ) -> GetLoggerLevels.Response:
+        refuse_many(request.names)
         response.levels = [
             LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names
         ]
@@ -93,12 +111,13 @@ def serve_logger_levels(node: NodeEndpoints) -> None:
     def set_levels(
         request: SetLoggerLevels.Request, response: SetLoggerLevels.Response
     ) -> SetLoggerLevels.Response:
+        refuse_many(request.levels)
         response.results = [set_level(wanted) for wanted in request.levels]
         return response
 
     def set_level(wanted: LoggerLevel) -> SetLoggerLevelsResult:
         try:
-            set_logger_level(wanted.name, LoggingSeverity(wanted.level))
+            set_logger_level_for_others(wanted.name, wanted.level)
         except ValueError as error:
             return SetLoggerLevelsResult(successful=False, reason=str(error))
         return SetLoggerLevelsResult(successful=True)

@@ -12,6 +12,7 @@ from aionode.logging._loggers import (
     initialize,
     release_root,
     set_logger_level,
+    set_logger_level_for_others,
     shutdown,
 )
 from aionode.logging._severity import LoggingSeverity, get_logging_severity_from_string
@@ -31,5 +32,6 @@ __all__ = [
     "initialize",
     "release_root",
     "set_logger_level",
+    "set_logger_level_for_others",
     "shutdown",
 ]

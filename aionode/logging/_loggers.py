@@ -16,6 +16,7 @@ from types import FrameType
 from typing import Unpack
 
 from aionode.clock import S_TO_NS, MachineTime
+from aionode.errors import brief
 from aionode.logging._console import (
     ConsoleHandler,
     ConsoleSettings,
@@ -43,6 +44,13 @@ __all__ = [
 DEFAULT_LEVEL = LoggingSeverity.INFO
 ROOT, OWN = "ros", "aionode"
 EVERYTHING = 1  # not 0, which means the level of the root logger in `logging`
+
+MOST_LOGGERS = 1_000
+"""While there are so many loggers in the process, other nodes cannot have more of them made."""
+
+LONGEST_NAME = 256
+"""How many characters the name of a logger has that another node has made: each of its parts makes
+one as well."""
 
 machine = MachineTime()
 caller = sys._getframe  # inspect takes longer for it than the rest of a log call
@@ -165,9 +173,20 @@ class RcutilsLogger:
 
 def standard_logger(name: str) -> logging.Logger:
     """Return the standard library's logger for a ROS name."""
+    return logging.getLogger(standard_name(name))
+
+
+def standard_name(name: str) -> str:
+    """Return what the standard library's logger for a ROS name is called."""
     if name == OWN or name.startswith(f"{OWN}."):
-        return logging.getLogger(name)
-    return logging.getLogger(f"{ROOT}.{name}" if name else ROOT)
+        return name
+    return f"{ROOT}.{name}" if name else ROOT
+
+
+def known_logger(name: str) -> logging.Logger | None:
+    """Return the same if there is one."""
+    found = logging.Logger.manager.loggerDict.get(standard_name(name))
+    return found if isinstance(found, logging.Logger) else None
 
 
 def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> RcutilsLogger:
@@ -205,10 +224,29 @@ def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bo
         logging.getLogger(root).setLevel(level or EVERYTHING)
 
 
+def set_logger_level_for_others(name: str, level: int) -> None:
+    """Set the level of a logger as `set_logger_level`; another node asks for it.
+
+    A logger stays for good, so others can have a limited number of them made.
+
+    Raises:
+        ValueError: `level` is not one of `LoggingSeverity`, or there is no such logger, and its
+            name is too long, or others have had too many made.
+    """
+    is_full = len(logging.Logger.manager.loggerDict) >= MOST_LOGGERS
+    if name and known_logger(name) is None and (is_full or len(name) > LONGEST_NAME):
+        raise ValueError(
+            f"there is no logger {brief(name)}; other nodes can have one made with a name of "
+            f"{LONGEST_NAME} characters at most, and while there are fewer than {MOST_LOGGERS}"
+        )
+    set_logger_level(name, level)
+
+
 def get_logger_level(name: str) -> LoggingSeverity:
     """Return the level set for this logger; UNSET if none was set."""
     initialize()
-    return nearest_severity(standard_logger(name).level)
+    known = known_logger(name)  # one that is made stays for good
+    return LoggingSeverity.UNSET if known is None else nearest_severity(known.level)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:

@@ -11,7 +11,11 @@ from aionode.errors import (
     RequestRefusedError,
 )
 from aionode.interfaces.rcl_interfaces import srv
-from aionode.interfaces.rcl_interfaces.msg import ListParametersResult, SetParametersResult
+from aionode.interfaces.rcl_interfaces.msg import (
+    ListParametersResult,
+    ParameterValue,
+    SetParametersResult,
+)
 from aionode.interfaces.rcl_interfaces.msg import Parameter as ParameterMsg
 from aionode.parameter._value import Parameter
 
@@ -20,8 +24,17 @@ __all__ = ["ParameterService", "parameter_services"]
 MOST_NAMES: Final = 10_000
 """Maximum names or values in one request; `ros2 param dump` asks for all of a node."""
 
+MOST_SET: Final = 2_000
+"""Maximum parameters that one request sets: each is checked, and told to others."""
+
 LARGEST_ANSWER: Final = 2**24
 """Maximum bytes of the values in one answer: a request may repeat a name many times."""
+
+MOST_HELD: Final = 2**26
+"""Maximum bytes of all values of a node after others have set some."""
+
+PARAMETER_BYTES: Final = 500
+"""What a parameter takes besides its value, approximately."""
 
 
 class ParameterService(NamedTuple):
@@ -44,6 +57,7 @@ class Parameters(Protocol):
     def describe_parameters(self, names: Any) -> list[Any]: ...
     def get_parameters(self, names: Any) -> list[Any]: ...
     def get_parameter_types(self, names: Any) -> list[Any]: ...
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Any]: ...
     def list_parameters(self, prefixes: Any, depth: int) -> ListParametersResult: ...
     def set_parameters_atomically(self, parameter_list: Any) -> SetParametersResult: ...
 
@@ -104,9 +118,12 @@ class Answers:
         """Answer describe_parameters."""
         refuse_many(request.names)
         try:
-            response.descriptors = self.parameters.describe_parameters(list(request.names))
+            found = each_once(request.names, self.parameters.describe_parameters)
         except ParameterNotDeclaredException:
-            response.descriptors = []
+            return response
+        sizes = {name: descriptor_size(one) for name, one in found.items()}
+        refuse_large(sum(sizes[name] for name in request.names), "descriptions")
+        response.descriptors = [found[name] for name in request.names]
         return response
 
     def get_values(
@@ -115,16 +132,13 @@ class Answers:
         """Answer get_parameters."""
         refuse_many(request.names)
         try:
-            parameters = self.parameters.get_parameters(list(request.names))
+            found = each_once(request.names, self.parameters.get_parameters)
         except (ParameterNotDeclaredException, ParameterUninitializedException):
-            parameters = []
-        size_bytes = sum(size_of(parameter.value) for parameter in parameters)
-        if size_bytes > LARGEST_ANSWER:
-            raise RequestRefusedError(
-                f"the values have {size_bytes} bytes, at most {LARGEST_ANSWER} fit into an answer; "
-                "ask for fewer parameters at once"
-            )
-        response.values = [parameter.get_parameter_value() for parameter in parameters]
+            return response
+        sizes = {name: size_of(parameter.value) for name, parameter in found.items()}
+        refuse_large(sum(sizes[name] for name in request.names), "values")
+        values = {name: parameter.get_parameter_value() for name, parameter in found.items()}
+        response.values = [values[name] for name in request.names]
         return response
 
     def get_types(
@@ -150,7 +164,8 @@ class Answers:
         self, request: srv.SetParameters.Request, response: srv.SetParameters.Response
     ) -> srv.SetParameters.Response:
         """Answer set_parameters: one by one, in order."""
-        refuse_many(request.parameters)
+        refuse_many(request.parameters, MOST_SET)
+        self._refuse_hoard(request.parameters)
         response.results = [self._set([message]) for message in request.parameters]
         return response
 
@@ -160,9 +175,27 @@ class Answers:
         response: srv.SetParametersAtomically.Response,
     ) -> srv.SetParametersAtomically.Response:
         """Answer set_parameters_atomically: all or none."""
-        refuse_many(request.parameters)
+        refuse_many(request.parameters, MOST_SET)
+        self._refuse_hoard(request.parameters)
         response.result = self._set(request.parameters)
         return response
+
+    def _refuse_hoard(self, messages: list[ParameterMsg]) -> None:
+        """Refuse values beyond what a node keeps; those that are there count as well.
+
+        Raises:
+            RequestRefusedError: they are too large, or too many.
+        """
+        new_bytes = sum(len(each.name) + size_of_message(each.value) for each in messages)
+        held = self.parameters.get_parameters_by_prefix("")
+        held_bytes = sum(
+            PARAMETER_BYTES + len(name) + size_of(each.value) for name, each in held.items()
+        )
+        if new_bytes + PARAMETER_BYTES * len(messages) + held_bytes > MOST_HELD:
+            raise RequestRefusedError(
+                f"the parameters of this node have {held_bytes} bytes, and these {new_bytes}; a "
+                f"node keeps at most {MOST_HELD} that others have set"
+            )
 
     def _set(self, messages: list[ParameterMsg]) -> SetParametersResult:
         try:
@@ -179,16 +212,54 @@ class Answers:
         return result
 
 
-def refuse_many(items: Sequence[object]) -> None:
+def each_once(names: Sequence[str], read: Callable[[Any], list[Any]]) -> dict[str, Any]:
+    """Return what is read for some names, which may repeat."""
+    unique = list(dict.fromkeys(names))
+    return dict(zip(unique, read(unique), strict=True))
+
+
+def refuse_large(size_bytes: int, what: str) -> None:
+    """Refuse an answer that is too large.
+
+    Raises:
+        RequestRefusedError: it has more than `LARGEST_ANSWER` bytes.
+    """
+    if size_bytes > LARGEST_ANSWER:
+        raise RequestRefusedError(
+            f"the {what} have {size_bytes} bytes, at most {LARGEST_ANSWER} fit into an answer; "
+            "ask for fewer parameters at once"
+        )
+
+
+def refuse_many(items: Sequence[object], most: int = MOST_NAMES) -> None:
     """Refuse a request with more items than any tool sends.
 
     Raises:
-        RequestRefusedError: there are more than `MOST_NAMES`.
+        RequestRefusedError: there are more than `most`.
     """
-    if len(items) > MOST_NAMES:
+    if len(items) > most:
         raise RequestRefusedError(
-            f"the request has {len(items)} names, at most {MOST_NAMES} fit; ask in several requests"
+            f"the request has {len(items)} names, at most {most} fit; ask in several requests"
         )
+
+
+def descriptor_size(descriptor: Any) -> int:
+    """Return about how many bytes a descriptor takes in an answer."""
+    texts = descriptor.name, descriptor.description, descriptor.additional_constraints
+    return PARAMETER_BYTES + sum(map(len, texts))
+
+
+def size_of_message(value: ParameterValue) -> int:
+    """Return about how many bytes the value in a request takes."""
+    arrays = (
+        value.string_value,
+        value.byte_array_value,
+        value.bool_array_value,
+        value.integer_array_value,
+        value.double_array_value,
+        value.string_array_value,
+    )
+    return sum(map(size_of, arrays))
 
 
 def size_of(value: object) -> int:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
+from aionode.logging import get_logger_level, set_logger_level_for_others
 from aionode.rclpy._impl import messages as msg
-from aionode.rclpy.logging import get_logger_level, set_logger_level
 
 if TYPE_CHECKING:
     from aionode.rclpy._protocols import NodeLike
 
 __all__ = ["LoggingService"]
+
+
+MOST_LEVELS: Final = 1_000
+"""How many loggers of one request are answered: any node may send any number."""
 
 
 class LoggingService:
@@ -26,20 +30,21 @@ class LoggingService:
         )
 
     def _get_logger_levels(self, request: Any, response: Any) -> Any:
+        names = request.names[:MOST_LEVELS]
         response.levels = [
-            msg.LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names
+            msg.LoggerLevel(name=name, level=int(get_logger_level(name))) for name in names
         ]
         return response
 
     def _set_logger_levels(self, request: Any, response: Any) -> Any:
-        response.results = [set_level(wanted) for wanted in request.levels]
+        response.results = [set_level(wanted) for wanted in request.levels[:MOST_LEVELS]]
         return response
 
 
 def set_level(wanted: Any) -> Any:
     """Set a level, and return the result."""
     try:
-        set_logger_level(wanted.name, wanted.level)
+        set_logger_level_for_others(wanted.name, wanted.level)
     except ValueError:
         return msg.SetLoggerLevelsResult(
             successful=False, reason="Failed reason: Invalid logger level."

@@ -90,6 +90,12 @@ def all_attacks() -> list[Attack]:
             pair(parameter_size=100_000),
         ),
         Attack(
+            "every built-in service, asked for as much as fits into a request",
+            "member",
+            "ask_everything",
+            pair(parameter_size=100),
+        ),
+        Attack(
             "requests that are none", "member", "send_damaged_requests", pair(parameter_size=10)
         ),
         Attack(

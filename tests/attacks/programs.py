@@ -21,8 +21,17 @@ import psutil
 import zenoh  # plays another participant, without aionode
 
 from aionode.graph import EndpointInfo, EndpointKind
-from aionode.interfaces.rcl_interfaces.srv import DescribeParameters, GetParameters
+from aionode.interfaces.rcl_interfaces.msg import Parameter, ParameterValue
+from aionode.interfaces.rcl_interfaces.srv import (
+    DescribeParameters,
+    GetParameters,
+    GetParameterTypes,
+    ListParameters,
+    SetParameters,
+    SetParametersAtomically,
+)
 from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSProfile
 from aionode.transport._local_sessions import announce
 from aionode.transport.ipc import _protocol as protocol
@@ -271,6 +280,33 @@ def ask_and_read_nothing(liar: Liar, seconds: float) -> int:
     return 4
 
 
+def ask_everything(liar: Liar, seconds: float) -> int:
+    """Ask every built-in service for as much as fits into a request."""
+    liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
+    names = ["large"] * 10_000
+    values = [ParameterValue(type=4, string_value=str(number)) for number in range(2_000)]
+    some = [Parameter(name="large", value=value) for value in values]
+    whole = GetTypeDescription.Request(type_name="std_msgs/msg/String", include_type_sources=True)
+    requests = (
+        ("get_parameters", GetParameters, GetParameters.Request(names=names)),
+        ("get_parameter_types", GetParameterTypes, GetParameterTypes.Request(names=names)),
+        ("describe_parameters", DescribeParameters, DescribeParameters.Request(names=names)),
+        ("list_parameters", ListParameters, ListParameters.Request(prefixes=names)),
+        ("set_parameters", SetParameters, SetParameters.Request(parameters=some)),
+        (
+            "set_parameters_atomically",
+            SetParametersAtomically,
+            SetParametersAtomically.Request(parameters=some),
+        ),
+        ("get_type_description", GetTypeDescription, whole),
+    )
+    begun()
+    for number in pace(seconds, 10):
+        service, interface, request = requests[number % len(requests)]
+        liar.ask(f"/talker/{service}", interface, request)
+    return number + 1
+
+
 def ask_largely(liar: Liar, seconds: float) -> int:
     """Send 20 requests of 1 MB a second, and read none of the answers."""
     liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
@@ -474,6 +510,7 @@ PROGRAMS: dict[str, Program] = {
             announce_escapes,
             never_acknowledge,
             flood_topic,
+            ask_everything,
             lie_randomly,
         )
     },

@@ -107,10 +107,10 @@ def tell_rejected(logger: RcutilsLogger, subject: str) -> None:
     logger.info(f"{subject}: goal_callback rejected a goal", throttle_duration_sec=REJECTED_SEC)
 
 
-def tell_full(logger: RcutilsLogger, subject: str, active: int, max_goals: int) -> None:
+def tell_full(logger: RcutilsLogger, subject: str, why: str) -> None:
     """Log that a server rejected a goal, as it has as many as it takes; once a second at most."""
     logger.warning(
-        f"{subject}: rejected a goal, as {active} are active: max_goals={max_goals}",
+        f"{subject}: rejected a goal, as {why}",
         throttle_duration_sec=REJECTED_SEC,
     )
 

@@ -6,6 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from aionode.errors import brief
+from aionode.message._memory_size import memory_size
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection
@@ -55,15 +56,20 @@ class GoalStore(dict[bytes, Any]):
         now_ns: Shows the time that counts.
         limit: How many goals may be active at once, and how many that have ended are kept.
         kept_ns: How long goals are kept after their end; negative for ever.
+        limit_bytes: How much the messages of active goals take at most, and as much those of kept
+            ones; 0 for any. A single one always fits.
 
     Attributes:
         kept_ns: The same.
     """
 
-    def __init__(self, now_ns: Callable[[], int], limit: int, kept_ns: int) -> None:
+    def __init__(
+        self, now_ns: Callable[[], int], limit: int, kept_ns: int, limit_bytes: int = 0
+    ) -> None:
         super().__init__()
         self._now_ns = now_ns
         self._limit = limit
+        self._limit_bytes = limit_bytes
         self.kept_ns = kept_ns
         # When each kept goal is forgotten. All are kept equally long, so the first is due first.
         self._kept: dict[bytes, int] = {}
@@ -73,10 +79,28 @@ class GoalStore(dict[bytes, Any]):
         """How many goals have not ended."""
         return len(self) - len(self._kept)
 
-    @property
-    def is_full(self) -> bool:
-        """Whether no other goal may become active."""
-        return self.active >= self._limit
+    def refusal(self, goal: Any = None) -> str:
+        """Return why no other goal may become active; empty if one may.
+
+        Args:
+            goal: Its message, where messages are weighed.
+        """
+        if self.active >= self._limit:
+            return f"{self.active} are active: max_goals={self._limit}"
+        if goal is None:
+            return ""
+        active = [handle.request for key, handle in self.items() if key not in self._kept]
+        if not active or self._fit([goal, *active]):
+            return ""
+        return (
+            f"more than {self._limit_bytes / 2**20:.3g} MiB of goals would be active: "
+            "AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
+        )
+
+    def _fit(self, goals: list[Any]) -> bool:
+        """Return whether messages of goals take no more than the limit."""
+        size_of = memory_size(type(goals[0])) if self._limit_bytes else None
+        return size_of is None or sum(map(size_of, goals)) <= self._limit_bytes
 
     @property
     def due_ns(self) -> int | None:
@@ -89,6 +113,9 @@ class GoalStore(dict[bytes, Any]):
         if len(self._kept) >= self._limit:
             forgotten = self._forget(next(iter(self._kept)))
         self._kept[goal_id] = self._now_ns() + self.kept_ns
+        if self._limit_bytes:
+            while len(self._kept) > 1 and not self._fit([self[key].request for key in self._kept]):
+                forgotten = self._forget(next(iter(self._kept)))
         return forgotten
 
     def expire(self) -> list[Any]:
@@ -113,11 +140,11 @@ class AlarmedGoalStore(GoalStore):
 
     Args:
         time_base: Whose steady clock counts.
-        limit, kept_ns: As for `GoalStore`.
+        limit, kept_ns, limit_bytes: As for `GoalStore`.
     """
 
-    def __init__(self, time_base: TimeBase, limit: int, kept_ns: int) -> None:
-        super().__init__(time_base.steady_ns, limit, kept_ns)
+    def __init__(self, time_base: TimeBase, limit: int, kept_ns: int, limit_bytes: int = 0) -> None:
+        super().__init__(time_base.steady_ns, limit, kept_ns, limit_bytes)
         self._time_base = time_base
         self._alarm: Alarm | None = None  # for the first, if it waits for its time
 

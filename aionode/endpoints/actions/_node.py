@@ -29,6 +29,10 @@ class ActionContext(Protocol):
     def new_uuid(self) -> bytes:
         """Return the 16 bytes of a new id for a goal."""
 
+    @property
+    def network(self) -> Any:
+        """The settings of the context, with what may wait in a queue."""
+
 
 class ActionNode(Protocol):
     """What an action needs of an `aionode.Node`.

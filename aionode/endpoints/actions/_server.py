@@ -188,9 +188,10 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._offload = offload
         self._checked_result: Callable[[ResultT], ResultT] = snapshotter(self.action_type.Result)
-        self._max_goals = checked_max_goals(max_goals, self._subject)
+        goals_limit = checked_max_goals(max_goals, self._subject)
         timeout_ns = seconds_to_ns(result_timeout, f"{self._subject}: result_timeout")
-        self._goals = AlarmedGoalStore(self._time_base, self._max_goals, timeout_ns)
+        limit_bytes = node.context.network.queue_bytes
+        self._goals = AlarmedGoalStore(self._time_base, goals_limit, timeout_ns, limit_bytes)
         self._status_pace = StatusPace(self._send_status, self._goals)
         self._early_cancels = EarlyCancels(self._time_base)
         kept: dict[str, Any] = {"keep_all": True, "slice_ns": self._callbacks.slice_ns}
@@ -315,7 +316,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_goal(self, request: Any) -> Any:
         response = self.action_type.Impl.SendGoalService.Response()
         goal_id = request.goal_id.uuid.tobytes()
-        if self._is_refused(goal_id) or self._is_too_much():
+        if self._is_refused(goal_id) or self._is_too_much(request.goal):
             return response
         self._client_watch.add(goal_id, self._send_goal._client_gid)
         try:
@@ -339,12 +340,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Return whether the goal is known already, or was cancelled before it came."""
         return goal_id in self._goals or goal_id in self._early_cancels
 
-    def _is_too_much(self) -> bool:
-        """Return whether `max_goals` are active; if so, say why another one is rejected."""
-        if not self._goals.is_full:
-            return False
-        tell_full(self._logger, self._subject, self._goals.active, self._max_goals)
-        return True
+    def _is_too_much(self, goal: GoalT) -> bool:
+        """Return whether there is no room for a goal; if so, say why it is rejected."""
+        if why := self._goals.refusal(goal):
+            tell_full(self._logger, self._subject, why)
+        return bool(why)
 
     async def _welcomes(self, goal: GoalT) -> bool:
         if self._goal_callback is None:

@@ -235,7 +235,6 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 checked_max_goals(max_goals, f"action server {action_name}"),
             )
         self._action_name = action_name
-        self._max_goals = max_goals
         self._goal_handles: dict[bytes, AnyGoalHandle] = {}
         self._result_futures: dict[bytes, Future[Any]] = {}
         self._reasons: dict[bytes, str] = {}  # why goals were aborted
@@ -273,12 +272,10 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
 
     def _is_full(self) -> bool:
         """Return whether `max_goals` are active; if so, say why another one is rejected."""
-        goals = self._handle.goals
-        if not goals.is_full:
-            return False
-        subject = f"action server {self._action_name}"
-        tell_full(self._logger, subject, goals.active, self._max_goals)
-        return True
+        why: str = self._handle.goals.refusal()
+        if why:
+            tell_full(self._logger, f"action server {self._action_name}", why)
+        return bool(why)
 
     def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
         now = self._node.get_clock().now().to_msg()  # its class may be of the other family

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode.action import ActionServer, GoalResponse, GoalStatus
-from aionode.endpoints.actions._goal_store import StatusPace
+from aionode.endpoints.actions._goal_store import GoalStore, StatusPace
 from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import settle
 from tests.support.actions import PlainClient, Worker, uuid_of
 
@@ -119,6 +120,31 @@ async def test_the_limit_is_that_of_goals_which_are_active(node: Node) -> None:
     await client.result(1)
 
     assert (await client.send(3)).accepted
+
+
+class Large:
+    """The handle of a goal whose message is large."""
+
+    def __init__(self, size: int) -> None:
+        self.request = String(data="x" * size)
+
+
+def test_goals_are_limited_in_bytes() -> None:
+    """A thousand active goals of some megabytes each would fill the memory, and so would kept ones.
+
+    A single one always fits.
+    """
+    goals = GoalStore(lambda: 0, limit=10, kept_ns=-1, limit_bytes=10_000)
+    assert not goals.refusal(Large(20_000).request)
+    goals[b"a"] = Large(6_000)
+    assert not goals.refusal(Large(100).request)
+    assert "AIONODE_QUEUE_BYTES" in goals.refusal(Large(6_000).request)
+
+    goals.keep(b"a")
+    assert not goals.refusal(Large(6_000).request)
+    goals[b"b"] = Large(6_000)
+    goals.keep(b"b")
+    assert list(goals) == [b"b"]
 
 
 async def test_a_full_server_says_why_it_rejects_once_a_second(
