@@ -10,6 +10,7 @@ that rules for the topic bind it, and no other context's filters come into it.
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import json
 import re
@@ -22,6 +23,7 @@ from aionode.wire._key_expression import demangle, mangle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
+    from collections.abc import Set as AbstractSet
 
 __all__ = ["ContentFilters", "filter_from_text", "filter_token", "text_of_filter"]
 
@@ -149,12 +151,14 @@ class ContentFilters:
 
     Attributes:
         changes: Incremented whenever a filter is added or removed.
-        on_change: Called then.
+        on_change: Called soon after that with the topics, once for many changes: others decide how
+            many there are.
     """
 
     def __init__(self) -> None:
         self.changes = 0
-        self.on_change: list[Callable[[], None]] = []
+        self.on_change: list[Callable[[AbstractSet[str]], None]] = []
+        self._changed_topics: set[str] = set()
         self._by_subscriber: dict[Subscriber, dict[str, AnnouncedFilter]] = {}
         self._counts: Counter[str] = Counter()  # of all filters, by context
         # Subscriptions that announced more than a subscription may have: they get everything.
@@ -188,7 +192,7 @@ class ContentFilters:
                 del self._by_subscriber[subscriber]
         else:
             return
-        self._changed()
+        self._changed({subscriber.topic})
 
     def _add(self, subscriber: Subscriber, known: dict[str, AnnouncedFilter], text: str) -> bool:
         """Take a well-formed filter, unless there are too many; return whether it counts."""
@@ -213,15 +217,22 @@ class ContentFilters:
     def clear(self) -> None:
         """Forget all filters: the session has ended."""
         if self._by_subscriber:
+            topics = {subscriber.topic for subscriber in self._by_subscriber}
             self._by_subscriber.clear()
             self._counts.clear()
             self._excessive.clear()
-            self._changed()
+            self._changed(topics)
 
-    def _changed(self) -> None:
+    def _changed(self, topics: AbstractSet[str]) -> None:
         self.changes += 1
+        if self.on_change and not self._changed_topics:
+            asyncio.get_running_loop().call_soon(self._tell)
+        self._changed_topics |= topics
+
+    def _tell(self) -> None:
+        topics, self._changed_topics = self._changed_topics, set()
         for listener in self.on_change:
-            listener()
+            listener(topics)
 
     def wanted_by(
         self, topic: str, readers: Mapping[bytes, str], msg_type: type[Any]

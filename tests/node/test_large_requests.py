@@ -95,7 +95,8 @@ async def test_every_built_in_service_bounds_its_answer(context: Context) -> Non
         for srv_type, name, fields, most_bytes in REQUESTS:
             client = peer.create_client(srv_type, f"/robot/{name}")
             call: Any = client.call(srv_type.Request(**fields))
-            (answer,) = await asyncio.gather(call, return_exceptions=True)
+            answers: Any = await asyncio.gather(call, return_exceptions=True)
+            answer = answers[0]
             if most_bytes == REFUSED:
                 assert isinstance(answer, ServiceError), name
                 assert answer.error_type == "RequestRefusedError"

@@ -441,6 +441,22 @@ def test_a_filter_that_does_not_count_has_no_publisher_look_again() -> None:
     assert filters.changes == changes
 
 
+async def test_publishers_look_once_at_many_filters_of_their_topic() -> None:
+    """A look is at all subscriptions: for each of a thousand tokens it would stop the loop."""
+    filters = ContentFilters()
+    looks: list[set[str]] = []
+    filters.on_change.append(lambda topics: looks.append(set(topics)))
+    for number in range(100):
+        announced(filters, gid_of(number), "data = 1")
+    await settle()
+    assert len(looks) == 1
+
+    filters.clear()
+    await settle()
+    assert looks[1] == looks[0]
+    assert len(looks[0]) == 1
+
+
 # What filters of others may cost
 
 

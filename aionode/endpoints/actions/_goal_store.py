@@ -99,7 +99,8 @@ class GoalStore(dict[bytes, Any]):
 
     def _fit(self, goals: list[Any]) -> bool:
         """Return whether messages of goals take no more than the limit."""
-        size_of = memory_size(type(goals[0])) if self._limit_bytes else None
+        kind: Any = type(goals[0])
+        size_of = memory_size(kind) if self._limit_bytes else None
         return size_of is None or sum(map(size_of, goals)) <= self._limit_bytes
 
     @property

@@ -19,6 +19,8 @@ from aionode.transport.ipc._subscription import IpcReader
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport.base import (
@@ -74,9 +76,10 @@ class IpcTransport(Transport):
         """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
         return frozenset(getattr(self.zenoh, "other_domains", ()))
 
-    def _refilter(self) -> None:
+    def _refilter(self, topics: AbstractSet[str]) -> None:
         for writer in self.manager.writers.values():
-            writer.update_filters()
+            if writer.endpoint.name in topics:
+                writer.update_filters()
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder for sockets, or descriptors, over the other transport only."""

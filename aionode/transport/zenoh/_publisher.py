@@ -269,13 +269,14 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
         Args:
             reader: The only one that may have changed; None for all of them.
-            present: Whether it exists.
+            present: Whether it exists; without a reader, whether more than filters has changed.
         """
         history, graph = self._history, self.state.graph
         self.active = self._transient
         self._wants = None
         if graph is not None and self._publisher is not None:
-            self._matched.update(graph, reader, present=present)
+            if present or reader is not None:
+                self._matched.update(graph, reader, present=present)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self.active or self._is_matching or bool(self._matched.participants)

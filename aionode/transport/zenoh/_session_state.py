@@ -33,6 +33,8 @@ from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of
 
 if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
@@ -55,7 +57,10 @@ class ReaderListener(Protocol):
 
     # By position, as every publisher is called for every one of them.
     def __call__(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
-        """Take one that has appeared or vanished; None if all may have changed."""
+        """Take one that has appeared or vanished; None if all may have changed.
+
+        Without either, the readers are the same, and their filters have changed.
+        """
 
 
 class LingeringWriter(Protocol):
@@ -157,7 +162,7 @@ class SessionState:
         self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, dict[ReaderListener, None]] = {}
         self.content_filters = ContentFilters()
-        self.content_filters.on_change.append(self._readers_changed)
+        self.content_filters.on_change.append(self._filters_changed)
         self.has_unannounced_peers = True  # until the other sessions are known
         self._lingered: asyncio.Future[None] | None = None
         self._declarations: dict[Declaration, None] = {}
@@ -297,6 +302,12 @@ class SessionState:
         for updates in list(self.on_reader.values()):
             for update in list(updates):
                 update()
+
+    def _filters_changed(self, topics: AbstractSet[str]) -> None:
+        """Tell the publishers of some topics that the filters of their readers have changed."""
+        for topic in topics:
+            for update in list(self.on_reader.get(topic, ())):
+                update(None, False)
 
     def _acknowledges(self, participant: str) -> None:
         """Tell the publishers of its readers that a context acknowledges."""
