@@ -151,4 +151,4 @@ def is_users(file: str) -> bool:
     """Whether a file belongs to the program: not to aionode, and not to Python's own library."""
     if file.startswith(OWN):
         return f"{os.sep}examples{os.sep}" in file
-    return not file.startswith(("<", LIBRARY)) or "site-packages" in file
+    return not file.startswith(("<frozen", LIBRARY)) or "site-packages" in file

@@ -27,7 +27,6 @@ from aionode.rclpy._rosidl import (
 __all__ = ["ALIASES", "install", "provide"]
 
 OWN: Final = "aionode.rclpy."
-
 KINDS: Final = ("msg", "srv", "action")
 
 

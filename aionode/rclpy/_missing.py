@@ -24,7 +24,6 @@ PURE_PYTHON: Final = """
 
 INSTEAD: Final = {
     "launch_testing": "aionode's fixtures for pytest start nodes in tests",
-    "rosbag2_py": "the distribution rosbags (`pip install rosbags`) reads and writes bags",
     "tf2_kdl": "tf_transformations computes with rotations in numpy",
     "PyKDL": "tf_transformations computes with rotations in numpy",
     "image_geometry": "OpenCV (`pip install opencv-python-headless`) has its functions",

@@ -28,6 +28,7 @@ ALIASES: Final = {
     "cv_bridge": "aionode.rclpy._cv_bridge",
     "message_filters": "aionode.rclpy._message_filters",
     "ros2_numpy": "aionode.rclpy._ros2_numpy",
+    "rosbag2_py": "aionode.rclpy._rosbag2_py",
     "tf_transformations": "aionode.rclpy._tf_transformations",
 }
 """The packages of ROS that are packages of aionode; their modules are the same objects."""

@@ -90,6 +90,7 @@ def test_the_module_of_one_message_is_there() -> None:
         ("cv_bridge.boost.cv_bridge_boost", "cvtColor2"),
         ("message_filters", "ApproximateTimeSynchronizer"),
         ("ros2_numpy", "numpify"),
+        ("rosbag2_py", "SequentialReader"),
         ("ros2_numpy.point_cloud2", "pointcloud2_to_xyz_array"),
         ("ros2_numpy.transformations", "quaternion_from_euler"),
         ("tf_transformations", "euler_from_quaternion"),

@@ -16,7 +16,6 @@ from aionode.rclpy._missing import advice, missing_modules
         ("my_robot_interfaces", "--interfaces FOLDER"),
         ("turtlesim.srv", "--interfaces FOLDER"),
         ("launch_testing.actions", "fixtures for pytest"),
-        ("rosbag2_py", "rosbags"),
         ("ros2topic.api", "PYTHONPATH"),
         ("rqt_gui_py", "where ROS 2 is installed"),
         ("rospy", "ROS 1"),
