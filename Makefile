@@ -16,6 +16,7 @@
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make tf-differential TF2=<folder>   transforms beside those of geometry2's sources, compiled here
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
+#   make system-stress   fifty processes that are killed, hang and print; a hundred starts and stops
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
 #   make quotes    brings the code and the docstrings that the documentation shows up to date
 #   make clean     removes what was made, .venv included
@@ -33,10 +34,10 @@ WORKERS ?= auto
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test stress check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
-	tf-differential soak quotes clean
+	tf-differential system-stress soak quotes clean
 
 help:
-	@sed -n '3,21s/^# *//p' Makefile
+	@sed -n '3,22s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -106,6 +107,9 @@ live: .venv/installed-dev
 
 crowd: .venv/installed-dev
 	$(BIN)/python -m tests.faults.crowd
+
+system-stress: .venv/installed-dev
+	$(BIN)/python -m tests.system
 
 soak: .venv/installed-dev
 	$(BIN)/python benchmarks/soak.py --seconds $(SOAK_SECONDS)

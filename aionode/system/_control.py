@@ -73,8 +73,8 @@ class Control:
         """Publish nothing any more."""
         self._system.log.listeners.remove(self._publish)
 
-    def _publish(self, lines: bytes) -> None:
-        if self._log.get_subscription_count():
+    def _publish(self, lines: bytearray) -> None:
+        if self._log.get_subscription_count() > 0:
             self._log.publish(String(data=lines.decode(errors="replace")))
 
     async def _serve(self, request: SystemCommand.Request) -> SystemCommand.Response:

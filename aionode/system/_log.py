@@ -66,6 +66,7 @@ class SystemLog:
     ) -> None:
         self._stream = sys.stdout if stream is None else stream
         self._descriptor = descriptor_of(self._stream)
+        self._never_blocks = self._descriptor is not None and never_blocks(self._descriptor)
         self._json = json
         is_terminal = self._descriptor is not None and os.isatty(self._descriptor)
         self._color = (
@@ -81,8 +82,9 @@ class SystemLog:
         self._colors: dict[str, int] = {}
         self._unfinished: dict[str, bytes] = {}
         self._last: dict[str, bytes] = {}
-        self._unwritten = bytearray()
-        self.listeners: list[Callable[[bytes], object]] = []
+        self._new = bytearray()  # since the last flush
+        self._unwritten = bytearray()  # what the stream has not taken
+        self.listeners: list[Callable[[bytearray], object]] = []
 
     def add_member(self, name: str) -> None:
         """Reserve a colour and the width of a name, before the first line of it."""
@@ -92,9 +94,13 @@ class SystemLog:
     def note(self, text: str) -> None:
         """Write a line of the system's own."""
         self.write("system", f"{text}\n".encode())
+        self.flush()
 
     def write(self, name: str, output: bytes) -> None:
-        """Write what a member has printed; the rest of a line waits for its end."""
+        """Take what a member has printed; the rest of a line waits for its end.
+
+        The stream gets it at the next `flush`.
+        """
         lines, newline, rest = (self._unfinished.pop(name, b"") + output).rpartition(b"\n")
         if len(rest) > LONGEST_LINE:
             lines, newline, rest = lines + newline + rest, b"\n", b""
@@ -117,46 +123,43 @@ class SystemLog:
 
     def _write_lines(self, name: str, lines: bytes) -> None:
         self._last[name] = (self._last.get(name, b"") + lines[-KEPT_BYTES:] + b"\n")[-KEPT_BYTES:]
-        now_ns = self._time.system_ns()
-        moment = datetime.fromtimestamp(now_ns / 1e9).astimezone()
+        moment = datetime.fromtimestamp(self._time.system_ns() / 1e9)  # noqa: DTZ006  # of here
+        time = moment.isoformat(" ", "milliseconds")
         if self._json:
-            text = records(moment.isoformat(timespec="milliseconds"), name, lines)
+            text = records(moment.astimezone().isoformat(timespec="milliseconds"), name, lines)
         else:
-            text = prefixed(self._prefix(name, moment), lines)
+            text = prefixed(self._prefix(name, time), lines)
         if self._folder is not None:
-            stamp = f"{moment:%Y-%m-%d %H:%M:%S}.{moment.microsecond // 1000:03} ".encode()
-            self._file(name).write(prefixed(stamp, lines))
-        for listener in self.listeners:
-            listener(text)
-        if self._descriptor is None:
-            self._stream.write(text.decode(errors="replace"))
-        else:
-            self._unwritten += text
-            self.flush()
+            self._file(name).write(prefixed(f"{time} ".encode(), lines))
+        self._new += text
 
-    def _prefix(self, name: str, moment: datetime) -> bytes:
-        stamp = f"{moment:%H:%M:%S}.{moment.microsecond // 1000:03}"
+    def _prefix(self, name: str, time: str) -> bytes:
         label = f"{name:>{self._width}} |"
         if self._color:
             label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
-        return f"{stamp} {label} ".encode()
+        return f"{time[len('2026-11-23 ') :]} {label} ".encode()
 
     def flush(self) -> bool:
         """Write what the stream takes without blocking, and return whether that was everything."""
+        new, self._new = self._new, bytearray()
+        if new:
+            for listener in self.listeners:
+                listener(new)
         descriptor = self._descriptor
         if descriptor is None:
+            self._stream.write(new.decode(errors="replace"))
             return True
-        is_file = stat.S_ISREG(os.fstat(descriptor).st_mode)
+        self._unwritten = self._unwritten + new if self._unwritten else new
         while self._unwritten:
-            if not is_file and not accepts(descriptor):
+            if not self._never_blocks and not accepts(descriptor):
                 return False
-            piece = self._unwritten if is_file else self._unwritten[:PIECE]
+            piece = self._unwritten if self._never_blocks else self._unwritten[:PIECE]
             try:
                 written = os.write(descriptor, piece)
             except BlockingIOError:
                 return False
             except OSError:
-                if not is_lost(descriptor) and not is_file:
+                if not is_lost(descriptor) and not self._never_blocks:
                     raise
                 written = len(self._unwritten)  # nobody can read it any more, or the disk is full
             del self._unwritten[:written]
@@ -188,9 +191,15 @@ def descriptor_of(stream: TextIO) -> int | None:
         return None
 
 
+def never_blocks(descriptor: int) -> bool:
+    """Return whether a write never waits for a reader: that of a file, or of the null device."""
+    mode = os.fstat(descriptor).st_mode
+    return stat.S_ISREG(mode) or (stat.S_ISCHR(mode) and not os.isatty(descriptor))
+
+
 def prefixed(prefix: bytes, lines: bytes) -> bytes:
     """Return lines, each with a prefix. One call in C for a megabyte: programs may log a lot."""
-    return prefix + lines.replace(b"\n", b"\n" + prefix) + b"\n"
+    return b"".join((prefix, lines.replace(b"\n", b"\n" + prefix), b"\n"))
 
 
 def records(time: str, name: str, lines: bytes) -> bytes:
@@ -214,12 +223,13 @@ class RotatingFile:
     def __init__(self, path: Path, max_bytes: int, backups: int) -> None:
         self._path, self._max_bytes, self._backups = path, max_bytes, backups
         self._file = path.open("ab", buffering=0)
+        self._size = self._file.tell()
 
     def write(self, text: bytes) -> None:
         """Append whole lines."""
-        if self._file.tell() and self._file.tell() + len(text) > self._max_bytes:
+        if self._size and self._size + len(text) > self._max_bytes:
             self._rotate()
-        self._file.write(text)
+        self._size += self._file.write(text)
 
     def _rotate(self) -> None:
         self._file.close()
@@ -232,6 +242,7 @@ class RotatingFile:
         if not self._backups:
             self._path.unlink()
         self._file = self._path.open("ab", buffering=0)
+        self._size = 0
 
     def close(self) -> None:
         """Close it."""

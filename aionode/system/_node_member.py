@@ -71,6 +71,7 @@ class NodeMember(Member):
                     stopper.cancel()
         except Exception as error:  # noqa: BLE001  # shown in the log and the status
             self.host.log.write(self.name, traceback_text(error).encode())
+            self.host.log.flush()
             return MemberEnd(
                 self.name, failed=True, text=f"failed: {failure_text(error)}", status=1
             )

@@ -14,9 +14,12 @@ if TYPE_CHECKING:
 
 __all__ = ["OutputReader"]
 
-PAUSE_SEC: Final = 0.025
+PAUSE_SEC: Final = 0.04
 """Between two turns, in seconds. A program may write a line at a time, a hundred thousand a second:
 each would wake the loop."""
+
+SMALL_PIPE: Final = 1 << 16
+"""How large a pipe is at first, in bytes."""
 
 LARGE_PIPE: Final = 1 << 20
 """How large a pipe becomes that was full, in bytes: what an ordinary user may ask for."""
@@ -29,7 +32,7 @@ class OutputReader:
     """Reads the pipes of programs into the log.
 
     All pipes are in one epoll, and the event loop watches that: after each turn it does not for
-    25 ms, however many programs print however often. While the log takes no more, nothing is read.
+    40 ms, however many programs print however often. While the log takes no more, nothing is read.
 
     Args:
         log: Where the output goes.
@@ -40,6 +43,7 @@ class OutputReader:
         self._loop = asyncio.get_running_loop()
         self._names: dict[int, str] = {}
         self._epoll = select.epoll()
+        self._large: set[int] = set()  # pipes that were full
         self._pause: asyncio.TimerHandle | None = None
         self._loop.add_reader(self._epoll.fileno(), self._turn)
 
@@ -55,6 +59,8 @@ class OutputReader:
         name = self._names.pop(pipe, None)
         if name is not None:
             self._log.end_line(name)
+            self._log.flush()
+            self._large.discard(pipe)
             with suppress(FileNotFoundError):  # it was at its end
                 self._epoll.unregister(pipe)
         os.close(pipe)
@@ -65,6 +71,7 @@ class OutputReader:
             if self._read(pipe) == 0:
                 with suppress(FileNotFoundError):
                     self._epoll.unregister(pipe)  # at its end; `remove` closes it
+        self._log.flush()
         self._pause = self._loop.call_later(PAUSE_SEC, self._resume)
 
     def _resume(self) -> None:
@@ -76,12 +83,13 @@ class OutputReader:
     def _read(self, pipe: int) -> int | None:
         """Read once, and return how many bytes: 0 at the end of the pipe, None if it is empty."""
         try:
-            output = os.read(pipe, LARGE_PIPE)
+            output = os.read(pipe, LARGE_PIPE if pipe in self._large else SMALL_PIPE)
         except BlockingIOError:
             return None
         if not output:
             return 0
-        if len(output) >= 1 << 16:
+        if len(output) == SMALL_PIPE and pipe not in self._large:
+            self._large.add(pipe)
             with suppress(OSError):  # the user's pipes have a limit
                 fcntl.fcntl(pipe, F_SETPIPE_SZ, LARGE_PIPE)
         self._log.write(self._names[pipe], output)

@@ -12,6 +12,7 @@ from uuid import uuid4
 
 import pytest
 
+from tests.support.peers import isolated_environment
 from tests.system.left import MARK, left
 
 if TYPE_CHECKING:
@@ -58,15 +59,16 @@ class Supervised:
 
     Args:
         text: The program.
+        transport: How its nodes reach others.
     """
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, transport: str = "local") -> None:
         self.mark = uuid4().hex
         self.process = subprocess.Popen(
             [sys.executable, "-c", text],
             stdout=subprocess.PIPE,
             text=True,
-            env={**os.environ, MARK: self.mark, "AIONODE_TRANSPORT": "local"},
+            env={**os.environ, MARK: self.mark, "AIONODE_TRANSPORT": transport},
         )
         self.lines: list[str] = []
 
@@ -76,7 +78,9 @@ class Supervised:
     def __exit__(self, *_: object) -> None:
         self.process.kill()
         self.wait_until_nothing_is_left()
-        self.process.communicate()
+        self.process.wait()
+        assert self.process.stdout is not None
+        self.process.stdout.close()
 
     def wait_for(self, *texts: str) -> None:
         """Read its output until there is a line that ends with each of the texts."""
@@ -107,6 +111,36 @@ def test_whatever_ends_the_supervisor_members_end_in_reverse_order_and_nothing_i
 
     assert file.read_text() == "second first "
     assert status == (-signal.SIGKILL if number == signal.SIGKILL else 3)
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        pytest.param(signal.SIGKILL),
+        pytest.param(signal.SIGINT, marks=pytest.mark.stress),
+    ],
+)
+def test_wheels_get_the_stop_of_their_commander_before_they_are_ended(
+    number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They do not stop by themselves here."""
+    record = tmp_path / "record"
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    monkeypatch.setenv("ROBOT_RECORD", str(record))
+    text = (
+        "from tests.system.robot import supervise\nfrom aionode.system import run\nrun(supervise)"
+    )
+    with Supervised(text, transport="zenoh") as system:
+        system.wait_for("ready")
+        system.wait_for("commander | driving")
+        while not (record.exists() and "0.2" in record.read_text()):
+            threading.Event().wait(0.01)
+        system.process.send_signal(number)
+        system.process.communicate()
+        system.wait_until_nothing_is_left()
+
+    assert record.read_text().split() == ["0.2", "0.0", "end"]
 
 
 def test_a_second_ctrl_c_ends_all_at_once() -> None:

@@ -7,12 +7,22 @@ import os
 import signal
 import sys
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
 from aionode import Context, Node
 from aionode.errors import MemberNotFoundError, NotReadyError
-from aionode.system import NodeExists, ServiceReady, System, SystemLog, TopicPublished
+from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
+from aionode.system import (
+    NodeActive,
+    NodeExists,
+    ServiceReady,
+    System,
+    SystemLog,
+    TopicPublished,
+)
+from aionode.system._limits import Limits, own_cgroup
 from tests.support.waiting import until
 
 FOREVER = ["sleep", "1000"]
@@ -295,3 +305,86 @@ async def test_a_node_that_fails_is_restarted(system: System) -> None:
 
         assert system.status()["beacon"].restarts == 1
         assert any("ZeroDivisionError" in line for line in system.log.last_lines("beacon"))
+
+
+class Camera(LifecycleNode):
+    """A managed node that records its transitions."""
+
+    moves: ClassVar[list[str]] = []
+
+    def on_activate(self, state: State) -> TransitionCallbackReturn:
+        """Record it."""
+        self.moves.append("activate")
+        return super().on_activate(state)
+
+    def on_deactivate(self, state: State) -> TransitionCallbackReturn:
+        """Record it."""
+        self.moves.append("deactivate")
+        return super().on_deactivate(state)
+
+
+async def test_managed_nodes_are_active_when_ready_and_brought_down_before_the_end(
+    system: System,
+) -> None:
+    """What needs them waits for their state, not for their process."""
+    Camera.moves.clear()
+    async with system:
+        system.node("camera", lambda: Camera("camera"), managed="/camera")
+        system.process("viewer", FOREVER, after="camera", ready=NodeActive("/camera", 5.0))
+        await system.ready()
+        assert Camera.moves == ["activate"]
+
+    assert Camera.moves == ["activate", "deactivate"]
+
+
+async def test_limits_that_are_not_allowed_are_named_and_left_out(
+    system: System, output: io.StringIO, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The program runs all the same."""
+    monkeypatch.setattr("aionode.system._limits.own_cgroup", lambda: None)
+    async with system:
+        system.process("greedy", FOREVER, memory_bytes=1_000_000_000, cpu_cores=0.5)
+        await system.ready()
+
+    assert "greedy: runs without its limits (memory.max, cpu.max)" in output.getvalue()
+
+
+def test_limits_are_written_into_a_cgroup_of_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside that of the supervisor, which may have no cgroups with limits below it."""
+    monkeypatch.setattr("aionode.system._limits.own_cgroup", lambda: tmp_path)
+    folder = Limits(1_000_000, 0.5).enter("greedy", SystemLog(io.StringIO()))
+
+    assert folder is not None
+    assert (Path(folder) / "memory.max").read_text() == "1000000"
+    assert (Path(folder) / "cpu.max").read_text() == "50000 100000"
+
+
+def test_the_cgroup_is_found_that_may_have_others_below_it(tmp_path: Path) -> None:
+    """A service with DelegateSubgroup has its own processes one level lower."""
+    (tmp_path / "cgroup.controllers").write_text("cpu memory")
+    membership = tmp_path / "membership"
+    membership.write_text("1:name=systemd:/x\n0::/robot.service/supervisor\n")
+
+    assert own_cgroup(membership, tmp_path) == tmp_path / "robot.service"
+    assert own_cgroup(membership, tmp_path / "none") is None
+
+
+async def test_mistakes_in_a_description_are_refused_with_what_fits(system: System) -> None:
+    """Before anything is started."""
+    with pytest.raises(ValueError, match='use "never", "on-failure" or "always"'):
+        system.process("a", FOREVER, restart="sometimes")  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="use a list"):
+        system.process("a", "sleep 1000")
+    with pytest.raises(TypeError, match="is no fact; use NodeExists"):
+        system.process("a", FOREVER, ready="/odom")  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="the options are min_delay_sec"):
+        system.process("a", FOREVER, requird=True)  # type: ignore[call-arg]
+    with pytest.raises(MemberNotFoundError):
+        system.process("a", FOREVER, after="driver")
+    with pytest.raises(ValueError, match="cannot be imported by a process of its own"):
+        system.node("a", lambda: Beacon(), processes=True)  # noqa: PLW0108  # has no name
+    system.process("a", FOREVER)
+    with pytest.raises(ValueError, match="this name is taken"):
+        system.process("a", FOREVER)
