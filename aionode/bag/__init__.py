@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from aionode.bag._copy import convert, cut, merge
     from aionode.bag._machine_use import MachineUseWarning
     from aionode.bag._outputs import Outputs
+    from aionode.bag._player import Player
     from aionode.bag._record import Record, TopicInfo
     from aionode.bag._recorder import Recorder, TopicStats
     from aionode.bag._repair import Checked, check, reindex
@@ -35,6 +36,7 @@ __all__ = [
     "Difference",
     "MachineUseWarning",
     "Outputs",
+    "Player",
     "Record",
     "Recorder",
     "Replay",
@@ -58,6 +60,7 @@ PLACES = {
     "Difference": "_comparison",
     "MachineUseWarning": "_machine_use",
     "Outputs": "_outputs",
+    "Player": "_player",
     "Record": "_record",
     "Recorder": "_recorder",
     "Replay": "_replay",

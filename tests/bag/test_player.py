@@ -1,0 +1,211 @@
+"""The player: the messages of a bag, at their times."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+from aionode import bag
+from aionode.bag._writer import topic_info
+from aionode.clock import ClockType, Duration, Time
+from aionode.interfaces.rosbag2_interfaces.srv import Burst, GetRate, PlayNext, SetRate
+from aionode.interfaces.rosgraph_msgs.msg import Clock
+from aionode.interfaces.std_msgs.msg import String
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, QoSProfile
+from aionode.testing import ManualClock, local_context, settle
+from aionode.wire import cdr
+
+LATCHED = QoSProfile(depth=9, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def record(path: Path, *texts: str, topic: str = "/words", first_s: int = 100) -> Path:
+    """Record texts, a second apart."""
+    with bag.BagWriter(path) as out:
+        number = out.add_topic(topic_info(topic, String, [LATCHED]))
+        for at, text in enumerate(texts):
+            out.write(number, (first_s + at) * 10**9, cdr.encode(String(data=text)))
+    return path
+
+
+def at(seconds: float) -> Time:
+    """Return a time of the recording."""
+    return Time(seconds=seconds, clock_type=ClockType.ROS_TIME)
+
+
+class Listener:
+    """What arrives on a topic, each with the time at which it came."""
+
+    def __init__(self, node: Node, clock: ManualClock, topic: str = "/words") -> None:
+        self.heard: list[tuple[float, str]] = []
+        began_ns = clock.steady_ns()
+        node.create_subscription(
+            String,
+            topic,
+            lambda msg: self.heard.append(((clock.steady_ns() - began_ns) / 1e9, msg.data)),
+            50,
+        )
+
+    @property
+    def texts(self) -> list[str]:
+        """The texts alone."""
+        return [text for _, text in self.heard]
+
+
+async def reading() -> None:
+    """Let the player's thread read, and everything settle."""
+    for _ in range(3):
+        await settle()
+
+
+async def test_messages_are_played_at_their_times(tmp_path: Path) -> None:
+    """A second of the recording is a second, or half of one at rate 2."""
+    record(tmp_path / "run", "a", "b", "c")
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock)
+        async with (
+            bag.Player(tmp_path / "run", context=context, rate=2) as player,
+            asyncio.TaskGroup() as tasks,
+        ):
+            playing = tasks.create_task(player.play())
+            await reading()
+            assert ear.heard == [(0, "a")]
+            await clock.advance(0.75)
+            assert ear.heard == [(0, "a"), (0.5, "b")]
+            player.set_rate(0.5)
+            await clock.advance(0.9)
+            assert ear.texts == ["a", "b"]
+            await clock.advance(0.2)
+            assert await playing
+            assert ear.texts == ["a", "b", "c"]
+
+
+async def test_a_paused_player_publishes_one_by_one(tmp_path: Path) -> None:
+    """By rosbag2's services, as its users are used to."""
+    record(tmp_path / "run", "a", "b", "c", "d")
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock)
+        async with (
+            bag.Player(tmp_path / "run", context=context, start_paused=True) as player,
+            asyncio.TaskGroup() as tasks,
+        ):
+            playing = tasks.create_task(player.play())
+            await reading()
+            assert ear.texts == []
+            step = node.create_client(PlayNext, "/rosbag2_player/play_next")
+            assert (await step.call(PlayNext.Request())).success
+            assert ear.texts == ["a"]
+            burst = node.create_client(Burst, "/rosbag2_player/burst")
+            assert (await burst.call(Burst.Request(num_messages=2))).actually_burst == 2
+            await settle()
+            assert ear.texts == ["a", "b", "c"]
+            assert (await burst.call(Burst.Request())).actually_burst == 1
+            assert await playing
+
+
+async def test_a_player_seeks_and_goes_on_there(tmp_path: Path) -> None:
+    """Also backward, and not beyond the recording."""
+    record(tmp_path / "run", "a", "b", "c")
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock)
+        async with (
+            bag.Player(tmp_path / "run", context=context) as player,
+            asyncio.TaskGroup() as tasks,
+        ):
+            playing = tasks.create_task(player.play())
+            await reading()
+            assert not player.seek(at(99))
+            assert player.seek(at(102))
+            await reading()
+            assert await playing
+            assert ear.texts == ["a", "c"]
+
+
+async def test_a_player_loops_until_it_is_stopped(tmp_path: Path) -> None:
+    """As for a demonstration."""
+    record(tmp_path / "run", "a", "b")
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock)
+        async with (
+            bag.Player(tmp_path / "run", context=context, loop=True) as player,
+            asyncio.TaskGroup() as tasks,
+        ):
+            playing = tasks.create_task(player.play())
+            for _ in range(3):
+                await reading()
+                await clock.advance(1)
+            await reading()
+            player.stop()
+            assert await playing
+            assert ear.texts[:5] == ["a", "b", "a", "b", "a"]
+
+
+async def test_a_piece_is_played_under_another_name_with_the_clock(tmp_path: Path) -> None:
+    """Offset, duration and remapping belong together, for a test on one scene."""
+    record(tmp_path / "run", "a", "b", "c", "d")
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock, "/replayed")
+        times: list[int] = []
+        node.create_subscription(Clock, "/clock", lambda msg: times.append(msg.clock.sec), 10)
+        async with (
+            bag.Player(
+                tmp_path / "run",
+                context=context,
+                start_offset=Duration(seconds=1),
+                duration=Duration(seconds=2),
+                remap={"/words": "/replayed"},
+                clock_hz=1,
+            ) as player,
+            asyncio.TaskGroup() as tasks,
+        ):
+            playing = tasks.create_task(player.play())
+            await reading()
+            await clock.advance(2)
+            assert await playing
+            assert ear.texts == ["b", "c"]
+            assert times[0] == 102
+
+
+async def test_several_bags_are_played_in_order_of_time(tmp_path: Path) -> None:
+    """They were recorded by several computers of one robot."""
+    paths = [record(tmp_path / "b", "2"), record(tmp_path / "a", "1", first_s=99)]
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock)
+        async with bag.Player(paths, context=context) as player, asyncio.TaskGroup() as tasks:
+            playing = tasks.create_task(player.play())
+            await reading()
+            await clock.advance(1)
+            assert await playing
+            assert ear.texts == ["1", "2"]
+
+
+async def test_publishers_have_the_recorded_qos(tmp_path: Path) -> None:
+    """A late subscription gets the map of the recording, as on the robot."""
+    record(tmp_path / "run", "a")
+    async with local_context() as context, bag.Player(tmp_path / "run", context=context) as player:
+        (publisher,) = [each for each in player.node.publishers if each.topic_name == "/words"]
+        assert publisher.qos_profile == LATCHED.resolved()
+
+
+async def test_a_rate_that_is_not_positive_is_refused(tmp_path: Path) -> None:
+    """Time would stand still or run backward; the service answers so as well."""
+    record(tmp_path / "run", "a")
+    async with (
+        local_context() as context,
+        Node("user", context=context) as node,
+        bag.Player(tmp_path / "run", context=context) as player,
+    ):
+        with pytest.raises(ValueError, match="positive"):
+            player.set_rate(0)
+        client = node.create_client(SetRate, "/rosbag2_player/set_rate")
+        assert not (await client.call(SetRate.Request(rate=-1.0))).success
+        asked = node.create_client(GetRate, "/rosbag2_player/get_rate")
+        assert (await asked.call(GetRate.Request())).rate == 1
