@@ -153,7 +153,7 @@ class Member:
         self.last_end: MemberEnd | None = None
         self.backoff = Backoff(options.min_delay_sec, options.max_delay_sec, name)
         self.clock = SteadyClock()
-        self.run = Run()
+        self.run: Run  # from `start` on, as a member may be added before there is an event loop
         self._stop = asyncio.Event()
         self._work: asyncio.Task[None] | None = None
         self._watch: asyncio.Task[None] | None = None
@@ -171,8 +171,8 @@ class Member:
     # Control
 
     def start(self) -> None:
-        """Start it, unless it runs."""
-        if self._work is None or self._work.done():
+        """Start it, unless it runs, or the system ends."""
+        if not self.host.closing and (self._work is None or self._work.done()):
             self._stop = asyncio.Event()
             self.run = Run()
             self.set_state("waiting")
@@ -295,7 +295,7 @@ class Member:
         self.host.log.note(f"{self.name} {end.text}{then}")
 
     def _ran_sec(self) -> float:
-        since_ns = self.run.since_ns
+        since_ns = self.run.since_ns if self._work is not None else 0
         return (self.clock.now_ns() - since_ns) / S_TO_NS if since_ns else 0.0
 
     def note_running(self, pid: int) -> None:
@@ -357,6 +357,8 @@ class Member:
 
     def is_ready(self) -> bool:
         """Return whether it is ready now."""
+        if self._work is None:
+            return False
         ready = self.run.ready
         return ready.done() and ready.exception() is None
 

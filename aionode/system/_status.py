@@ -50,9 +50,9 @@ class MemberStatus:
         ready: Whether all that was awaited of it has come.
         exit_status: How its last run ended, as a shell has it; None if none has.
         uptime_sec: How long it has been running, in seconds; 0 while it is not.
-        cpu_percent: Of one core, since the last look; None where psutil is missing, or it is
-            unknown.
-        memory_bytes: Its resident memory; None as above.
+        cpu_percent: The share of a core that its first process takes, since the last look; None
+            where psutil is missing, or it is unknown.
+        memory_bytes: Resident memory of its first process; None as above.
         error: Why its last run failed, or why it is not ready, in one line.
     """
 

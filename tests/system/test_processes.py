@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import io
 import os
 import signal
@@ -369,6 +370,32 @@ def test_the_cgroup_is_found_that_may_have_others_below_it(tmp_path: Path) -> No
 
     assert own_cgroup(membership, tmp_path) == tmp_path / "robot.service"
     assert own_cgroup(membership, tmp_path / "none") is None
+
+
+def test_members_may_be_added_before_there_is_an_event_loop(output: io.StringIO) -> None:
+    """They start, in this order, as `async with` is entered."""
+    system = System("early", context=Context(transport="local"), log=SystemLog(output))
+    system.process("first", ["sh", "-c", "echo first"])
+    system.node("second", Beacon)
+    assert not system.health().ok
+    assert [status.state for status in system.status().values()] == ["waiting", "waiting"]
+
+    async def main() -> None:
+        async with system:
+            await system.ready()
+
+    asyncio.run(main())
+    assert "first | first" in output.getvalue()
+
+
+async def test_nothing_starts_while_the_system_ends(system: System) -> None:
+    """A request to restart may come late."""
+    async with system:
+        member = system.process("sleeper", FOREVER)
+        await system.ready()
+    await member.restart()
+
+    assert member.state == "stopped"
 
 
 async def test_mistakes_in_a_description_are_refused_with_what_fits(system: System) -> None:
