@@ -7,6 +7,7 @@ arguments that do not fit and packages that are not there are errors then, with 
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -72,6 +73,7 @@ class Plan:
     ) -> None:
         from aionode.rclpy import install
 
+        self._before = dict(os.environ)  # a file of Python may change it
         around = workspace_of(Path(path)) if workspace is None else Path(workspace)
         install(workspace=around)
         self._packages = Packages(around)
@@ -108,7 +110,7 @@ class Plan:
 
     def records(self) -> Iterator[dict[str, Any]]:
         """Yield what is started, as plain values that can be written as JSON."""
-        return records(self.steps)
+        return records(self.steps, self._before)
 
     def lines(self) -> Iterator[str]:
         """Yield what is started, for readers."""

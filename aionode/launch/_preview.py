@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import shlex
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -25,23 +24,30 @@ from aionode.launch._plan import (
 __all__ = ["records", "text_of"]
 
 
-def records(steps: list[Step], when: tuple[str, ...] = ()) -> Iterator[dict[str, Any]]:
+def records(
+    steps: list[Step], before: Mapping[str, str], when: tuple[str, ...] = ()
+) -> Iterator[dict[str, Any]]:
     """Yield what steps start, in order; timers and event handlers are followed.
 
     Functions of event handlers are named only: they are called when something happens.
+
+    Args:
+        steps: The steps.
+        before: The environment before the launch file was read.
+        when: The events and times that lead to the steps.
     """
     for step in steps:
         match step:
             case Process():
-                yield of_process(step, when)
+                yield of_process(step, before, when)
             case LoadNodes():
                 for component in step.components:
                     yield of_component(step, component, when)
             case Timer():
                 later = evaluate(step.entities, step.context.fork())
-                yield from records(later, (*when, f"after {step.period_sec:g} s"))
+                yield from records(later, before, (*when, f"after {step.period_sec:g} s"))
             case Watch(ends=False):
-                yield from of_handler(step, when)
+                yield from of_handler(step, before, when)
             case Log():
                 yield {"when": list(when), "log": step.text}
             case Emit():
@@ -50,31 +56,29 @@ def records(steps: list[Step], when: tuple[str, ...] = ()) -> Iterator[dict[str,
                 pass
 
 
-def of_handler(step: Watch, when: tuple[str, ...]) -> Iterator[dict[str, Any]]:
+def of_handler(
+    step: Watch, before: Mapping[str, str], when: tuple[str, ...]
+) -> Iterator[dict[str, Any]]:
     """Yield what an event handler does."""
     condition = f"at the {step.handler.describe()}"
     entities = step.handler.known_entities()
     if entities is None:
         yield {"when": [*when, condition], "calls": "a function"}
     else:
-        yield from records(evaluate(entities, step.context.fork()), (*when, condition))
+        later = evaluate(entities, step.context.fork())
+        yield from records(later, before, (*when, condition))
 
 
-def of_process(step: Process, when: tuple[str, ...]) -> dict[str, Any]:
+def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) -> dict[str, Any]:
     """Return what is started as one process."""
     return {
         "when": list(when),
         "name": step.name,
         "argv": [word.content if isinstance(word, ParameterValues) else word for word in step.argv],
-        "env": changed(step.env),
+        "env": {name: value for name, value in step.env.items() if before.get(name) != value},
         "cwd": step.cwd,
         "where": step.where,
     }
-
-
-def changed(env: Mapping[str, str]) -> dict[str, str]:
-    """Return the variables that differ from those of this process."""
-    return {name: value for name, value in env.items() if os.environ.get(name) != value}
 
 
 def of_component(step: LoadNodes, component: Component, when: tuple[str, ...]) -> dict[str, Any]:

@@ -45,6 +45,7 @@ __all__ = ["launch_command"]
     help="The packages that the file names, which need no build; else the workspace around it.",
 )
 @click.option("-d", "--debug", is_flag=True, help="Accepted, as in ros2 launch; changes nothing.")
+@click.option("-n", "--noninteractive", is_flag=True, help="The same.")
 def launch_command(
     file: str,
     arguments: tuple[str, ...],
@@ -56,6 +57,7 @@ def launch_command(
     real: bool,
     workspace: str | None,
     debug: bool,
+    noninteractive: bool,
 ) -> None:
     """Start processes and nodes as a launch file says, and stop them together.
 

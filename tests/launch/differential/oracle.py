@@ -128,7 +128,8 @@ def visit(entity: Any, context: Any) -> None:
         handler = entity.event_handler
         inside = getattr(handler, "_OnActionEventBase__actions_on_event", None)
         if inside is None:
-            inside = getattr(handler, "_BaseEventHandler__entities", None) or handler.entities or ()
+            given = getattr(handler, "_OnShutdown__on_shutdown", ())
+            inside = getattr(handler, "entities", None) or (() if callable(given) else given)
         for inner in inside if isinstance(inside, list | tuple) else [inside]:
             visit(inner, context)
     elif not isinstance(entity, launch.actions.EmitEvent):
