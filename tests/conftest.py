@@ -66,6 +66,7 @@ PROCESSES = (
     "tests/faults/",
     "tests/attacks/",
     "tests/system/",
+    "tests/launch/test_running.py",
     "tests/cli/test_terminal.py",
     "tests/cli/test_ending.py",
     "tests/cli/test_shells.py",

@@ -17,7 +17,7 @@ from aionode._packages import Packages, workspace_of
 from aionode.launch._evaluation import arguments_of, evaluate, load_file, new_context
 from aionode.launch._plan import Step
 from aionode.launch._preview import records, text_of
-from aionode.launch._running import RunningLaunch
+from aionode.launch._running import RunningLaunch, first_of
 from aionode.launch._watch import restart_changed
 
 if TYPE_CHECKING:
@@ -136,19 +136,22 @@ async def run_plan(
         NotReadyError: A node did not come, so that `once_ready` was not run (a TimeoutError).
     """
     running = RunningLaunch(system, waits_for_nodes=once_ready is not None)
-    async with asyncio.TaskGroup() as tasks:
-        beside = [tasks.create_task(note_start(system))]
-        if watch:
-            beside.append(tasks.create_task(restart_changed(system)))
-        if once_ready is not None:
-            beside.append(tasks.create_task(run_once_ready(system, once_ready)))
-        if plan.main is None:
-            await running.run(plan.steps)
-        else:
-            await plan.main(system)
-            await system.wait()
-        for task in beside:
-            task.cancel()
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            beside = [tasks.create_task(note_start(system))]
+            if watch:
+                beside.append(tasks.create_task(restart_changed(system)))
+            if once_ready is not None:
+                beside.append(tasks.create_task(run_once_ready(system, once_ready)))
+            if plan.main is None:
+                await running.run(plan.steps)
+            else:
+                await plan.main(system)
+                await system.wait()
+            for task in beside:
+                task.cancel()
+    except BaseExceptionGroup as group:
+        raise first_of(group) from None
 
 
 async def note_start(system: System) -> None:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from aionode.clock import SteadyClock
-from aionode.errors import LaunchFileError
 from aionode.interfaces.composition_interfaces.srv import LoadNode
 from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState
@@ -46,7 +45,7 @@ from aionode.parameter import Parameter
 if TYPE_CHECKING:
     from aionode.system import Member, System
 
-__all__ = ["RunningLaunch"]
+__all__ = ["RunningLaunch", "first_of"]
 
 
 class RunningLaunch:
@@ -89,8 +88,8 @@ class RunningLaunch:
                     handling.cancel()
                     for task in self._work:
                         task.cancel()
-            except* LaunchFileError as group:
-                raise group.exceptions[0] from None
+            except BaseExceptionGroup as group:
+                raise first_of(group) from None
             finally:
                 if not self._is_shutdown:
                     self._dispatch(Shutdown(reason="the launch ends"))
@@ -176,14 +175,18 @@ class RunningLaunch:
         facts = {"action": step.action, "name": step.name, "cmd": argv}
         facts |= {"cwd": step.cwd, "env": step.env}
         while True:
-            if member.pid is not None and member.pid != pid:
-                pid = member.pid
+            ended = member.last_end if member.last_end is not end else None
+            # A process that ended at once may never have been seen while it ran.
+            ran_unseen = ended is not None and ended.ran_sec > 0 and pid is None
+            if ran_unseen or member.pid not in (None, pid):
+                pid = member.pid or 0
                 step.action.process_details = {"name": step.name, "cmd": argv, "pid": pid}
                 self._events.put_nowait(ProcessStarted(pid=pid, **facts))
-            if member.last_end is not end and member.last_end is not None:
-                end = member.last_end
+            if ended is not None:
+                end = ended
                 step.action.return_code = end.status
                 self._events.put_nowait(ProcessExited(pid=pid or 0, returncode=end.status, **facts))
+                pid = None
             if member.is_over():
                 return
             await self.system._next_change()
@@ -304,6 +307,13 @@ class RunningLaunch:
                 self.system.log.note(f"{container}: {done if response.success else failed}")
         finally:
             client.destroy()
+
+
+def first_of(error: BaseException) -> BaseException:
+    """Return an error of a task group without the group: the first one ended the others."""
+    while isinstance(error, BaseExceptionGroup):
+        error = error.exceptions[0]
+    return error
 
 
 def load_request(component: Component) -> LoadNode.Request:

@@ -40,6 +40,7 @@ from launch.actions import *
 from launch.conditions import *
 from launch.event_handlers import *
 from launch.events import Shutdown as ShutdownEvent
+from launch.events.process import *
 from launch.launch_description_sources import *
 from launch.substitutions import *
 from launch_ros.actions import *

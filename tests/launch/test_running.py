@@ -1,0 +1,223 @@
+"""Launch files that run: what is started when, and what is left."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from aionode import Context
+from aionode.errors import LaunchFileError
+from aionode.launch import Plan, run_plan
+from aionode.system import System, SystemLog
+from tests.launch.conftest import BODY, HEAD
+from tests.support.waiting import until
+
+if TYPE_CHECKING:
+    from tests.launch.conftest import Files
+
+ROOT = Path(__file__).parents[2]
+
+
+class Robot:
+    """A system that runs a launch file, and what it printed."""
+
+    def __init__(self, files: Files) -> None:
+        self.files = files
+        self.output = io.StringIO()
+        context = Context(transport="local")
+        self.system = System("tested", context=context, log=SystemLog(self.output))
+
+    def plan(self, entities: str) -> Plan:
+        """Return the plan of a file in Python with these entities."""
+        text = HEAD + BODY.format(entities=textwrap.dedent(entities))
+        return Plan(self.files.write("a.launch.py", text))
+
+    async def run(self, entities: str) -> list[str]:
+        """Run a file until it is over, and return the texts of the log."""
+        async with self.system:
+            await run_plan(self.plan(entities), self.system)
+        return self.lines()
+
+    def lines(self) -> list[str]:
+        """Return the texts of the log."""
+        return [line.partition(" | ")[2] for line in self.output.getvalue().splitlines()]
+
+
+@pytest.fixture
+def robot(files: Files) -> Robot:
+    """Return a system without network."""
+    return Robot(files)
+
+
+async def test_the_end_of_a_process_starts_the_next_one(robot: Robot) -> None:
+    """An event handler, which may also be a function that gets the exit status."""
+    lines = await robot.run(
+        """
+        first := ExecuteProcess(cmd=['sh', '-c', 'exit 3'], name='first'),
+        second := ExecuteProcess(cmd=['sleep', '1000'], name='second'),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=lambda event, context: [
+            ExecuteProcess(cmd=['echo', f'status {event.returncode}'], name='third'),
+        ])),
+        RegisterEventHandler(OnProcessExit(
+            target_action=lambda action: action not in (first, second),
+            on_exit=[Shutdown(reason='all is done')])),
+        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg='good bye')])),
+        """
+    )
+
+    assert "status 3" in lines
+    assert lines.index("shutdown: all is done") < lines.index("good bye")
+    assert robot.system.exit_status == 3
+
+
+async def test_a_launch_is_over_when_nothing_can_start_any_more(robot: Robot) -> None:
+    """A timer that waits may start something, a process that has ended not."""
+    lines = await robot.run(
+        """
+        ExecuteProcess(cmd=['true'], name='short'),
+        TimerAction(period=0.2, actions=[ExecuteProcess(cmd=['echo', 'later'], name='timed')]),
+        """
+    )
+
+    assert "later" in lines
+
+
+async def test_a_start_is_an_event(robot: Robot) -> None:
+    """Also of a process that ends at once."""
+    lines = await robot.run(
+        """
+        first := ExecuteProcess(cmd=['true'], name='first'),
+        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg='begun')])),
+        """
+    )
+
+    assert "begun" in lines
+
+
+async def test_a_process_reads_its_parameters_from_a_file(robot: Robot) -> None:
+    """The file is gone when the launch is over."""
+    script = robot.files.write(
+        "node.sh", '#!/bin/sh\nfor last; do :; done\ncat "$last"; echo $last'
+    )
+    Path(script).chmod(0o755)
+    lines = await robot.run(f"Node(executable={script!r}, name='n', parameters=[{{'a': [1, 2]}}]),")
+
+    assert "/n:" not in lines
+    assert [line.strip() for line in lines if line.strip() in ("n:", "a:", "- 1", "- 2")]
+    file = next(line for line in lines if line.endswith(".yaml"))
+    assert not Path(file).exists()
+
+
+async def test_a_process_is_signalled_and_stopped_by_events(robot: Robot) -> None:
+    """`SignalProcess` and `ShutdownProcess`, at the processes that a function names."""
+    lines = await robot.run(
+        """
+        first := ExecuteProcess(cmd=['sh', '-c',
+            'trap "exit 7" USR1; echo up; while :; do sleep 0.05; done']),
+        RegisterEventHandler(OnProcessStart(target_action=first, on_start=[
+            TimerAction(period=0.3, actions=[EmitEvent(event=SignalProcess(
+                signal_number='SIGUSR1', process_matcher=matches_action(first)))])])),
+        """
+    )
+
+    assert any("status 7" in line for line in lines)
+
+
+async def test_components_that_are_aionode_classes_run_as_tasks(robot: Robot) -> None:
+    """A container of them needs no process."""
+    plan = robot.plan(
+        """
+        ComposableNodeContainer(name='c', namespace='', composable_node_descriptions=[
+            ComposableNode(package='', plugin='aionode.examples.pubsub:Talker', name='talker'),
+            ComposableNode(package='', plugin='aionode.examples.pubsub:Listener', name='ear',
+                           namespace='robot')]),
+        """
+    )
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(plan, system))
+        await until(lambda: len(system.status()) == 2)
+        await system.ready()
+        names = set(system.graph_node.get_node_names_and_namespaces())
+        running.cancel()
+
+    assert {("talker", "/"), ("ear", "/robot")} <= names
+
+
+async def test_an_error_in_an_event_handler_ends_the_launch(robot: Robot) -> None:
+    """It is the error of the launch file, with its line."""
+    with pytest.raises(LaunchFileError, match="'nope' does not exist"):
+        await robot.run(
+            """
+            first := ExecuteProcess(cmd=['true']),
+            ExecuteProcess(cmd=['sleep', '1000']),
+            RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[
+                LogInfo(msg=LaunchConfiguration('nope'))])),
+            """
+        )
+
+
+async def test_a_file_may_describe_its_system_itself(robot: Robot) -> None:
+    """Without the names of launch."""
+    path = robot.files.write(
+        "robot.py",
+        """
+        async def main(system):
+            system.process("hello", ["echo", "from main"])
+        """,
+    )
+    async with robot.system as system:
+        await run_plan(Plan(path), system)
+
+    assert "from main" in robot.lines()
+
+
+def test_the_command_starts_nothing_of_a_bad_file(files: Files) -> None:
+    """The error is one line, and the mark of the first process is not there."""
+    mark = files.folder / "started"
+    path = files.write(
+        "bad.launch.xml",
+        f"""<launch>
+        <executable cmd="touch {mark}"/>
+        <executable cmd="echo $(var nope)"/>
+        </launch>""",
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "aionode", "launch", path],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.returncode != 0
+    assert done.stderr.startswith(f"{path}:3: ExecuteProcess: launch configuration 'nope'")
+    assert len(done.stderr.splitlines()) == 1
+    assert not mark.exists()
+
+
+@pytest.mark.one_loop
+def test_the_robot_of_the_examples_starts_and_leaves_nothing() -> None:
+    """One command, four processes, a table; Ctrl-C ends it in order."""
+    command = [sys.executable, "-m", "aionode", "launch", str(ROOT / "examples/robot.launch.py")]
+    lines: list[str] = []
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        while not any("I heard" in line for line in lines):
+            line = process.stdout.readline()
+            assert line, lines
+            lines.append(line)
+        process.send_signal(signal.SIGINT)
+        lines += process.stdout.read().splitlines()
+
+    assert process.returncode in (0, 130)
+    running = [line.partition("running, process ")[2].strip() for line in lines]
+    pids = [pid for pid in running if pid]
+    assert len(pids) == 4, lines
+    assert not [pid for pid in pids if Path(f"/proc/{pid}").exists()]
