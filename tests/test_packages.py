@@ -35,7 +35,7 @@ install(PROGRAMS
   "scripts/drive.sh"
   DESTINATION lib/${PROJECT_NAME}
 )
-install(PROGRAMS scripts/plan.py DESTINATION lib/${PROJECT_NAME} RENAME planner)
+install(FILES scripts/plan.py DESTINATION lib/${PROJECT_NAME}/ RENAME planner)
 """
 
 

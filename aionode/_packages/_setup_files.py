@@ -11,8 +11,8 @@ from typing import Any, Final
 __all__ = ["entry_points", "scripts"]
 
 INSTALL: Final = re.compile(
-    r"\binstall\s*\(\s*PROGRAMS\s+(?P<files>[^()]*?)\s+DESTINATION\s+\"?lib/(?P<package>[^\s\")]+)"
-    r"\"?(?:\s+RENAME\s+(?P<name>[^\s)]+))?",
+    r"\binstall\s*\(\s*(PROGRAMS|FILES)\s+(?P<files>[^()]*?)\s+"
+    r"DESTINATION\s+\"?lib/(?P<package>[^\s\"/)]+)/?\"?(?:\s+RENAME\s+(?P<name>[^\s)]+))?",
     re.IGNORECASE,
 )
 """``install(PROGRAMS scripts/mover.py DESTINATION lib/${PROJECT_NAME})`` in a CMakeLists.txt."""

@@ -23,7 +23,7 @@ WIDTH = 100
 def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
     """Yield one import, and one for each renamed name, in the order of isort."""
     renamed = sorted(name for name in names if " as " in name)
-    usual = sorted(set(names) - set(renamed), key=import_order)
+    usual = sorted(set(names) - set(renamed), key=lambda name: import_order(name, ignore_case=True))
     if usual:
         line = f"from {module} import {', '.join(usual)}"
         yield from [line] if len(line) <= WIDTH else wrapped(f"from {module} import (", usual, ")")
@@ -31,10 +31,13 @@ def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
         yield f"from {module} import {name}"
 
 
-def import_order(name: str) -> tuple[int, list[str | int]]:
-    """Return the key by which isort sorts names: constants, classes, others; 8 before 16."""
+def import_order(name: str, *, ignore_case: bool = False) -> tuple[int, list[str | int]]:
+    """Return the key by which isort sorts names: constants, classes, others; 8 before 16.
+
+    What is imported is sorted without regard to case, what is exported is not.
+    """
     kind = 0 if name.isupper() and len(name) > 1 else 1 if name[0].isupper() else 2
-    parts = re.findall(r"\d+|\D+", name)
+    parts = re.findall(r"\d+|\D+", name.lower() if ignore_case else name)
     return kind, [int(part) if part.isdigit() else part for part in parts]
 
 

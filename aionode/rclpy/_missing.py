@@ -8,7 +8,7 @@ from typing import Final
 
 __all__ = ["advice", "missing_modules"]
 
-INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)|turtlesim")
+INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)")
 """The names of packages that define messages, services or actions; any author's."""
 
 PURE_PYTHON: Final = """

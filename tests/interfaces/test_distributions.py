@@ -49,7 +49,14 @@ MISSING: dict[str, set[str]] = {
         "geometry_msgs/msg/Pose2D",
     },
 }
-ELSEWHERE = ("test_msgs/", "example_interfaces/")
+ELSEWHERE = (
+    "ackermann_msgs/",
+    "example_interfaces/",
+    "geographic_msgs/",
+    "test_msgs/",
+    "turtlesim/",
+    "vision_msgs/",
+)
 """Packages that rosbags does not carry."""
 
 

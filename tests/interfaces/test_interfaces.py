@@ -22,6 +22,7 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
+from aionode.wire.typehash import type_hash
 from tests.support.strategies import shipped_types
 
 
@@ -73,14 +74,30 @@ def test_an_unknown_name_suggests_what_is_close(name: str, suggestions: tuple[st
 
 
 def test_all_packages_of_ros_are_there() -> None:
-    """26 packages, 259 types."""
-    assert len(shipped_packages()) == 26
-    assert len(shipped_types()) == 259
+    """30 packages, 305 types."""
+    assert len(shipped_packages()) == 30
+    assert len(shipped_types()) == 305
     assert interface_names("std_srvs") == (
         "std_srvs/srv/Empty",
         "std_srvs/srv/SetBool",
         "std_srvs/srv/Trigger",
     )
+
+
+@pytest.mark.parametrize(
+    ("name", "beginning"),
+    [
+        ("ackermann_msgs/msg/AckermannDriveStamped", "48ca7612a08d"),
+        ("geographic_msgs/srv/GetGeoPath", "e0c1a08df29c"),
+        ("turtlesim/action/RotateAbsolute", "08ba6dd83d97"),
+        ("vision_msgs/msg/Detection3DArray", "793f5eab9595"),
+    ],
+)
+def test_types_of_packages_beside_the_standard_ones_meet_those_of_ros(
+    name: str, beginning: str
+) -> None:
+    """Their hashes are those of the definitions of ROS; one wrong field gives another hash."""
+    assert type_hash(get_interface(name)).startswith(f"RIHS01_{beginning}")
 
 
 def test_every_module_lists_its_types() -> None:

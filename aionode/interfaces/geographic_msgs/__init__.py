@@ -1,0 +1,1 @@
+"""Interfaces of geographic_msgs: places, maps and routes on the earth."""

@@ -1,0 +1,1 @@
+"""Interfaces of turtlesim: the turtles of ROS's first tutorials."""

@@ -1,0 +1,1 @@
+"""Interfaces of vision_msgs: objects that were recognized in images and in space."""
