@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode.interfaces.std_msgs.msg import String
+from aionode.bag import BagWriter
+from aionode.clock import Time
+from aionode.interfaces.std_msgs.msg import Float64, String
 from aionode.node import Node
 from aionode.testing import settle
 
@@ -147,3 +149,35 @@ def test_the_fixtures_work_in_each_mode_of_pytest_asyncio_and_beside_it(
     )
     pytester.makepyfile(TEST_OF_A_NODE.format(mark=mark))
     pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=2)
+
+
+GOLDEN = """
+from aionode.interfaces.std_msgs.msg import Float64
+from aionode.node import Node
+
+async def test_it(replay_bag, golden_bag):
+    async with replay_bag("run") as run:
+        node = Node("node")
+        publisher = node.create_publisher(Float64, "/y", 10)
+        node.create_subscription(
+            Float64, "/x", lambda msg: publisher.publish(Float64(data=msg.data * FACTOR)), 10
+        )
+        golden_bag(await run.play(record=["/y"]))
+"""
+
+
+def test_outputs_are_compared_with_a_golden_bag_beside_the_test(pytester: pytest.Pytester) -> None:
+    """It has to be made once; after that, a difference fails the test and is named."""
+    with BagWriter(pytester.path / "run") as writer:
+        writer.write_message("/x", Float64(data=2.0), Time(nanoseconds=1))
+
+    def run(factor: float, *options: str) -> pytest.RunResult:
+        pytester.makepyfile(GOLDEN.replace("FACTOR", str(factor)))
+        return pytester.runpytest_subprocess(
+            "-p", "no:cacheprovider", "-o", "asyncio_mode=auto", *options
+        )
+
+    run(1.0).stdout.fnmatch_lines(["*--update-golden-bags writes it*"])
+    run(1.0, "--update-golden-bags").assert_outcomes(passed=1)
+    run(1.0).assert_outcomes(passed=1)
+    run(1.5).stdout.fnmatch_lines(["*/y at 0.000000 s: data: 3.0 != 2.0*"])

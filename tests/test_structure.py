@@ -38,6 +38,7 @@ SHARED = {
     "aionode.idl._named": "programs of rclpy are started with folders of interfaces",
     "aionode.lifecycle._answers": "managed nodes of rclpy's API give the same answers",
     "aionode.logging._severity": "arguments name severities, and do not log",
+    "aionode.bag._shrinking": "`aionode bag shrink` is its only user",
     "aionode.bag._types": "programs of rosbag2_py write topics by the names of their types",
     "aionode.message._field_types": "the codec compiles the fields of a message",
     "aionode.message._memory_size": "queues add up what their messages take",

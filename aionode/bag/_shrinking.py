@@ -15,13 +15,15 @@ import msgspec
 
 from aionode.bag._bag import open as open_bag
 from aionode.bag._replay import PIECE_VARIABLE, Piece, whole
+from aionode.bag._writer import BagWriter
+from aionode.clock import Time
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Sequence
     from os import PathLike
 
-__all__ = ["Piece", "fails", "shrink"]
+__all__ = ["Piece", "fails", "shrink", "write"]
 
 SHORTEST_NS: Final = 10_000_000
 """Time is not cut any finer than this, in nanoseconds."""
@@ -154,3 +156,17 @@ async def fails(command: Sequence[str], piece: Piece, directory: str | None = No
         await process.wait()
         raise
     return status != 0 and not ("pytest" in " ".join(command) and status in NO_TESTS)
+
+
+def write(piece: Piece, folder: str | PathLike[str]) -> int:
+    """Write a piece as a bag of its own; return how many messages it has.
+
+    Raises:
+        BagError: the folder exists already (a ValueError).
+        BagWriteError: the disk refuses to write (an OSError).
+    """
+    with open_bag(piece.path) as bag, BagWriter(folder) as writer:
+        start, end = Time(nanoseconds=piece.start_ns), Time(nanoseconds=piece.end_ns)
+        for record in bag.read(piece.topics, start, end):
+            writer.write_record(record)
+        return writer.message_count
