@@ -27,6 +27,9 @@ MOST_NAMES: Final = 10_000
 MOST_SET: Final = 2_000
 """Maximum parameters that one request sets: each is checked, and told to others."""
 
+MOST_REPEATED: Final = 1_000
+"""Maximum names in a request that repeats some; else an answer has as many as the node at most."""
+
 LARGEST_ANSWER: Final = 2**24
 """Maximum bytes of the values in one answer: a request may repeat a name many times."""
 
@@ -213,8 +216,17 @@ class Answers:
 
 
 def each_once(names: Sequence[str], read: Callable[[Any], list[Any]]) -> dict[str, Any]:
-    """Return what is read for some names, which may repeat."""
+    """Return what is read for some names, which may repeat if they are few.
+
+    Raises:
+        RequestRefusedError: many are named, and some of them again.
+    """
     unique = list(dict.fromkeys(names))
+    if len(unique) < len(names) and len(names) > MOST_REPEATED:
+        raise RequestRefusedError(
+            f"the request has {len(names)} names, and only {len(unique)} different ones; ask for "
+            f"each once, or for at most {MOST_REPEATED}"
+        )
     return dict(zip(unique, read(unique), strict=True))
 
 

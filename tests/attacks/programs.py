@@ -283,7 +283,7 @@ def ask_and_read_nothing(liar: Liar, seconds: float) -> int:
 def ask_everything(liar: Liar, seconds: float) -> int:
     """Ask every built-in service for as much as fits into a request."""
     liar.endpoints(EndpointKind.SERVER, "/talker/get_parameters")
-    names = ["large"] * 10_000
+    names = ["large"] * 1_000
     values = [ParameterValue(type=4, string_value=str(number)) for number in range(2_000)]
     some = [Parameter(name="large", value=value) for value in values]
     whole = GetTypeDescription.Request(type_name="std_msgs/msg/String", include_type_sources=True)
