@@ -215,6 +215,31 @@ def test_an_executable_is_found_in_its_package(files: Files, package: Path) -> N
     ]
 
 
+def test_an_executable_of_a_workspace_is_found_without_a_build(files: Files) -> None:
+    """Also as the first word of a command; it is called by its name in any case."""
+    files.write("src/robot/package.xml", "<package><name>robot</name></package>")
+    files.write("src/robot/robot/__init__.py", "")
+    files.write(
+        "src/robot/setup.py",
+        """
+        from setuptools import setup
+        setup(entry_points={"console_scripts": ["driver = robot.driver:main"]})
+        """,
+    )
+    records = files.python(
+        """
+        Node(package='robot', executable='driver'),
+        ExecuteProcess(cmd=[ExecutableInPackage(package='robot', executable='driver'), '-v']),
+        ExecuteProcess(cmd=['ls', FindPackageShare('robot').find('robot')]),
+        """
+    )
+
+    assert [record["name"] for record in records] == ["driver-1", "driver-2", "ls-3"]
+    assert "robot.driver:main" in records[0]["argv"]
+    assert records[1]["argv"][-2:] == ["robot.driver:main", "-v"]
+    assert records[2]["argv"][1] == str(files.folder / "src" / "robot")
+
+
 def test_components_of_a_container_have_their_parameters(files: Files, package: Path) -> None:
     """A container of classes of aionode needs no process of its own."""
     (package / "lib" / "robot" / "component_container").write_text("#!/bin/sh\n")

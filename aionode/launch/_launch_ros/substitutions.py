@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 from aionode.launch._launch.launch_context import LaunchContext
@@ -22,19 +23,23 @@ __all__ = [
 ]
 
 
+INDEX = "ament_index_python.packages"
+"""The module that knows packages: that of aionode, which knows the workspace as well."""
+
+
 class FindPackage(Substitution):
     """A folder of a package."""
 
     def __init__(self, package: SomeSubstitutionsType) -> None:
         self.package = normalize_to_list_of_substitutions(package)
 
-    def find(self, package_name: str, context: LaunchContext) -> str:
-        """Return the folder."""
+    def find(self, package_name: str) -> str:
+        """Return the folder; programs call it themselves as well."""
         raise NotImplementedError(f"{type(self).__name__}.find")
 
     def perform(self, context: LaunchContext) -> str:
         """Return the folder."""
-        return self.find(perform_substitutions(context, self.package), context)
+        return self.find(perform_substitutions(context, self.package))
 
     def describe(self) -> str:
         """Return which package it is."""
@@ -44,18 +49,17 @@ class FindPackage(Substitution):
 class FindPackagePrefix(FindPackage):
     """The folder into which a package was installed."""
 
-    def find(self, package_name: str, context: LaunchContext) -> str:
+    def find(self, package_name: str) -> str:
         """Return the folder."""
-        packages = context.packages
-        return str(packages.sources().get(package_name) or packages.prefix(package_name))
+        return str(import_module(INDEX).get_package_prefix(package_name))
 
 
 class FindPackageShare(FindPackage):
     """The folder with the data of a package."""
 
-    def find(self, package_name: str, context: LaunchContext) -> str:
+    def find(self, package_name: str) -> str:
         """Return the folder."""
-        return str(context.packages.share(package_name))
+        return str(import_module(INDEX).get_package_share_directory(package_name))
 
 
 class ExecutableInPackage(Substitution):
@@ -65,11 +69,26 @@ class ExecutableInPackage(Substitution):
         self.executable = normalize_to_list_of_substitutions(executable)
         self.package = normalize_to_list_of_substitutions(package)
 
+    def names(self, context: LaunchContext) -> tuple[str, str]:
+        """Return the names of the package and of the executable."""
+        return (
+            perform_substitutions(context, self.package),
+            perform_substitutions(context, self.executable),
+        )
+
+    def command(self, context: LaunchContext) -> list[str]:
+        """Return the command that starts it."""
+        return context.packages.command(*self.names(context))
+
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
-        executable = perform_substitutions(context, self.executable)
-        package = perform_substitutions(context, self.package)
-        return context.packages.executable(package, executable).target
+        found = context.packages.executable(*self.names(context))
+        if found.root is not None:
+            raise SubstitutionFailure(
+                f"{found.name} of {found.package} is a function, {found.target}, until the package "
+                "is built; it has no path, and fits as the first word of a command"
+            )
+        return found.target
 
 
 class Parameter(Substitution):

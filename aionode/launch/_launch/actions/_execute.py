@@ -63,11 +63,16 @@ class ExecuteLocal(Action):
 
     def executable_words(self, context: LaunchContext) -> list[str]:
         """Return the program and its arguments."""
-        return [perform_substitutions(context, word) for word in self.process_description.cmd]
+        first, *rest = self.process_description.cmd
+        # An executable of a package that is not built is a command, and not a path.
+        command = getattr(first[0], "command", None) if len(first) == 1 else None
+        words = command(context) if callable(command) else [perform_substitutions(context, first)]
+        return [*words, *(perform_substitutions(context, word) for word in rest)]
 
-    def program_name(self, words: list[str]) -> str:
+    def program_name(self, context: LaunchContext, words: list[str]) -> str:
         """Return the name of the program, by which the process is called."""
-        return Path(words[0]).name
+        names = getattr(self.process_description.cmd[0][0], "names", None)
+        return str(names(context)[1]) if callable(names) else Path(words[0]).name
 
     def node_name_in(self, context: LaunchContext) -> str | None:
         """Return the full name of the node that the process is, if that is known."""
@@ -77,7 +82,7 @@ class ExecuteLocal(Action):
         """Note what is to be started."""
         described = self.process_description
         words = self.executable_words(context)
-        program = self.program_name(words)
+        program = self.program_name(context, words)
         prefix = self._prefix(context, program)
         argv = [*prefix, *words, *self.arguments_of_ros(context)]
         base = Path(prefix[0]).name if prefix else program

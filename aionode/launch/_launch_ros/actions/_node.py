@@ -76,7 +76,7 @@ class Node(ExecuteProcess):
         package = text_or_none(context, self.node_package) or ""
         return [*context.packages.command(package, executable), *arguments]
 
-    def program_name(self, words: list[str]) -> str:
+    def program_name(self, context: LaunchContext, words: list[str]) -> str:
         """Return the name of the executable, or of the class."""
         return self._program_name
 
