@@ -48,6 +48,9 @@ BURST_BYTES: Final = 256 * 1024
 BURST_NS: Final = 10_000_000
 """So much in so many nanoseconds reaches every peer that is alive: a quarter of the queue."""
 
+CALM_S: Final = 5.0
+"""How long threads go on with what the loop would put after a crowd has gone."""
+
 BULK_FLUSH_S: Final = 0.15
 """How long `flush` waits for large messages, which may be dropped, and for single contexts."""
 
@@ -142,6 +145,7 @@ class SessionState:
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
         self.outlet = Outlet(self.bulk, queue_bytes)
+        self._calm: asyncio.TimerHandle | None = None  # ends a crowd
         self.announced.on_crowded.append(self.note_crowd)
         self.peer_senders = PeerSenders(self.waker, self._look)
         self.burst = Burst()
@@ -289,6 +293,7 @@ class SessionState:
         self.assertions.stop()
         self.acknowledgements.stop()
         self.graph = None
+        self.note_crowd()
         return session
 
     def tell_writers(self, endpoint: EndpointInfo, *, present: bool) -> None:
@@ -326,8 +331,20 @@ class SessionState:
                 self._readers_changed()
 
     def note_crowd(self) -> None:
-        """Leave what may wait for Zenoh to threads while others have announced so much."""
-        is_crowded = self.announced.is_crowded
+        """Leave what may wait for Zenoh to threads while others have announced so much.
+
+        And for a while after that: it tells of the first that it drops long before the last.
+        """
+        if self._calm is not None:
+            self._calm.cancel()
+            self._calm = None
+        if self.announced.is_crowded or self.session is None:
+            self._set_crowded(self.announced.is_crowded)
+        else:
+            loop = asyncio.get_running_loop()
+            self._calm = loop.call_later(CALM_S, self._set_crowded, False)
+
+    def _set_crowded(self, is_crowded: bool) -> None:
         self.outlet.is_crowded = self.peer_senders.is_crowded = is_crowded
         for declaration in list(self._declarations):
             declaration.note_crowd()
