@@ -31,7 +31,7 @@ from typing import Any
 
 HERE = Path(__file__).parent
 ENDS_SEC = 15.0
-TYPED_SEC = 12.0
+TYPED_SEC = 4.0
 CALLING = "import sys; sys.argv = sys.argv[1:]; from {0} import {1}; sys.exit({1}())"
 VARIES = {"heard", "log"}
 """What need not be equal from one run to the next; it is shown, and does not count."""
