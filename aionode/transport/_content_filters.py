@@ -205,10 +205,14 @@ class ContentFilters:
             or self._counts[participant] >= MAX_FILTERS_PER_CONTEXT
             or self._counts.total() >= MAX_FILTERS
         ):
-            if subscriber in self._excessive or len(self._excessive) >= MAX_FILTERS:
+            if subscriber in self._excessive:
                 return False
-            self._excessive.add(subscriber)
-            return True
+            if len(self._excessive) < MAX_FILTERS:
+                self._excessive.add(subscriber)
+                return True
+            # Nor is there room to note that: then none of its filters may count.
+            self._counts[participant] -= len(known)
+            return self._by_subscriber.pop(subscriber, None) is not None
         known[text] = AnnouncedFilter(options, self._budget)
         self._by_subscriber[subscriber] = known
         self._counts[participant] += 1

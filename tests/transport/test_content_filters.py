@@ -429,6 +429,23 @@ def test_too_many_filters_of_one_context_take_no_place_from_others() -> None:
     assert wanted(filters, [gid_of(1), gid_of(2)]) is not None
 
 
+def test_a_subscription_whose_new_filter_does_not_count_gets_everything(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where others have filled all places, its former filter alone would hide what it wants."""
+    monkeypatch.setattr(content_filters, "MAX_FILTERS", 3)
+    filters = ContentFilters()
+    announced(filters, gid_of(0), "data = 1")
+    for number in range(1, 20):
+        announced(filters, gid_of(number), "data = 7")
+    assert wanted(filters, [gid_of(0)]) is not None
+
+    announced(filters, gid_of(0), "data = 2")
+
+    assert wanted(filters, [gid_of(0)]) is None
+    assert filters._counts.total() == 2
+
+
 def test_a_filter_that_does_not_count_has_no_publisher_look_again() -> None:
     """Any program may declare any number of them, and each look is at all subscriptions."""
     filters = ContentFilters()
