@@ -8,12 +8,15 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
-from typing import Final, NoReturn
+from typing import TYPE_CHECKING, Final, NoReturn
 
-from aionode._packages import Packages, is_python, workspace_of
 from aionode.errors import CommandError, PackageNotFoundError
 from aionode.interfaces import shipped_packages
+
+if TYPE_CHECKING:
+    from aionode._packages import Packages
 
 __all__ = ["Programs", "replace_process"]
 
@@ -31,10 +34,16 @@ class Programs:
     def __init__(self, interfaces: Sequence[str], workspace: str | None) -> None:
         self._interfaces = [part for folder in interfaces for part in ("--interfaces", folder)]
         self._workspace = [] if workspace is None else ["--workspace", workspace]
+
+    @cached_property
+    def _packages(self) -> Packages:
+        """The packages of the workspace, which the file of a program does not need."""
+        from aionode._packages import Packages, workspace_of
+
+        if self._workspace:
+            return Packages(Path(self._workspace[1]))
         current = Path.cwd()
-        self._packages = Packages(
-            Path(workspace) if workspace is not None else workspace_of(current) or current
-        )
+        return Packages(workspace_of(current) or current)
 
     def under_rclpy(self, *program: str) -> list[str]:
         """Return the command for a program of rclpy: its file, or ``-m`` and its module."""
@@ -121,6 +130,8 @@ def is_rclpy_program(name: str) -> bool:
     An executable that an installed package has in Python is one, too: it imports that package.
     """
     if not name.endswith(".py"):
+        from aionode._packages import is_python
+
         return Path(name).is_file() and is_python(Path(name))
     try:
         tree = ast.parse(Path(name).read_bytes())

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.errors import InterfaceNotFoundError
 from aionode.interfaces import get_interface, interface_names, shipped_packages
-from aionode.rclpy._workspace import here
 
 if TYPE_CHECKING:
     from aionode.idl._named import NamedInterfaces
@@ -60,6 +59,8 @@ def add_workspace(package: str) -> bool:
     Returns:
         Whether they were added.
     """
+    from aionode.rclpy._workspace import here  # only for what is not found otherwise
+
     packages = here()
     source = packages.sources().get(package)
     if source is None or packages.workspace is None or (NAMED and NAMED[0].names(package)):
