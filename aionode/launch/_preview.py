@@ -56,6 +56,19 @@ def records(
                 pass
 
 
+class Unknown:
+    """Stands for what is known only when it happens: an event, and what belongs to it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Unknown:
+        return Unknown(f"{self._name}.{name}")
+
+    def __str__(self) -> str:
+        return f"<{self._name}>"
+
+
 def of_handler(
     step: Watch, before: Mapping[str, str], when: tuple[str, ...]
 ) -> Iterator[dict[str, Any]]:
@@ -65,8 +78,9 @@ def of_handler(
     if entities is None:
         yield {"when": [*when, condition], "calls": "a function"}
     else:
-        later = evaluate(entities, step.context.fork())
-        yield from records(later, before, (*when, condition))
+        context = step.context.fork()
+        context.extend_locals({"event": Unknown("event")})
+        yield from records(evaluate(entities, context), before, (*when, condition))
 
 
 def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) -> dict[str, Any]:

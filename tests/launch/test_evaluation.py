@@ -167,6 +167,18 @@ def test_timers_and_event_handlers_are_part_of_the_plan(files: Files) -> None:
     ]
 
 
+def test_what_belongs_to_an_event_is_named_before_it_happens(files: Files) -> None:
+    """The tutorial of event handlers logs the reason of a shutdown."""
+    records = files.python(
+        """
+        RegisterEventHandler(OnShutdown(on_shutdown=[
+            LogInfo(msg=['asked to end: ', LocalSubstitution('event.reason')])])),
+        """
+    )
+
+    assert records[0]["log"] == "asked to end: <event.reason>"
+
+
 def test_an_opaque_function_sees_the_context_and_returns_actions(files: Files) -> None:
     """It is called as the file is evaluated, with what was set before it."""
     records = files.python(

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import os
 import sys
+from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -167,7 +167,7 @@ def run_real(path: str, values: dict[str, str]) -> None:
     Raises:
         CommandError: It is not installed.
     """
-    if importlib.util.find_spec("launch") is None or importlib.util.find_spec("launch_ros") is None:
+    if not (is_installed("launch") and is_installed("launch_ros")):
         raise CommandError(
             "--real: ROS 2's launch and launch_ros are not installed here; source a ROS 2, or "
             "leave out --real: aionode has the names that most launch files use"
@@ -175,3 +175,12 @@ def run_real(path: str, values: dict[str, str]) -> None:
     arguments = [f"{name}:={value}" for name, value in values.items()]
     command = [sys.executable, "-m", "aionode.launch", str(Path(path)), *arguments]
     os.execv(sys.executable, command)  # noqa: S606  # its own signals, and its own exit status
+
+
+def is_installed(package: str) -> bool:
+    """Return whether a package is there that is not aionode's, which says so at its beginning."""
+    found = PathFinder.find_spec(package)
+    if found is None or found.origin is None:
+        return False
+    text = Path(found.origin).read_text(encoding="utf-8", errors="replace")
+    return "aionode" not in text[:300]

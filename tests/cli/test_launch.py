@@ -1,0 +1,76 @@
+"""``aionode launch`` without starting anything."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from aionode.cli import main
+
+FILE = """
+<launch>
+  <arg name="speed" default="0.5" description="in m/s"/>
+  <executable cmd="echo $(var speed)"><env name="COLOR" value="red"/></executable>
+</launch>
+"""
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> str:
+    """Return a launch file."""
+    path = tmp_path / "a.launch.xml"
+    path.write_text(FILE, encoding="utf-8")
+    return str(path)
+
+
+def test_it_prints_what_it_would_start(file: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """For readers, with the values of this call."""
+    assert main(["launch", file, "speed:=0.8", "--print"]) == 0
+
+    assert capsys.readouterr().out == "echo-1: echo 0.8\n    COLOR=red\n"
+
+
+def test_it_prints_records(file: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """For programs."""
+    assert main(["launch", "--print", "--json", file]) == 0
+
+    record = json.loads(capsys.readouterr().out)
+    assert (record["argv"], record["env"]) == (["echo", "0.5"], {"COLOR": "red"})
+
+
+def test_it_lists_arguments(file: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """With what they are for, and their defaults."""
+    assert main(["launch", file, "--show-args"]) == 0
+
+    assert capsys.readouterr().out == "'speed':\n    in m/s\n    (default: '0.5')\n"
+
+
+def test_it_finds_a_file_of_a_package(
+    file: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That of a workspace needs no build; an unknown name is an error that lists the files."""
+    folder = Path(file).parent
+    (folder / "package.xml").write_text("<package><name>robot</name></package>")
+    monkeypatch.chdir(folder)
+
+    assert main(["launch", "robot", "a.launch.xml", "--print"]) == 0
+    assert main(["launch", "robot", "b.launch.xml", "--print"]) == 1
+    assert "it has: a.launch.xml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "text"),
+    [
+        (["x=5"], "expected NAME:=VALUE"),
+        (["--real"], "ROS 2's launch and launch_ros are not installed here"),
+    ],
+)
+def test_what_it_cannot_do_is_one_line(
+    file: str, words: list[str], text: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """And nothing is started."""
+    assert main(["launch", file, "speed:=1", *words]) == 1
+
+    assert text in capsys.readouterr().err
