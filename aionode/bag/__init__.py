@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from aionode.bag._machine_use import MachineUseWarning
     from aionode.bag._outputs import Outputs
     from aionode.bag._player import Player
+    from aionode.bag._qos import qos_overrides
     from aionode.bag._record import Record, TopicInfo
     from aionode.bag._recorder import Recorder, TopicStats
     from aionode.bag._repair import Checked, check, reindex
@@ -49,6 +50,7 @@ __all__ = [
     "cut",
     "merge",
     "open",
+    "qos_overrides",
     "reindex",
     "replay",
 ]
@@ -73,6 +75,7 @@ PLACES = {
     "cut": "_copy",
     "merge": "_copy",
     "open": "_bag",
+    "qos_overrides": "_qos",
     "reindex": "_repair",
     "replay": "_replay",
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import yaml
@@ -18,8 +19,9 @@ from aionode.qos import (
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+    from os import PathLike
 
-__all__ = ["profile_from", "profiles_from", "profiles_to_yaml", "to_builtins"]
+__all__ = ["profile_from", "profiles_from", "profiles_to_yaml", "qos_overrides", "to_builtins"]
 
 POLICIES: Final = {
     "history": HistoryPolicy,
@@ -104,6 +106,23 @@ def profile_from(item: Mapping[str, Any]) -> QoSProfile:
         return QoSProfile(**fields)
     except (KeyError, TypeError, AttributeError, InvalidQoSProfileException) as error:
         raise ValueError(f"{dict(item)} is no QoS profile: {error}") from error
+
+
+def qos_overrides(path: str | PathLike[str]) -> dict[str, QoSProfile]:
+    """Return the profiles in a YAML file as rosbag2 takes it, by topic.
+
+    Args:
+        path: The file: the policies of each topic, by short names such as ``best_effort``.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is no such file.
+    """
+    try:
+        content = yaml.safe_load(Path(path).read_text(encoding="utf-8")) or {}
+        return {f"/{name.removeprefix('/')}": profile_from(it) for name, it in content.items()}
+    except (yaml.YAMLError, AttributeError, TypeError) as error:
+        raise ValueError(f"no QoS profiles by topic: {error}") from error
 
 
 def duration_from(value: Mapping[str, int]) -> Duration:

@@ -28,7 +28,7 @@ __all__ = ["LateGroup", "main", "report", "root"]
 
 NOUNS = {
     "action": "Send goals; list and inspect actions.",
-    "bag": "Compare recordings, and find the piece with which a test fails.",
+    "bag": "Record, play, inspect, repair and compare bags.",
     "completion": "Print the completion script of a shell.",
     "doctor": "Find out why endpoints do not communicate.",
     "interface": "Show message, service and action types.",

@@ -15,6 +15,7 @@ from aionode.cli._support.error_text import one_line
 from aionode.errors import AionodeError, CommandError, InvalidTopicNameException
 
 VERBS = {
+    "bag": {"burst", "convert", "info", "list", "play", "record", "reindex"},
     "action": {"find", "info", "list", "send_goal", "type"},
     "interface": {"generate", "list", "package", "packages", "proto", "show"},
     "node": {"info", "list"},
@@ -66,14 +67,15 @@ def test_no_verb_at_all_shows_what_there_is(
 
 
 def test_every_command_that_prints_data_has_json() -> None:
-    """Only running nodes and completion scripts have no records."""
+    """Only running nodes, what records and plays, and completion scripts have no records."""
     without = {
         words
         for words, one in commands()
         if "--json" not in [name for parameter in one.params for name in parameter.opts]
     }
 
-    assert without == {"completion", "run"}
+    bags = {"bag burst", "bag play", "bag record", "bag reindex"}
+    assert without == {"completion", "run"} | bags
 
 
 def test_help_imports_neither_numpy_nor_zenoh() -> None:
