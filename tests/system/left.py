@@ -10,10 +10,10 @@ __all__ = ["MARK", "left"]
 MARK = "AIONODE_TEST_MARK"
 
 
-def left(mark: str) -> list[str]:
-    """Return the command lines of the live processes with a mark in their environment."""
+def left(mark: str) -> dict[int, str]:
+    """Return the live processes with a mark in their environment, and their command lines."""
     wanted = f"{MARK}={mark}".encode()
-    found = []
+    found = {}
     for folder in Path("/proc").iterdir():
         if not folder.name.isdigit() or int(folder.name) == os.getpid():
             continue
@@ -21,7 +21,8 @@ def left(mark: str) -> list[str]:
             if wanted in (folder / "environ").read_bytes().split(b"\0"):
                 state = (folder / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
                 if state != "Z":
-                    found.append((folder / "cmdline").read_bytes().replace(b"\0", b" ").decode())
+                    line = (folder / "cmdline").read_bytes().replace(b"\0", b" ")
+                    found[int(folder.name)] = line.decode(errors="replace")
         except OSError:  # it has ended meanwhile
             continue
     return found

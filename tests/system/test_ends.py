@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -77,7 +78,9 @@ class Supervised:
 
     def __exit__(self, *_: object) -> None:
         self.process.kill()
-        self.wait_until_nothing_is_left()
+        for pid in left(self.mark):  # of a test that has failed
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
         self.process.wait()
         assert self.process.stdout is not None
         self.process.stdout.close()
@@ -90,10 +93,13 @@ class Supervised:
             assert line, self.lines
             self.lines.append(line.rstrip("\n"))
 
-    def wait_until_nothing_is_left(self) -> None:
-        """Wait until no process of it is left; the time limit of the test bounds that."""
-        while left(self.mark):
+    def wait_until_nothing_is_left(self, limit_sec: float = 20.0) -> None:
+        """Wait until no process of it is left; fail after a time."""
+        for _ in range(round(limit_sec / 0.05)):
+            if not left(self.mark):
+                return
             threading.Event().wait(0.05)
+        pytest.fail(f"left: {left(self.mark)}")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
@@ -160,4 +166,4 @@ def test_a_second_ctrl_c_ends_all_at_once() -> None:
         system.process.send_signal(signal.SIGINT)
 
         assert system.process.wait(timeout=2) == 128 + signal.SIGINT
-        system.wait_until_nothing_is_left()
+        system.wait_until_nothing_is_left(limit_sec=4.0)
