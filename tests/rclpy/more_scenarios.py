@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
+import warnings
 from typing import Any
 
 import rclpy
@@ -522,6 +523,32 @@ def what_belongs_to_a_node(trace: Trace) -> None:
         executor.add_node(node)
         trace("executor", node.executor is executor)
     trace("after", node.executor is executor, executor.get_nodes())
+
+
+@scene
+def names_that_public_programs_take_from_modules(trace: Trace) -> None:
+    from rclpy.event_handler import UnsupportedEventTypeError
+    from rclpy.expand_topic_name import expand_topic_name
+    from rclpy.lifecycle.node import LifecycleState
+    from rclpy.node import HIDDEN_NODE_PREFIX
+    from rclpy.parameter import PARAMETER_SEPARATOR_STRING
+    from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSPresetProfiles
+    from rclpy.topic_or_service_is_hidden import topic_or_service_is_hidden
+
+    trace("expanded", expand_topic_name("~/scan", "driver", "/robot"))
+    trace("hidden", topic_or_service_is_hidden("/robot/_secret"), HIDDEN_NODE_PREFIX)
+    trace("shown", topic_or_service_is_hidden("/robot/scan"), PARAMETER_SEPARATOR_STRING)
+    state = LifecycleState(label="active", state_id=3)
+    trace("state", state.label, state.state_id)
+    trace("an error of rcl", UnsupportedEventTypeError.__mro__[1].__name__)
+    sensor = QoSPresetProfiles.SENSOR_DATA.value
+    trace("sensor data", sensor.reliability.name, sensor.history.name, sensor.depth)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        kept = HistoryPolicy.RMW_QOS_POLICY_HISTORY_KEEP_LAST
+        volatile = DurabilityPolicy.RMW_QOS_POLICY_DURABILITY_VOLATILE
+    trace("former names", kept is HistoryPolicy.KEEP_LAST, volatile.name)
+    trace("warnings", [each.category.__name__ for each in caught])
 
 
 if __name__ == "__main__":
