@@ -7,7 +7,6 @@ from pathlib import Path
 
 import click
 
-from aionode._node_source import FITS, node_maker
 from aionode.cli._support.programs import Programs, replace_process
 
 __all__ = ["run_command"]
@@ -73,8 +72,6 @@ def run_command(
     With --check, nothing runs: for each file, and each Python file of a folder, there is a list of
     what it imports and where that is. The exit status is 1 if something is missing.
     """
-    from aionode.runner import run
-
     programs = Programs(interfaces, workspace)
     if check and (module is not None or not args):
         raise click.UsageError("--check takes files and folders, such as src/my_robot/talker.py.")
@@ -87,6 +84,10 @@ def run_command(
     command = programs.command(args)
     if command is not None:
         replace_process(command)
+    # Not before: a program that takes the place of this process needs no nodes here.
+    from aionode._node_source import FITS, node_maker
+    from aionode.runner import run
+
     if rclpy or interfaces:
         raise click.UsageError("--rclpy and --interfaces are for programs of rclpy.")
     at = args.index(ROS_ARGS) if ROS_ARGS in args else len(args)
