@@ -51,7 +51,7 @@ SIZES = (0, 1, 10, 100, 3000)
 MOST_HELD = 2000
 """How many tokens it holds at once."""
 
-MOST_OF_FILTERS = 300
+MOST_OF_FILTERS = 900
 """How many where it is about filters: Zenoh drops those of a session that ends in one piece, about
 0.1 ms for each, while a publisher of any program waits."""
 

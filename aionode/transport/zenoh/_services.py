@@ -61,8 +61,8 @@ UNANNOUNCED = 8
 """So many threads at most send answers to clients without a token, which have any ids they like."""
 
 TOO_MANY = (
-    "other requests are waiting already in this process, which take as many bytes as may wait, or "
-    "those of this client take its share of them (AIONODE_QUEUE_BYTES)"
+    "other requests are waiting already in this process, of all clients or of this one, which take "
+    "as many bytes as may wait (AIONODE_QUEUE_BYTES)"
 )
 
 FRESH_NS = 100_000_000
