@@ -41,7 +41,7 @@ NAMES: Final[dict[Any, str]] = {
 }
 """The functions that give something else in each run, with their names."""
 
-WATCHED_MESSAGES: Final = 300
+WATCHED_MESSAGES: Final = 100
 """For so many messages Python 3.11 reports every call, which takes half as long again."""
 
 TOOL_NAME: Final = "aionode replay"
@@ -97,12 +97,14 @@ class MachineUse:
             return sys.monitoring.DISABLE
 
     def _profile(self, frame: FrameType, event: str, function: Any) -> None:
-        if event == "c_call" and is_users(frame.f_code.co_filename):
-            self._note(function, frame.f_code.co_filename, frame.f_lineno)
-        elif event == "call" and frame.f_back is not None:
-            back = frame.f_back
+        # Called several times for each call of anything: the rare case is found out first.
+        if event == "c_call":
+            if function in NAMES and is_users(frame.f_code.co_filename):
+                self._note(function, frame.f_code.co_filename, frame.f_lineno)
+        elif event == "call":
             called = PYTHON_FUNCTIONS.get(id(frame.f_code))
-            if called is not None and is_users(back.f_code.co_filename):
+            back = frame.f_back
+            if called is not None and back is not None and is_users(back.f_code.co_filename):
                 self._note(called, back.f_code.co_filename, back.f_lineno)
 
     def _note(self, function: Any, file: str, line: int) -> None:
