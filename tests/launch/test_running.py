@@ -151,6 +151,38 @@ async def test_components_that_are_aionode_classes_run_as_tasks(robot: Robot) ->
     assert {("talker", "/"), ("ear", "/robot")} <= names
 
 
+async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
+    """With `watch`; the others go on."""
+    program = Path(robot.files.write("program.py", "import time; time.sleep(1000)"))
+    plan = robot.plan(
+        f"""
+        ExecuteProcess(cmd=['python3', {str(program)!r}], name='changing'),
+        ExecuteProcess(cmd=['sleep', '1000'], name='other'),
+        """
+    )
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(plan, system, watch=True))
+
+        def is_restarted() -> bool:
+            program.write_text("import time; time.sleep(1000)")  # what it was is not known at once
+            status = system.status().get("changing-1")
+            return status is not None and status.restarts > 0
+
+        await until(is_restarted)
+        assert system.status()["other-2"].restarts == 0
+        running.cancel()
+
+
+async def test_a_command_runs_once_all_is_ready(robot: Robot) -> None:
+    """Such as systemd-notify."""
+    mark = robot.files.folder / "ready"
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        plan = robot.plan("ExecuteProcess(cmd=['sleep', '1000']),")
+        running = tasks.create_task(run_plan(plan, system, once_ready=f"touch {mark}"))
+        await until(mark.exists)
+        running.cancel()
+
+
 async def test_an_error_in_an_event_handler_ends_the_launch(robot: Robot) -> None:
     """It is the error of the launch file, with its line."""
     with pytest.raises(LaunchFileError, match="'nope' does not exist"):
