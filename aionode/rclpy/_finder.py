@@ -179,8 +179,9 @@ class AliasLoader(Loader):
         """Undo what the import system has changed: the module keeps its own description."""
         module.__spec__ = self.spec
         add_names()
-        for found in [each for name, each in sys.modules.items() if f"{name}.".startswith(OWN)]:
-            take_names(found)
+        if self.own == ALIASES["rclpy"]:  # what was loaded before `install`; the rest has its names
+            for found in [each for name, each in sys.modules.items() if f"{name}.".startswith(OWN)]:
+                take_names(found)
 
 
 def load_with_names(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
