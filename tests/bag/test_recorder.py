@@ -215,3 +215,40 @@ def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(tmp_path: Pa
     with bag.open(tmp_path / "run") as run:
         assert run.message_count == len(list(run.read())) == int(recorded) > 0
     assert done.stderr.count("cannot be written any further") == 1
+
+
+def test_a_recorder_that_is_killed_loses_only_what_is_not_on_the_disk_yet(tmp_path: Path) -> None:
+    """SIGKILL leaves a file without an end; `check` brings back what was written before."""
+    program = textwrap.dedent("""
+        import asyncio, os, signal, sys
+        from pathlib import Path
+        from aionode import bag
+        from aionode.clock import Time
+        from aionode.interfaces.std_msgs.msg import String
+        from aionode.testing import local_context
+
+        async def main():
+            file = Path(sys.argv[1], "run_0.mcap")
+            async with local_context() as context:
+                async with bag.Recorder(sys.argv[1], topics=[], context=context) as recorder:
+                    empty = file.stat().st_size
+                    for at in range(200):
+                        if at == 100:
+                            while file.stat().st_size == empty:
+                                await asyncio.sleep(0.01)
+                        recorder.write("/x", String(data="x"), time=Time(nanoseconds=at + 1))
+                    os.kill(os.getpid(), signal.SIGKILL)
+
+        asyncio.run(main())
+    """)
+    done = subprocess.run(
+        [sys.executable, "-c", program, str(tmp_path / "run")], check=False, timeout=50
+    )
+    assert done.returncode == -signal.SIGKILL
+    with pytest.raises(BagError, match="aionode bag check"):
+        bag.open(tmp_path / "run")
+    (found,) = bag.check(tmp_path / "run")
+    assert found.repaired
+    assert found.messages >= 100
+    with bag.open(tmp_path / "run") as run:
+        assert [record.time_ns for record in run.read()] == list(range(1, found.messages + 1))
