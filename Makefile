@@ -3,6 +3,7 @@
 #   make demo      two nodes talk: python -m aionode.examples.pubsub
 #   make test      the tests, in WORKERS processes: two more than there are processors
 #   make stress    variants that take long or differ little from what `make test` runs
+#   make replay    a hundred processes have to publish the same in a replay
 #   make check     style, types, layers and structure, the documentation and its code
 #   make coverage  how much of aionode is reached by tests that start no process, and by programs of rclpy
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
@@ -33,11 +34,11 @@ MOTION_TIMES ?= 20
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
+.PHONY: help demo test stress replay check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
 	tf-differential system-stress soak quotes clean
 
 help:
-	@sed -n '3,22s/^# *//p' Makefile
+	@sed -n '3,23s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -47,6 +48,9 @@ test: .venv/installed-dev
 
 stress: .venv/installed-dev
 	$(BIN)/python -m pytest -q -n $(WORKERS) -m "stress or second_loop" --hypothesis-profile=thorough
+
+replay: .venv/installed-dev
+	$(BIN)/python -m pytest -q -m stress tests/bag/test_robot.py
 
 check: .venv/installed-dev
 	$(BIN)/ruff check

@@ -14,7 +14,7 @@ from examples.replay.robot import record, run_robot
 
 ROOT = Path(__file__).parents[2]
 PYTHONS = os.environ.get("AIONODE_REPLAY_PYTHONS", sys.executable).split(os.pathsep)
-"""The Pythons of the long test: `make replay` names one of each version that it finds."""
+"""The Pythons of the long test, `make replay`, separated as in PATH."""
 
 PROGRAM = """
 import asyncio, sys
