@@ -1,8 +1,9 @@
 """Finds out that nodes use what differs in each run: the machine's clocks, and random numbers.
 
-Python tells which functions are called. From 3.12 on, each place in the code that calls anything is
-looked at once, which costs next to nothing; before, every call would be, so that only the first
-messages are watched. A place that calls something else later is not seen.
+From 3.12 on, Python tells which functions are called: each place in the code that calls anything is
+looked at once, which costs next to nothing. A place that calls something else later is not seen.
+In 3.11 there is only `sys.setprofile`, which is called for every call, and breaks others: nothing
+is watched there.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 if TYPE_CHECKING:
-    from types import CodeType, FrameType
+    from types import CodeType
 
 __all__ = ["MachineUse", "MachineUseWarning"]
 
@@ -41,9 +42,6 @@ NAMES: Final[dict[Any, str]] = {
 }
 """The functions that give something else in each run, with their names."""
 
-WATCHED_MESSAGES: Final = 100
-"""For so many messages Python 3.11 reports every call, which takes half as long again."""
-
 TOOL_NAME: Final = "aionode replay"
 
 OWN: Final = str(Path(__file__).parent.parent) + os.sep
@@ -60,23 +58,14 @@ class MachineUse:
     def __init__(self) -> None:
         self._open = {CLOCKS: "time", CHANCE: "random"}
         self._tool: int | None = None
-        self._left = WATCHED_MESSAGES
 
     def __enter__(self) -> Self:
         if sys.version_info >= (3, 12):
             self._monitor()
-        elif sys.getprofile() is None:
-            sys.setprofile(self._profile)
         return self
 
     def __exit__(self, *_: object) -> None:
         self._end()
-
-    def note_message(self) -> None:
-        """Count a message that was published: the watch is too slow for all in Python 3.11."""
-        self._left -= 1
-        if self._left == 0 and self._tool is None:
-            self._end()
 
     if sys.version_info >= (3, 12):
 
@@ -95,17 +84,6 @@ class MachineUse:
             if is_users(code.co_filename):
                 self._note(function, code.co_filename, sys._getframe(1).f_lineno)
             return sys.monitoring.DISABLE
-
-    def _profile(self, frame: FrameType, event: str, function: Any) -> None:
-        # Called several times for each call of anything: the rare case is found out first.
-        if event == "c_call":
-            if function in NAMES and is_users(frame.f_code.co_filename):
-                self._note(function, frame.f_code.co_filename, frame.f_lineno)
-        elif event == "call":
-            called = PYTHON_FUNCTIONS.get(id(frame.f_code))
-            back = frame.f_back
-            if called is not None and back is not None and is_users(back.f_code.co_filename):
-                self._note(called, back.f_code.co_filename, back.f_lineno)
 
     def _note(self, function: Any, file: str, line: int) -> None:
         try:
@@ -136,16 +114,6 @@ class MachineUse:
                 sys.monitoring.register_callback(self._tool, sys.monitoring.events.CALL, None)
                 sys.monitoring.free_tool_id(self._tool)
                 self._tool = None
-        elif sys.getprofile() == self._profile:
-            sys.setprofile(None)
-
-
-PYTHON_FUNCTIONS: Final = {
-    id(code): function
-    for function in NAMES
-    if (code := getattr(getattr(function, "__func__", function), "__code__", None)) is not None
-}
-"""Those that are written in Python, by their code objects, whose own hash takes long."""
 
 
 @cache

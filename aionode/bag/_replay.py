@@ -140,7 +140,7 @@ class Replay:
         """
         recorded = [absolute(name) for name in record]
         publish = self._publishers(self._chosen(recorded, topics))
-        with Tap(self._player, recorded) as tap, MachineUse() as machine_use:
+        with Tap(self._player, recorded) as tap, MachineUse():
             for node in list(self.context._nodes):
                 if isinstance(node, Node) and not (node.is_running or node.destroyed):
                     self._tasks.create_task(node.run())
@@ -153,7 +153,6 @@ class Replay:
             ):
                 await stepped.walk_to(each.time_ns)
                 publish[each.topic](each)
-                machine_use.note_message()
                 await stepped.settle()
             await stepped.walk_to(min(self._piece.end_ns - 1, self.bag.end_ns))
             await stepped.settle()
