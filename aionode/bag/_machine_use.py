@@ -9,6 +9,7 @@ is watched there.
 from __future__ import annotations
 
 import datetime as dt
+import gc
 import os
 import random
 import sys
@@ -81,7 +82,7 @@ class MachineUse:
             monitoring.restart_events()
 
         def _on_call(self, code: CodeType, _offset: int, function: Any, _argument: Any) -> Any:
-            if is_users(code.co_filename):
+            if is_users(code.co_filename) and not is_of_collector(code):
                 self._note(function, code.co_filename, sys._getframe(1).f_lineno)
             return sys.monitoring.DISABLE
 
@@ -114,6 +115,11 @@ class MachineUse:
                 sys.monitoring.register_callback(self._tool, sys.monitoring.events.CALL, None)
                 sys.monitoring.free_tool_id(self._tool)
                 self._tool = None
+
+
+def is_of_collector(code: CodeType) -> bool:
+    """Whether a function is called when garbage is collected, at any place of the nodes."""
+    return any(getattr(each, "__code__", None) is code for each in gc.callbacks)
 
 
 @cache
