@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import msgspec
 
 from aionode.clock import ClockType, Time
-
-if TYPE_CHECKING:
-    from aionode.qos import QoSProfile
+from aionode.qos import QoSProfile
 
 __all__ = ["MOST_NS", "Record", "TopicInfo", "time_of"]
 
