@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import fcntl
 import os
 import select
 from contextlib import suppress
@@ -91,6 +90,8 @@ class OutputReader:
         if len(output) == SMALL_PIPE and pipe not in self._large:
             self._large.add(pipe)
             with suppress(OSError):  # the user's pipes have a limit
+                import fcntl  # not on Windows
+
                 fcntl.fcntl(pipe, F_SETPIPE_SZ, LARGE_PIPE)
         self._log.write(self._names[pipe], output)
         return len(output)

@@ -47,8 +47,8 @@ report_progress trigger_activate trigger_cleanup trigger_configure trigger_deact
 trigger_shutdown
 """
 CONTEXT = """
-arguments as_default default domain_id graph network ok participant ros_distro shutdown time_base
-transports
+arguments as_default default domain_id graph network new_uuid ok participant ros_distro seed
+shutdown time_base transports
 """
 TRANSPORT = """
 abandon all_known close create_node create_reader create_requester create_server create_writer
@@ -68,7 +68,7 @@ def public_names(subject: object) -> list[str]:
         (LifecycleNode("node", context=local_context()), NODE + LIFECYCLE),
         (local_context(), CONTEXT),
         (Supervisor(lambda: Node("node")), "health node run"),
-        (ManualClock(), "advance call_at jump now steady_ns system_ns through_suspend"),
+        (ManualClock(), "advance call_at jump now slice_ns steady_ns system_ns through_suspend"),
         (FaultyTransport(LocalTransport()), TRANSPORT + "delay drop duplicate inner reorder"),
     ],
     ids=lambda value: "" if isinstance(value, str) else type(value).__name__,
