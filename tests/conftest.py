@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, settings
 from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable, Generator
+    from collections.abc import Awaitable, Callable, Generator, Iterator
 
     from aionode.context import Context
 
@@ -170,6 +170,14 @@ def pytest_asyncio_loop_factories(
     if not (one_loop or second_loop):
         factories["uvloop"] = uvloop.new_event_loop
     return factories
+
+
+@pytest.fixture(autouse=True)
+def own_workspace() -> Iterator[None]:
+    """Have no other test see the packages of a workspace that this one names."""
+    yield
+    if workspace := sys.modules.get("aionode.rclpy._workspace"):
+        workspace.GIVEN.clear()
 
 
 @pytest.fixture

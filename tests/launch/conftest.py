@@ -76,9 +76,3 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (prefix / "share" / "robot" / "launch").mkdir(parents=True)
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(prefix))
     return prefix
-
-
-@pytest.fixture(autouse=True)
-def own_workspace(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Have no test see the packages of another one's launch file."""
-    monkeypatch.setattr("aionode.rclpy._workspace.GIVEN", [])

@@ -74,7 +74,9 @@ def test_a_frozen_holder_sends_nothing_but_the_stop_when_it_wakes(
         commander.send(signal.SIGCONT)
         wheels.expect("speed 0.0")
 
-        assert speeds(wheels, 0.5)[before:] == ["speed 0.0"]
+        *late, last = speeds(wheels, 0.5)[before:]
+        assert last == "speed 0.0"
+        assert len(late) <= 1  # what was on its way out when the process was frozen
 
 
 def test_a_forked_child_sends_nothing() -> None:

@@ -15,7 +15,7 @@ import pytest
 
 import aionode.rclpy
 from aionode.errors import IdlError
-from aionode.rclpy import _finder, _workspace
+from aionode.rclpy import _finder
 from aionode.rclpy._rosidl import message_class
 
 WORDS = """\
@@ -32,7 +32,6 @@ def installed() -> Iterator[None]:
     before = dict(sys.modules)
     aionode.rclpy.install()
     yield
-    _workspace.GIVEN.clear()
     sys.meta_path.remove(_finder.FINDER)
     for name in set(sys.modules) - set(before):
         if not name.startswith("aionode"):

@@ -262,7 +262,7 @@ async def test_a_callback_that_blocks_the_loop_is_reported_once_a_second(
     [
         (
             0.5,
-            r"Its thread ran for \d\.\d ms and waited for the rest \(a lock, I/O or a sleep\)\. ",
+            r"Its thread ran for \d+\.\d ms and waited for the rest \(a lock, I/O or a sleep\)\. ",
         ),
         (99.0, r"a sleep, or for a processor: the load is 99\.0 on \d+ cores\)\. Move the work"),
     ],
