@@ -9,7 +9,6 @@ import inspect
 import os
 import signal
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -17,6 +16,7 @@ import uvloop
 from hypothesis import HealthCheck, settings
 
 from aionode.node import Node
+from tests.bytecode import share_bytecode
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Generator, Iterator
@@ -44,13 +44,7 @@ gc.disable()
 if hasattr(signal, "SIGHUP"):
     signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-# Hundreds of processes would each compile aionode where Python is told to write no bytecode. What
-# they share is not written beside the sources then.
-if sys.dont_write_bytecode:
-    sys.dont_write_bytecode = False
-    sys.pycache_prefix = str(Path(__file__).parent.parent / ".pytest_cache" / "bytecode")
-    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-    os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
+share_bytecode()
 
 
 def debugging_loop() -> asyncio.AbstractEventLoop:

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from tests.attacks.cases import all_attacks
 from tests.attacks.harness import MEMORY_LIMIT, Attack, Found
+from tests.bytecode import share_bytecode
 from tests.faults.harness import Skipped, run_together
 
 JOBS = 2
@@ -93,6 +94,7 @@ def main() -> None:
     parser.add_argument("--write", type=Path, help="the page that has the table")
     parser.add_argument("--jobs", type=int, default=JOBS, help=f"how many run at once ({JOBS})")
     options = parser.parse_args()
+    share_bytecode()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
     attacks = [each for each in all_attacks() if re.search(options.only, each.name)]
     results: dict[str, Result] = {}

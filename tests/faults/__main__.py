@@ -18,6 +18,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar
 
+from tests.bytecode import share_bytecode
 from tests.faults.cases import all_cases
 from tests.faults.harness import (
     END_S,
@@ -89,6 +90,7 @@ def main() -> None:
         "--jobs", type=int, default=JOBS, help=f"how many run at once, of any round ({JOBS})"
     )
     options = parser.parse_args()
+    share_bytecode()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # cleans up
     # Programs in the background of a shell may ignore both, and all processes of a case inherit it.
     signal.signal(signal.SIGINT, signal.default_int_handler)
