@@ -25,6 +25,7 @@ import psutil
 from aionode import Context
 from aionode.clock import SteadyClock, perf_ns
 from aionode.system import System, SystemLog
+from tests.bytecode import share_bytecode
 from tests.support.peers import isolated_environment
 from tests.system.left import MARK, left
 
@@ -223,6 +224,7 @@ def main() -> int:
         "--robots", type=int, default=10, help="how many moving robots of each kind"
     )
     options = parser.parse_args()
+    share_bytecode()
     os.environ[MARK] = uuid4().hex
     with tempfile.TemporaryDirectory() as folder:
         if options.seconds:
