@@ -34,7 +34,7 @@ SHARED = {
     "aionode.endpoints.actions": "aionode.action is its public name",
     "aionode.endpoints.timer._ticker": "timers of rclpy's API go by the same schedule",
     "aionode.endpoints.timer._timer": "Node.create_timer builds one",
-    "aionode.errors._values": "durations and times need its texts, not the exceptions",
+    "aionode.errors._base": "durations and times need its texts, not the exceptions",
     "aionode.idl._named": "programs of rclpy are started with folders of interfaces",
     "aionode.lifecycle._answers": "managed nodes of rclpy's API give the same answers",
     "aionode.logging._severity": "arguments name severities, and do not log",

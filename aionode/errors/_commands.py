@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aionode.errors._values import AionodeError
+from aionode.errors._base import AionodeError
 
 __all__ = ["CommandError", "LaunchFileError"]
 

@@ -1,0 +1,69 @@
+"""The base of all errors, and how their texts show values."""
+
+from __future__ import annotations
+
+import re
+
+__all__ = [
+    "MAX_NAME",
+    "AionodeError",
+    "brief",
+    "escaped",
+    "shortened",
+]
+
+MAX_TEXT = 2_000
+"""Longest error text, in characters; the values that it quotes can be far longer."""
+
+MAX_NAME = 160
+"""How many characters of an invalid name are shown."""
+
+
+def shortened(text: str, limit: int = MAX_TEXT) -> str:
+    """Return `text`, with its middle cut out if it is longer than `limit` characters."""
+    if len(text) <= limit:
+        return text
+    half = limit // 2
+    return f"{text[:half]} […{len(text) - 2 * half} characters…] {text[-half:]}"
+
+
+UNSHOWN = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
+"""Control characters but tab and newline, what changes the direction of text, and surrogates."""
+
+
+def escaped(text: str) -> str:
+    r"""Return `text` with control characters as escapes such as ``\x1b``, for people to read.
+
+    A text may come from another process: printed as it is, an escape sequence could recolour,
+    overwrite or retitle a terminal. Tabs and newlines stay.
+    """
+    if UNSHOWN.search(text) is None:
+        return text
+    return UNSHOWN.sub(lambda match: match[0].encode("unicode_escape").decode(), text)
+
+
+def brief(value: object) -> str:
+    """Return the shortened repr of `value`, for the text of an error.
+
+    Python refuses to write integers of thousands of digits; the reason is returned for those.
+    """
+    try:
+        text = repr(value)
+    except ValueError as error:
+        text = f"a {type(value).__name__} that cannot be written ({error})"
+    return shortened(text, MAX_NAME)
+
+
+class AionodeError(Exception):
+    """Base of all errors that aionode raises on purpose.
+
+    Texts of more than 2000 characters are shortened in the middle, as the beginning and the end say
+    what happened and what to do. Control characters are shown as escapes, since a text may quote
+    another process. The attributes hold the complete values.
+    """
+
+    def __init__(self, *args: object) -> None:
+        shown = (escaped(shortened(arg)) if isinstance(arg, str) else arg for arg in args)
+        super().__init__(*shown)
