@@ -159,7 +159,7 @@ async def note_start(system: System) -> None:
     while not (table := system.status()) or any(
         status.state in {"waiting", "starting"} for status in table.values()
     ):
-        await system._next_change()
+        await system.changed()
     width = max(map(len, table))
     for name, status in table.items():
         pid = "" if status.pid is None else f", process {status.pid}"

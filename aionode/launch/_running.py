@@ -189,7 +189,7 @@ class RunningLaunch:
                 pid = None
             if member.is_over():
                 return
-            await self.system._next_change()
+            await self.system.changed()
 
     async def _wait_for(self, step: Timer) -> None:
         await self._clock.sleep(step.period_sec)
@@ -263,7 +263,7 @@ class RunningLaunch:
         subscription = self.system.graph_node.create_subscription(TransitionEvent, topic, tell, 10)
         try:
             while not member.is_over():
-                await self.system._next_change()
+                await self.system.changed()
         finally:
             subscription.destroy()
 
@@ -291,7 +291,7 @@ class RunningLaunch:
 
     async def _until_ended(self, member: Member) -> None:
         while not member.is_over():
-            await self.system._next_change()
+            await self.system.changed()
 
     async def _load_foreign(self, container: str, components: list[Component]) -> None:
         """Have a container of another program load its nodes, one after the other."""

@@ -17,11 +17,14 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode._sudden_end import SENDS
 from aionode.errors import ProgramStartError
 from aionode.system import _guardian
+from aionode.system._guardian import LOOK_S, Program, descendants, owned_by, send
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 __all__ = ["Guard", "ProgramDescription", "RunningProgram"]
+
+LOST: Final = "the guardian of the system has ended"
 
 END_LIMIT_SEC: Final = 30.0
 """How long the guardian is waited for at the end, in seconds: both signals, for two generations."""
@@ -71,14 +74,15 @@ class RunningProgram:
         number: By which the guardian knows it.
         pid: Of its first process, which is also its process group.
         started: Done when it runs; fails with ProgramStartError.
-        exited: Done when its first process has ended, with the exit code; negative for a signal.
+        exited: Done when its first process has ended, with the exit code; negative for a signal,
+            None if nobody knows, as the guardian was gone.
         gone: Done when no process of it is left.
     """
 
     number: int
     pid: int = 0
     started: asyncio.Future[None] = field(default_factory=future)
-    exited: asyncio.Future[int] = field(default_factory=future)
+    exited: asyncio.Future[int | None] = field(default_factory=future)
     gone: asyncio.Future[None] = field(default_factory=future)
 
     def note(self, event: Mapping[str, Any], argv: Sequence[str]) -> None:
@@ -87,18 +91,17 @@ class RunningProgram:
             self.pid = event["pid"]
             settle(self.started, None)
         elif event["event"] == "refused":
-            self.started.set_exception(ProgramStartError(list(argv), event["text"]))
-            settle(self.exited, -signal.SIGKILL)
-            settle(self.gone, None)
+            self.refuse(argv, event["text"])
         elif event["event"] == "exited":
             settle(self.exited, event["code"])
         else:
             settle(self.gone, None)
 
-    def lose(self) -> None:
-        """End all waits: the guardian is gone, and its programs were killed."""
-        settle(self.started, None)
-        settle(self.exited, -signal.SIGKILL)
+    def refuse(self, argv: Sequence[str], text: str) -> None:
+        """End all waits: it was not started."""
+        if not self.started.done():
+            self.started.set_exception(ProgramStartError(list(argv), text))
+        settle(self.exited, None)
         settle(self.gone, None)
 
 
@@ -108,20 +111,76 @@ def settle(waiter: asyncio.Future[Any], value: object) -> None:
         waiter.set_result(value)
 
 
+class Orphans:
+    """Programs whose guardian was killed: the supervisor stops them itself, by the same signals.
+
+    They have other parents now, so nobody learns their exit codes. All processes of the system are
+    looked through for theirs, ten times a second until none is left.
+
+    Args:
+        guardian: The process of the guardian.
+        programs: The programs, and what they were started by.
+    """
+
+    def __init__(
+        self, guardian: int, programs: Iterable[tuple[RunningProgram, ProgramDescription]]
+    ) -> None:
+        self._left: dict[int, tuple[RunningProgram, Program]] = {}
+        for running, description in programs:
+            # One whose start was under way is stopped; its session is not known, but its token is.
+            pid = running.pid or -1
+            program = Program(running.number, pid, -1, list(description.ladder), guardian)
+            if not running.started.done():
+                running.refuse(description.argv, LOST)
+                program.note_end()
+            self._left[running.number] = running, program
+        self._look()
+
+    def stop(self, running: RunningProgram) -> None:
+        """Stop one by the signals of its description."""
+        if running.number in self._left:
+            self._left[running.number][1].stop()
+
+    def kill(self) -> None:
+        """Kill all, now."""
+        for pids in self._owned().values():
+            for pid in pids:
+                send(os.kill, pid, signal.SIGKILL)
+
+    def _owned(self) -> dict[int, list[int]]:
+        return owned_by([program for _, program in self._left.values()], descendants(0))
+
+    def _look(self) -> None:
+        owned = self._owned()
+        for number, (running, program) in list(self._left.items()):
+            rest = owned.get(number, [])
+            if not program.ended and program.pid not in rest:
+                program.note_end()
+                settle(running.exited, None)
+            if not rest:
+                settle(running.gone, None)
+                del self._left[number]
+            elif program.stopping:
+                program.advance(rest)
+        if self._left:
+            asyncio.get_running_loop().call_later(LOOK_S, self._look)
+
+
 class Guard:
     """The guardian of one system, from `open` to `close`.
 
     Args:
-        on_lost: Called if the guardian ends before it is told to.
+        on_lost: Called with its exit code if the guardian ends before it is told to.
     """
 
-    def __init__(self, on_lost: Callable[[], object]) -> None:
+    def __init__(self, on_lost: Callable[[int], object]) -> None:
         self._on_lost = on_lost
         self._loop = asyncio.get_running_loop()
         self._link, self._other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._link.setblocking(False)
         self._process: subprocess.Popen[bytes] | None = None
-        self._programs: dict[int, tuple[RunningProgram, Sequence[str]]] = {}
+        self._programs: dict[int, tuple[RunningProgram, ProgramDescription]] = {}
+        self._orphans: Orphans | None = None
         self._last_number = 0
         self._unsent: list[tuple[bytes, list[int]]] = []
         self._ended = asyncio.Event()
@@ -155,13 +214,10 @@ class Guard:
         """
         self._last_number += 1
         program = RunningProgram(self._last_number)
-        self._programs[program.number] = (program, description.argv)
         if self._ended.is_set():
-            program.started.set_exception(
-                ProgramStartError(list(description.argv), "the guardian of the system has ended")
-            )
-            program.lose()
+            program.refuse(description.argv, LOST)
             return program
+        self._programs[program.number] = (program, description)
         text = os.memfd_create("aionode-program")
         os.write(text, description.encoded())
         os.lseek(text, 0, os.SEEK_SET)
@@ -172,11 +228,10 @@ class Guard:
 
     def stop(self, program: RunningProgram) -> None:
         """Have a program stopped by the signals of its description."""
-        self._send({"do": "stop", "number": program.number})
-
-    def kill(self) -> None:
-        """Have every process of the system killed, now."""
-        self._send({"do": "kill"})
+        if self._orphans is None:
+            self._send({"do": "stop", "number": program.number})
+        else:
+            self._orphans.stop(program)
 
     def _send(self, command: Mapping[str, Any], descriptors: Sequence[int] = ()) -> None:
         self._unsent.append((json.dumps(command).encode(), list(descriptors)))
@@ -200,6 +255,8 @@ class Guard:
 
     def _kill_at_sudden_end(self, _ends_ns: int) -> bool:
         """Have every process killed when a second signal ends this process at once."""
+        if self._orphans is not None:
+            self._orphans.kill()
         with contextlib.suppress(OSError):
             self._link.send(json.dumps({"do": "kill"}).encode())
         return False
@@ -216,8 +273,8 @@ class Guard:
                 self._note_end()
                 return
             event = json.loads(packet)
-            program, argv = self._programs[event["number"]]
-            program.note(event, argv)
+            program, description = self._programs[event["number"]]
+            program.note(event, description.argv)
             if program.gone.done():
                 del self._programs[event["number"]]
 
@@ -226,12 +283,9 @@ class Guard:
         self._ended.set()
         if self._closing:
             return
-        for program, _ in reversed(self._programs.values()):
-            if program.pid and not program.exited.done():
-                with contextlib.suppress(ProcessLookupError, PermissionError):
-                    os.killpg(program.pid, signal.SIGKILL)
-            program.lose()
-        self._on_lost()
+        assert self._process is not None  # noqa: S101  # set by `open`
+        self._orphans = Orphans(self._process.pid, self._programs.values())
+        self._on_lost(self._process.wait())
 
     async def close(self) -> bool:
         """End the guardian, which stops what is left; return whether it has ended."""

@@ -27,9 +27,21 @@ import subprocess
 import sys
 import time
 from contextlib import suppress
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["TOKEN_VARIABLE", "Guardian", "Program", "main"]
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = [
+    "LOOK_S",
+    "TOKEN_VARIABLE",
+    "Guardian",
+    "Program",
+    "descendants",
+    "main",
+    "owned_by",
+    "send",
+]
 
 TOKEN_VARIABLE = "AIONODE_SYSTEM"  # noqa: S105  # no secret: says which system a process is of
 PR_SET_CHILD_SUBREAPER = 36
@@ -48,11 +60,14 @@ class Program:
         gone: Whether no process is left.
         output: The end of its output that is read when the supervisor is gone.
         ladder: The signals that end it, and how long each is waited for, in seconds.
+        token: What is in the environment of its processes.
     """
 
-    def __init__(self, number: int, pid: int, output: int, ladder: list[tuple[str, float]]) -> None:
+    def __init__(
+        self, number: int, pid: int, output: int, ladder: list[tuple[str, float]], guardian: int
+    ) -> None:
         self.number, self.pid, self.output, self.ladder = number, pid, output, ladder
-        self.token = token_of(number)
+        self.token = token_of(guardian, number)
         self.ended = self.gone = False
         self.stopping = False
         self._steps: list[tuple[str, float]] = []
@@ -105,9 +120,9 @@ def send(function: Any, pid: int, number: signal.Signals) -> None:
         function(pid, number)
 
 
-def token_of(number: int) -> str:
+def token_of(guardian: int, number: int) -> str:
     """Return what stands in the environment of the processes of a program."""
-    return f"{os.getpid()}.{number}"
+    return f"{guardian}.{number}"
 
 
 class Guardian:
@@ -201,7 +216,8 @@ class Guardian:
         with open(description, "rb") as file:  # a descriptor
             program = json.load(file)
         env = program["env"]
-        env[TOKEN_VARIABLE] = ":".join(filter(None, [env.get(TOKEN_VARIABLE), token_of(number)]))
+        token = token_of(os.getpid(), number)
+        env[TOKEN_VARIABLE] = ":".join(filter(None, [env.get(TOKEN_VARIABLE), token]))
         try:
             process = subprocess.Popen(  # noqa: S603  # the programs of the user's system
                 program["argv"],
@@ -218,7 +234,9 @@ class Guardian:
             self._tell(event="refused", number=number, text=str(error))
         else:
             process.returncode = 0  # it is reaped here, not by subprocess
-            self._programs[number] = Program(number, process.pid, output, program["ladder"])
+            self._programs[number] = Program(
+                number, process.pid, output, program["ladder"], os.getpid()
+            )
             self._tell(event="started", number=number, pid=process.pid)
         finally:
             for descriptor in (stdin, stdout, stderr):
@@ -254,7 +272,7 @@ class Guardian:
         stopping = [one for one in self._programs.values() if one.stopping and not one.gone]
         if not stopping:
             return
-        owned = self._owned()
+        owned = owned_by(self._programs.values(), descendants(os.getpid()))
         for program in stopping:
             rest = owned.get(program.number, [])
             if program.ended and not rest:
@@ -270,21 +288,29 @@ class Guardian:
                 os.close(program.output)
             del self._programs[program.number]
 
-    def _owned(self) -> dict[int, list[int]]:
-        """Return the live processes of each program, by its number."""
-        sessions = {program.pid: program.number for program in self._programs.values()}
-        tokens = {program.token: program.number for program in self._programs.values()}
-        owners: dict[int, int] = {}
-        for pid, parent, session in descendants():
-            number = sessions.get(session, owners.get(parent))
-            if number is None:
-                number = next((tokens[one] for one in tokens_in(pid) if one in tokens), None)
-            if number is not None:
-                owners[pid] = number
-        owned: dict[int, list[int]] = {}
-        for pid, number in owners.items():
-            owned.setdefault(number, []).append(pid)
-        return owned
+
+def owned_by(
+    programs: Iterable[Program], processes: Iterable[tuple[int, int, int]]
+) -> dict[int, list[int]]:
+    """Return the live processes of each program, by its number.
+
+    Args:
+        programs: The programs.
+        processes: Process, parent and session of those that may be theirs, parents first.
+    """
+    sessions = {program.pid: program.number for program in programs}
+    tokens = {program.token: program.number for program in programs}
+    owners: dict[int, int] = {}
+    for pid, parent, session in processes:
+        number = sessions.get(session, owners.get(parent))
+        if number is None:
+            number = next((tokens[one] for one in tokens_in(pid) if one in tokens), None)
+        if number is not None:
+            owners[pid] = number
+    owned: dict[int, list[int]] = {}
+    for pid, number in owners.items():
+        owned.setdefault(number, []).append(pid)
+    return owned
 
 
 def joining(cgroup: str | None) -> Any:
@@ -299,14 +325,18 @@ def joining(cgroup: str | None) -> Any:
     return join
 
 
-def descendants() -> list[tuple[int, int, int]]:
-    """Return process, parent and session of all live descendants, parents first."""
+def descendants(ancestor: int) -> list[tuple[int, int, int]]:
+    """Return process, parent and session of all live descendants, parents first.
+
+    Args:
+        ancestor: The process; 0 for that of all others.
+    """
     below: dict[int, list[tuple[int, int, int]]] = {}
     for name in os.listdir("/proc"):  # noqa: PTH208  # every import here takes time at each start
         if name.isdigit() and (fields := stat_of(name)) and fields[0] not in {"Z", "X"}:
             parent, session = int(fields[1]), int(fields[3])
             below.setdefault(parent, []).append((int(name), parent, session))
-    found = below.get(os.getpid(), [])
+    found = below.get(ancestor, [])
     for pid, _, _ in found:  # which grows meanwhile
         found.extend(below.get(pid, []))
     return found
@@ -314,7 +344,7 @@ def descendants() -> list[tuple[int, int, int]]:
 
 def children() -> list[int]:
     """Return the live processes below this one."""
-    return [pid for pid, _, _ in descendants()]
+    return [pid for pid, _, _ in descendants(os.getpid())]
 
 
 def stat_of(name: str) -> list[str]:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, ClassVar, Protocol, runtime_checkable
 
 from aionode.errors import ServiceError
 from aionode.graph import EndpointKind
@@ -44,8 +44,30 @@ class Fact(Protocol):
         ...
 
 
+class GraphFact:
+    """A fact about a name in the graph, which is the first field of the class."""
+
+    timeout_sec: float
+    _text: ClassVar[str]  # with {} for the name
+    _endpoints: ClassVar[Sequence[tuple[EndpointKind, str]]] = ()  # kinds, and ends of names
+
+    def __str__(self) -> str:
+        """Return what is awaited."""
+        return self._text.format(self._name)
+
+    @property
+    def _name(self) -> str:
+        """The full name; the leading slash may be left out."""
+        return f"/{getattr(self, fields(self)[0].name).lstrip('/')}"  # type: ignore[arg-type]
+
+    async def wait(self, node: Node) -> None:
+        """Return when all of its endpoints are there."""
+        for kind, end in self._endpoints:
+            await endpoint_of(node, kind, self._name + end)
+
+
 @dataclass(frozen=True)
-class NodeExists:
+class NodeExists(GraphFact):
     """A node is in the graph.
 
     Attributes:
@@ -53,21 +75,18 @@ class NodeExists:
         timeout_sec: How long it may take, in seconds.
     """
 
+    _text = "node {}"
     name: str
     timeout_sec: float = 10.0
 
-    def __str__(self) -> str:
-        """Return what is awaited."""
-        return f"node {absolute(self.name)}"
-
     async def wait(self, node: Node) -> None:
         """Return when it is there."""
-        name = absolute(self.name)
+        name = self._name
         await node.graph.until(lambda: bool(node.graph.nodes_named(name)), name)
 
 
 @dataclass(frozen=True)
-class TopicPublished:
+class TopicPublished(GraphFact):
     """A topic has a publisher.
 
     Attributes:
@@ -75,20 +94,14 @@ class TopicPublished:
         timeout_sec: How long it may take, in seconds.
     """
 
+    _text = "a publisher of {}"
+    _endpoints = ((EndpointKind.PUBLISHER, ""),)
     topic: str
     timeout_sec: float = 10.0
 
-    def __str__(self) -> str:
-        """Return what is awaited."""
-        return f"a publisher of {absolute(self.topic)}"
-
-    async def wait(self, node: Node) -> None:
-        """Return when it has one."""
-        await endpoint_of(node, EndpointKind.PUBLISHER, absolute(self.topic))
-
 
 @dataclass(frozen=True)
-class ServiceReady:
+class ServiceReady(GraphFact):
     """A service has a server.
 
     Attributes:
@@ -96,20 +109,14 @@ class ServiceReady:
         timeout_sec: How long it may take, in seconds.
     """
 
+    _text = "service {}"
+    _endpoints = ((EndpointKind.SERVER, ""),)
     service: str
     timeout_sec: float = 10.0
 
-    def __str__(self) -> str:
-        """Return what is awaited."""
-        return f"service {absolute(self.service)}"
-
-    async def wait(self, node: Node) -> None:
-        """Return when it has one."""
-        await endpoint_of(node, EndpointKind.SERVER, absolute(self.service))
-
 
 @dataclass(frozen=True)
-class ActionReady:
+class ActionReady(GraphFact):
     """An action has a server: goals can be sent, cancelled and awaited.
 
     Attributes:
@@ -117,22 +124,17 @@ class ActionReady:
         timeout_sec: How long it may take, in seconds.
     """
 
+    _text = "action {}"
+    _endpoints = tuple(
+        (EndpointKind.SERVER, f"/_action/{service}")
+        for service in ("send_goal", "cancel_goal", "get_result")
+    )
     action: str
     timeout_sec: float = 10.0
 
-    def __str__(self) -> str:
-        """Return what is awaited."""
-        return f"action {absolute(self.action)}"
-
-    async def wait(self, node: Node) -> None:
-        """Return when it has one."""
-        for service in ("send_goal", "cancel_goal", "get_result"):
-            name = f"{absolute(self.action)}/_action/{service}"
-            await endpoint_of(node, EndpointKind.SERVER, name)
-
 
 @dataclass(frozen=True)
-class NodeActive:
+class NodeActive(GraphFact):
     """A managed node is active, whoever has activated it.
 
     Attributes:
@@ -140,16 +142,13 @@ class NodeActive:
         timeout_sec: How long it may take, in seconds.
     """
 
+    _text = "managed node {} to be active"
     name: str
     timeout_sec: float = 10.0
 
-    def __str__(self) -> str:
-        """Return what is awaited."""
-        return f"managed node {absolute(self.name)} to be active"
-
     async def wait(self, node: Node) -> None:
         """Return when it is: its state is asked for, and again after each of its transitions."""
-        name = absolute(self.name)
+        name = self._name
         moved = asyncio.Event()
         events = node.create_subscription(
             TransitionEvent, f"{name}/transition_event", lambda _: moved.set()
@@ -174,11 +173,6 @@ class NodeActive:
 async def endpoint_of(node: Node, kind: EndpointKind, name: str) -> None:
     """Return when the graph has an endpoint of this kind and name."""
     await node.graph.until(lambda: node.graph.count(kind, name) > 0, name)
-
-
-def absolute(name: str) -> str:
-    """Return a full name; the leading slash may be left out."""
-    return f"/{name.lstrip('/')}"
 
 
 def facts_of(ready: Fact | Sequence[Fact] | None, subject: str) -> tuple[Fact, ...]:

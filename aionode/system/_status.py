@@ -90,13 +90,17 @@ class SystemHealth:
     members: dict[str, State]
 
 
-def shell_status(code: int) -> int:
-    """Return an exit code as a shell has it: 128 and more for signals."""
+def shell_status(code: int | None) -> int:
+    """Return an exit code as a shell has it: 128 and more for signals; 1 if it is not known."""
+    if code is None:
+        return 1
     return 128 - code if code < 0 else code
 
 
-def end_text(code: int) -> str:
-    """Return how a process ended, given its exit code."""
+def end_text(code: int | None) -> str:
+    """Return how a process ended, given its exit code; None if that is not known."""
+    if code is None:
+        return "ended; how, only the guardian knew"
     if code >= 0:
         return f"ended with exit status {code}"
     try:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, Self, Unpack
 
 from aionode import names
 from aionode._concurrency import to_the_end
+from aionode.clock import S_TO_NS, SteadyClock
 from aionode.context import Context
 from aionode.errors import ConfigurationError, MemberNotFoundError
 from aionode.node import Node
@@ -28,7 +29,13 @@ from aionode.system._output import OutputReader
 from aionode.system._process import ProcessMember, ProcessOptions
 from aionode.system._readiness import Fact, NodeExists, facts_of
 from aionode.system._report import exit_report
-from aionode.system._status import MemberEnd, MemberStatus, SystemHealth
+from aionode.system._status import (
+    MemberEnd,
+    MemberStatus,
+    SystemHealth,
+    end_text,
+    shell_status,
+)
 from aionode.system._usage import UsageMeter
 
 if TYPE_CHECKING:
@@ -94,6 +101,8 @@ class System:
         self._usage = UsageMeter()
         self._entered = False
         self._changed = asyncio.Event()
+        self._clock = SteadyClock()
+        self._since_ns = 0
         self.tasks: asyncio.TaskGroup
         self.guard: Guard
         self.reader: OutputReader
@@ -258,6 +267,7 @@ class System:
         if self._entered:
             raise RuntimeError("System: cannot be entered twice; create another one")
         self._entered = True
+        self._since_ns = self._clock.now_ns()
         self.graph_node = Node(
             f"aionode_system_{self.name}",
             context=self.context,
@@ -310,8 +320,14 @@ class System:
         if self.first_failure is not None:
             self.log.note(exit_report(self.ends, self.first_failure))
 
-    def _note_guardian_lost(self) -> None:
-        self.log.note("the guardian of the system has ended; all processes were killed")
+    def _note_guardian_lost(self, code: int) -> None:
+        """End: nothing would stop the processes any more if this one were killed as well."""
+        ran_sec = (self._clock.now_ns() - self._since_ns) / S_TO_NS
+        end = MemberEnd("the guardian", True, end_text(code), shell_status(code), ran_sec)
+        self.log.note(f"the guardian of the system {end.text}: the system ends")
+        self.ends.append(end)
+        if self._first_failure is None:
+            self._first_failure = end
         self.request_end()
 
     async def ready(self) -> None:
@@ -339,9 +355,14 @@ class System:
         while not self._over.is_set():
             if all(member.is_over() for member in self._members.values()):
                 return
-            await self._next_change()
+            await self.changed()
 
-    async def _next_change(self) -> None:
+    async def changed(self) -> None:
+        """Return when the state of a member changes next, or `request_end` is called.
+
+        A change that follows the call is not missed: check what you wait for, then call it, without
+        an ``await`` between. Cancelling is safe.
+        """
         if self._changed.is_set():
             self._changed = asyncio.Event()
         await self._changed.wait()
@@ -416,7 +437,7 @@ class System:
         }
 
     def note_change(self) -> None:
-        """Wake `wait`: a member has changed its state."""
+        """Wake those that wait for a change: a member has changed its state."""
         self._changed.set()
 
     def note_end(self, member: Member, end: MemberEnd, *, for_good: bool) -> None:
@@ -442,6 +463,6 @@ class System:
         self.log.note(f"{member.name} is stopped: it fails with {failed.name}")
         await member.stop()
         while not (failed.is_over() or failed.is_running_and_ready() or self.closing):
-            await self._next_change()
+            await self.changed()
         if not self.closing and failed.is_running_and_ready():
             await member.restart()

@@ -142,6 +142,51 @@ async def test_members_stop_in_reverse_order_each_after_the_one_before(
     assert ends.read_text() == "third second first "
 
 
+async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_killed(
+    system: System, output: io.StringIO, tmp_path: Path
+) -> None:
+    """The supervisor does its work, and ends: nothing would stop them if that were killed too."""
+    ends, orphan = tmp_path / "ends", tmp_path / "orphan"
+    script = (
+        f"trap 'sleep 0.05; echo $0 >>{ends}; exit' INT; (setsid sh -c 'trap \"\" INT; "
+        f"echo $$ >>{orphan}; while :; do sleep 1; done' &); echo up; while :; do sleep 0.01; done"
+    )
+    async with system:
+        for name in ("first", "second"):
+            system.process(name, ["sh", "-c", script, name], term_after_sec=0.2)
+        await until(lambda: orphan.exists() and orphan.read_text().count("\n") == 2)
+        await until(lambda: all(system.log.last_lines(one) for one in ("first", "second")))
+        kill_guardian(system)
+        await system.wait()
+        with pytest.raises(NotReadyError, match="could not be started"):
+            await system.process("late", FOREVER).wait_ready()
+
+    assert ends.read_text().split() == ["second", "first"]
+    assert not any(map(alive, map(int, orphan.read_text().split())))
+    assert system.exit_status == 128 + signal.SIGKILL
+    assert "the first to fail was the guardian: it was killed by SIGKILL" in output.getvalue()
+
+
+async def test_a_program_that_ends_after_the_guardian_was_killed_has_ended(system: System) -> None:
+    """Nobody knows how, so it has failed."""
+    async with system:
+        system.process("brief", FOREVER)
+        await system.ready()
+        pid = system.status()["brief"].pid
+        kill_guardian(system)
+        await system.wait()
+        os.kill(pid or 0, signal.SIGTERM)
+        await until(lambda: system.status()["brief"].state == "failed")
+
+        assert system.status()["brief"].error == "ended; how, only the guardian knew"
+
+
+def kill_guardian(system: System) -> None:
+    """Kill the guardian of a system."""
+    assert system.guard._process is not None
+    system.guard._process.kill()
+
+
 async def test_a_program_that_ignores_signals_is_killed(system: System) -> None:
     """SIGINT, then SIGTERM, then SIGKILL."""
     script = "trap '' INT TERM; echo deaf; while :; do sleep 1; done"
