@@ -120,9 +120,10 @@ async def node_hop(rate_hz: int, count: int, msg: Message) -> list[int]:
         if len(samples) == count:
             done.set()
 
-    context = Context(transport="local")
+    # Where the machine stands still for a while, everything waits, and nothing is dropped.
+    context = Context(transport="local", queue_bytes=count * 2**21)
     async with Node("writer", context=context) as writer, Node("reader", context=context) as reader:
-        reader.create_subscription(type(msg), "/bench", callback, 1000)
+        reader.create_subscription(type(msg), "/bench", callback, count)
         publisher = writer.create_publisher(type(msg), "/bench", 1000)
 
         def send() -> None:
