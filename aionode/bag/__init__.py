@@ -19,12 +19,14 @@ if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
     from aionode.bag._comparison import Difference, compare
     from aionode.bag._copy import convert, cut, merge
+    from aionode.bag._losses import Lost
     from aionode.bag._machine_use import MachineUseWarning
     from aionode.bag._outputs import Outputs
     from aionode.bag._player import Player
     from aionode.bag._qos import qos_overrides
     from aionode.bag._record import Record, TopicInfo
-    from aionode.bag._recorder import Recorder, TopicStats
+    from aionode.bag._recorder import Recorder
+    from aionode.bag._recording import TopicStats
     from aionode.bag._repair import Checked, check, reindex
     from aionode.bag._replay import Replay, replay
     from aionode.bag._selection import Selection
@@ -35,6 +37,7 @@ __all__ = [
     "BagWriter",
     "Checked",
     "Difference",
+    "Lost",
     "MachineUseWarning",
     "Outputs",
     "Player",
@@ -60,6 +63,7 @@ PLACES = {
     "BagWriter": "_writer",
     "Checked": "_repair",
     "Difference": "_comparison",
+    "Lost": "_losses",
     "MachineUseWarning": "_machine_use",
     "Outputs": "_outputs",
     "Player": "_player",
@@ -68,7 +72,7 @@ PLACES = {
     "Replay": "_replay",
     "Selection": "_selection",
     "TopicInfo": "_record",
-    "TopicStats": "_recorder",
+    "TopicStats": "_recording",
     "check": "_repair",
     "compare": "_comparison",
     "convert": "_copy",
@@ -96,8 +100,9 @@ def __getattr__(name: str) -> Any:
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("aionode"):
             raise
+        missing = (error.name or "a module").partition(".")[0]
         raise ModuleNotFoundError(
-            f"aionode.bag: {error.name} is not installed; pip install 'aionode[bag]'",
+            f"aionode.bag: {missing} is not installed; pip install 'aionode[bag]'",
             name=error.name,
         ) from error
     globals()[name] = value

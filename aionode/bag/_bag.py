@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode._concurrency import run_in_thread
+from aionode.bag._losses import LOSSES, losses_from
 from aionode.bag._metadata import FILE_NAME, read_metadata, topics_in
 from aionode.bag._record import MOST_NS, Record, TopicInfo, time_of
 from aionode.bag._source import McapSource, RosbagsSource
@@ -41,6 +42,7 @@ class Bag:
             the messages of all; `connections` has them one by one.
         connections: Each topic with each of its types.
         custom_data: What its recorder has noted besides.
+        losses: What its recorder has lost, for each topic with losses; None if it does not tell.
     """
 
     def __init__(
@@ -49,6 +51,9 @@ class Bag:
         self.path = path
         self.metadata = metadata or {}
         self.custom_data: dict[str, str] = dict(self.metadata.get("custom_data") or {})
+        self.losses = losses_from(self.custom_data)
+        if self.losses is not None:
+            del self.custom_data[LOSSES]
         self._sources = sources
         self.connections = merged_topics(sources, listed_topics(self.metadata))
         self.topics: dict[str, TopicInfo] = {}

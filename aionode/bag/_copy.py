@@ -6,6 +6,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from aionode.bag._bag import Bag, in_order, open  # noqa: A004  # as in `bag.open(path)`
+from aionode.bag._losses import LOSSES, added_losses, losses_text
 from aionode.bag._selection import Selection
 from aionode.bag._writer import BagWriter
 
@@ -45,7 +46,7 @@ def cut(
     with open(path) as bag:
         if topics is not None:
             topics = list(topics)
-        return written(bag.read(topics, start, end), out, bag.custom_data, options)
+        return written(bag.read(topics, start, end), out, custom_data_of([bag]), options)
 
 
 def merge(paths: Iterable[str | PathLike[str]], out: str | PathLike[str], **options: Any) -> int:
@@ -88,11 +89,17 @@ def convert(
     """
     with ExitStack() as stack:
         bags = [stack.enter_context(open(path)) for path in paths]
-        custom: dict[str, str] = {}
-        for bag in bags:
-            custom |= bag.custom_data
         records = merged_records(bags, selection, start, end)
-        return written(records, out, custom, options)
+        return written(records, out, custom_data_of(bags), options)
+
+
+def custom_data_of(bags: list[Bag]) -> dict[str, str]:
+    """Return the custom data of a bag that is made of others, with the sums of their losses."""
+    custom: dict[str, str] = {}
+    for bag in bags:
+        custom |= bag.custom_data
+    losses = added_losses(bag.losses for bag in bags)
+    return custom if losses is None else custom | {LOSSES: losses_text(losses)}
 
 
 def merged_records(

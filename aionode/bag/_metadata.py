@@ -21,6 +21,7 @@ __all__ = [
     "metadata_of",
     "metadata_text",
     "read_metadata",
+    "sync_folder",
     "topics_in",
     "write_metadata",
 ]
@@ -104,6 +105,25 @@ def write_metadata(folder: Path, metadata: Mapping[str, Any]) -> None:
         file.flush()
         os.fsync(file.fileno())
     waiting.replace(folder / FILE_NAME)
+    sync_folder(folder)
+
+
+def sync_folder(folder: Path) -> None:
+    """Wait until the disk has the names of the files in a folder, so that a power cut keeps them.
+
+    A folder that cannot be read is left to the system.
+
+    Raises:
+        OSError: the disk fails.
+    """
+    try:
+        fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except PermissionError:
+        return
+    try:
+        os.fsync(fd)
+    finally:
+        os.close(fd)
 
 
 def read_metadata(folder: Path) -> dict[str, Any]:

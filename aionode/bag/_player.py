@@ -166,6 +166,11 @@ class Player:
         return time_of(self._now_ns())
 
     @property
+    def playing(self) -> bool:
+        """Whether it plays, or is paused in between."""
+        return self._is_playing
+
+    @property
     def paused(self) -> bool:
         """Whether it is paused."""
         return self._is_paused

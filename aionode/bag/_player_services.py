@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from aionode.bag._recorder_services import answered
 from aionode.clock import Duration, Time
 from aionode.interfaces.rosbag2_interfaces import srv as bag_srv
 
@@ -17,6 +18,10 @@ __all__ = ["serve_player"]
 
 class Playing(Protocol):
     """What of a `Player` is told and controlled."""
+
+    @property
+    def playing(self) -> bool:
+        """Whether it plays, or is paused in between."""
 
     @property
     def paused(self) -> bool:
@@ -66,6 +71,19 @@ def serve_player(node: Node, player: Playing) -> None:  # noqa: C901  # a handle
 
         return handler
 
+    def resume(request: Any, response: Any) -> Any:
+        stamp = getattr(request, "resume_time", None)
+        if stamp is not None and Time.from_msg(stamp).nanoseconds:
+            return answered(response, 3, "a player has no resume_time: leave it 0")
+        player.resume()
+        return answered(response, 0)
+
+    def stop(_: Any, response: Any) -> Any:
+        if not player.playing:
+            return answered(response, 1, "the player is stopped already")
+        player.stop()
+        return answered(response, 0)
+
     def is_paused(_: Any, response: Any) -> Any:
         response.paused = player.paused
         return response
@@ -107,9 +125,9 @@ def serve_player(node: Node, player: Playing) -> None:  # noqa: C901  # a handle
 
     handlers: dict[str, tuple[Any, Callable[[Any, Any], Any]]] = {
         "pause": (bag_srv.Pause, doing(player.pause)),
-        "resume": (bag_srv.Resume, doing(player.resume)),
+        "resume": (bag_srv.Resume, resume),
         "toggle_paused": (bag_srv.TogglePaused, doing(player.toggle_paused)),
-        "stop": (bag_srv.Stop, doing(player.stop)),
+        "stop": (bag_srv.Stop, stop),
         "is_paused": (bag_srv.IsPaused, is_paused),
         "get_rate": (bag_srv.GetRate, get_rate),
         "set_rate": (bag_srv.SetRate, set_rate),

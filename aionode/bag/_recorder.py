@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from contextlib import AsyncExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
-from aionode._concurrency import run_in_thread, to_the_end
+from aionode._concurrency import run_in_thread
 from aionode.bag._recorder_services import RecorderServices
+from aionode.bag._recording import Key, Recording, TopicStats, summary_of
 from aionode.bag._selection import Selection
 from aionode.bag._types import known_class
 from aionode.bag._writer import BagWriter, topic_info
-from aionode.bag._writer_thread import Row, WriterThread
-from aionode.errors import BagError, InterfaceNotFoundError
+from aionode.bag._writer_thread import Row
+from aionode.clock import Time
+from aionode.errors import BagError, InterfaceNotFoundError, TimeSourceChangedError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.node import Node
 from aionode.parameter import Parameter
@@ -21,14 +24,12 @@ from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Coroutine, Iterable, Mapping
     from os import PathLike
     from types import TracebackType
 
-    from aionode.bag._record import TopicInfo
-    from aionode.clock import Time
     from aionode.context import Context
-    from aionode.endpoints.subscription import MessageInfo, Subscription
+    from aionode.endpoints.subscription import MessageInfo
     from aionode.graph import EndpointInfo
 
 __all__ = ["Recorder", "TopicStats", "adapted_qos"]
@@ -40,21 +41,32 @@ LEAST_DEPTH: Final = 1000
 BACK_NS: Final = 1_000_000_000
 """A time that is so much before the last one is a clock that was set back, in nanoseconds."""
 
-Key = tuple[str, str, str]
+NODE_TIME: Final = 0
+PUBLISH_TIME: Final = 1
+RECEIVE_TIME: Final = 2
+"""By which time something is to happen, as rosbag2's services number them."""
 
 
-class TopicStats(NamedTuple):
-    """What became of the messages of one topic.
+class Due(NamedTuple):
+    """What is to happen when a message of a time comes.
 
     Attributes:
-        recorded: How many are in the bag, or on their way to it.
-        lost_in_transport: How many were published and did not arrive, by their numbers.
-        lost_in_recorder: How many arrived and were not written.
+        time_ns: The time, in nanoseconds since 1970.
+        mode: Whether that is the time of publishing or of receiving.
+        topic: The number of the topic that has to have it; -1 for any.
+        act: Called then, before the message is recorded.
     """
 
-    recorded: int
-    lost_in_transport: int
-    lost_in_recorder: int
+    time_ns: int
+    mode: int
+    topic: int
+    act: Callable[[], None]
+
+    def has_come(self, topic: int, time_ns: int, sent_ns: int) -> bool:
+        """Return whether a message has the time."""
+        if self.topic not in {-1, topic}:
+            return False
+        return (sent_ns if self.mode == PUBLISH_TIME else time_ns) >= self.time_ns
 
 
 class Recorder:
@@ -76,19 +88,24 @@ class Recorder:
         max_messages: How many messages a file takes; 0 for no limit.
         max_files: How many files are kept: older ones are removed; 0 for all.
         cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
+        cache_duration_sec: How long messages are kept in snapshot mode, in seconds; 0 for no limit.
         snapshot: Whether messages are only kept, until `snapshot` writes them.
         repeat_latched: Whether each further file begins with the last messages of the topics whose
-            publishers are all transient local.
+            publishers are all transient local; or for which topics, and how many messages of each:
+            0 for as many as are offered, ``*`` for all others.
         discovery: Whether topics that appear later are recorded.
         include_unpublished: Whether topics that only have subscriptions are recorded as well.
+        ignore_leaf: Whether topics without any other subscription are left out.
+        static_topics: Types by topic: these topics are recorded although nobody publishes yet.
         qos: Profiles of subscriptions by topic, in place of those that fit the publishers.
         use_sim_time: Whether the times are those of ``/clock``.
         start_paused: Whether it begins paused.
+        loss_report_hz: How often losses are published at most, in Hz; 0 for never.
         custom_data: What else the metadata say.
 
     Attributes:
+        path: The folder of the bag.
         node: Its node.
-        topics: The topics that it has found, with their types.
     """
 
     def __init__(
@@ -105,13 +122,17 @@ class Recorder:
         max_messages: int = 0,
         max_files: int = 0,
         cache_bytes: int = CACHE_BYTES,
+        cache_duration_sec: float = 0.0,
         snapshot: bool = False,
-        repeat_latched: bool = True,
+        repeat_latched: bool | Mapping[str, int] = True,
         discovery: bool = True,
         include_unpublished: bool = False,
+        ignore_leaf: bool = False,
+        static_topics: Mapping[str, str] | None = None,
         qos: Mapping[str, QoSProfile] | None = None,
         use_sim_time: bool = False,
         start_paused: bool = False,
+        loss_report_hz: float = 1.0,
         custom_data: Mapping[str, str] | None = None,
     ) -> None:
         if max_files and not (max_bytes or max_duration_sec or max_messages):
@@ -125,7 +146,6 @@ class Recorder:
         self._node_name = node_name
         self._make_writer = partial(
             BagWriter,
-            path,
             compression=compression,
             max_bytes=max_bytes,
             max_duration_ns=int(max_duration_sec * 1e9),
@@ -133,23 +153,32 @@ class Recorder:
             max_files=max_files,
             custom_data=custom_data,
         )
-        self._cache_bytes = cache_bytes
+        self._make_recording = partial(
+            Recording,
+            cache_bytes=cache_bytes,
+            cache_ns=int(cache_duration_sec * 1e9),
+            snapshot=snapshot,
+            on_failure=self._note_failure,
+        )
         self._is_snapshot = snapshot
-        self._repeat_latched = repeat_latched
+        everything = {"*": 0} if repeat_latched is True else {}
+        self._repeated = everything if isinstance(repeat_latched, bool) else dict(repeat_latched)
         self._discovers = discovery
         self._unpublished = include_unpublished
+        self._ignores_leaf = ignore_leaf
+        self._static_topics = dict(static_topics or {})
         self._qos = dict(qos or {})
         self._use_sim_time = use_sim_time
         self._paused = start_paused
-        self._numbers: dict[Key, int] = {}
-        self._topics: list[tuple[TopicInfo, int]] = []
-        self._taken: list[int] = []
-        self._refused: list[int] = []
-        self._subscriptions: dict[int, Subscription[bytes]] = {}
+        self._loss_report_hz = loss_report_hz
         self._unknown: dict[str, frozenset[bytes]] = {}
         self._last_ns = 0
-        self._thread: WriterThread | None = None
+        self._recording: Recording | None = None
+        self._stats: dict[str, TopicStats] = {}
+        self._due: list[Due] = []
+        self._later: set[asyncio.Task[None]] = set()
         self._failed = asyncio.Event()
+        self._has_node = False
         self.node: Node = None  # type: ignore[assignment]  # until it is entered
 
     async def __aenter__(self) -> Self:
@@ -159,36 +188,21 @@ class Recorder:
             BagError: the folder exists.
             BagWriteError: it cannot be made.
         """
-        loop = asyncio.get_running_loop()
         async with AsyncExitStack() as stack:
-            writer = await run_in_thread(
-                partial(
-                    self._make_writer,
-                    on_split=lambda closed, opened: loop.call_soon_threadsafe(
-                        self._tell_split, closed, opened
-                    ),
-                )
-            )
-            self._writer = writer
-            self._thread = WriterThread(
-                writer,
-                self._topics,
-                self._cache_bytes,
-                snapshot=self._is_snapshot,
-                on_failure=lambda: void(loop.call_soon_threadsafe(self._note_failure)),
-            )
-            stack.push_async_callback(self._close_bag)
+            stack.push_async_callback(self.stop)
+            await self._open_bag()
             self.node = Node(
                 self._node_name,
                 context=self._context,
                 parameter_overrides=[Parameter("use_sim_time", value=self._use_sim_time)],
             )
             await stack.enter_async_context(self.node)
-            self._services = RecorderServices(self)
+            self._has_node = True
+            self._services = RecorderServices(self, self._loss_report_hz)
             self._tasks = await stack.enter_async_context(asyncio.TaskGroup())
+            stack.callback(self._cancel_tasks)
             await self._subscribe_to_new()
-            following = self._tasks.create_task(self._follow_graph())
-            stack.callback(following.cancel)
+            self._start_task(self._follow_graph())
             self._stack = stack.pop_all()
         return self
 
@@ -203,7 +217,7 @@ class Recorder:
         Raises:
             BagWriteError: the disk was full, or failed; what was written before can be read.
         """
-        await self._stack.__aexit__(kind, error, traceback)
+        await self._stack.__aexit__(None, None, None)  # an error of the block stays as it is
 
     # What a program does with it
 
@@ -215,33 +229,27 @@ class Recorder:
             msg: The message.
             time: When it was received; now by default.
 
+        It is counted as lost if there is no room for what waits for the disk.
+
         Raises:
             MessageError: a value does not fit its field.
-            QueueFullError: it has to wait for the disk, and there is no more room.
+            BagError: the recorder is stopped.
         """
         info = topic_info(topic, type(msg))
-        number = self._number(info, 0)
         time_ns = self._now_ns() if time is None else time.nanoseconds
-        self._put(Row(number, time_ns, time_ns, 0, cdr.encode(msg)))
+        recording = self._open_recording
+        number = recording.number_of(info, 0)
+        recording.put(Row(number, time_ns, time_ns, 0, cdr.encode(msg)))
 
     @property
     def stats(self) -> dict[str, TopicStats]:
-        """What was recorded and what was lost, by topic."""
-        found: dict[str, TopicStats] = {}
-        lost = {} if self._thread is None else self._thread.lost
-        for number, (info, _) in enumerate(self._topics):
-            subscription = self._subscriptions.get(number)
-            transport = dropped = 0
-            if subscription is not None:
-                transport, dropped = subscription.stats.lost, subscription.stats.dropped
-            not_written = lost.get(number, 0)
-            before = found.get(info.name, TopicStats(0, 0, 0))
-            found[info.name] = TopicStats(
-                before.recorded + self._taken[number] - not_written,
-                before.lost_in_transport + transport,
-                before.lost_in_recorder + self._refused[number] + dropped + not_written,
-            )
-        return found
+        """What was recorded and what was lost, by topic; of the last bag, once it is stopped."""
+        return self._stats if self._recording is None else self._recording.stats
+
+    @property
+    def recording(self) -> bool:
+        """Whether a bag is open: not after `stop`."""
+        return self._recording is not None
 
     @property
     def paused(self) -> bool:
@@ -257,37 +265,90 @@ class Recorder:
         """Record nothing until `resume`."""
         self._paused = True
 
-    def resume(self) -> None:
-        """Record again."""
-        self._paused = False
+    def resume(self, at: Time | None = None, *, mode: int = NODE_TIME, topic: str = "") -> None:
+        """Record again, at once or later.
+
+        Args:
+            at: From which time on; at once by default.
+            mode: By which time: 0 for that of the node, 1 for that of publishing, 2 for that of
+                receiving a message.
+            topic: The topic whose messages have that time; any by default.
+
+        Raises:
+            BagError: the topic is not recorded, or there is no such mode.
+        """
+        self._at(at, mode, topic, self._go_on)
 
     def start_discovery(self) -> None:
         """Record topics that appear."""
         self._discovers = True
-        self._tasks.create_task(self._subscribe_to_new())
+        self._start_task(self._subscribe_to_new())
 
     def stop_discovery(self) -> None:
         """Record no further topics."""
         self._discovers = False
 
-    async def split(self) -> None:
-        """Begin a new file.
+    async def split(
+        self, at: Time | None = None, *, mode: int = NODE_TIME, topic: str = ""
+    ) -> None:
+        """Begin a new file, at once or later; see `resume`.
 
         Raises:
+            BagError: the recorder is stopped, the topic is not recorded, or there is no such mode.
             BagWriteError: the disk is full, or fails.
         """
-        await self._in_thread(partial(self._writing.split, self._now_ns()))
+        thread = self._open_recording.thread
+        if at is None:
+            await self._open_recording.do(partial(thread.split, self._now_ns()))
+        else:
+            split = partial(thread.call, partial(thread.split, at.nanoseconds))
+            self._at(at, mode, topic, split)
+
+    async def stop(self) -> None:
+        """Write what has arrived, and close the bag; the node stays. Again has no effect.
+
+        Raises:
+            BagWriteError: the disk was full, or failed; what was written before can be read.
+        """
+        recording = self._recording
+        if recording is None:
+            return
+        for subscription in recording.subscriptions.values():
+            subscription.destroy()
+        self._due.clear()
+        await recording.close()
+        self._recording = None
+        self._stats = recording.stats
+        if self._has_node and (recording.thread.failure is not None or self._stats):
+            self.node.get_logger().info(self.summary())
+        recording.raise_failure()
+
+    async def record(self, path: str | PathLike[str] = "") -> None:
+        """Begin another bag, after `stop`.
+
+        Args:
+            path: Its folder, which must not exist; the same as before by default.
+
+        Raises:
+            BagError: a bag is open, or the folder exists.
+            BagWriteError: it cannot be made.
+        """
+        if self._recording is not None:
+            raise BagError(str(self.path), "the recorder records already", "stop it first")
+        self.path = path or self.path
+        await self._open_bag()
+        await self._subscribe_to_new()
 
     async def snapshot(self) -> None:
         """Write what is kept, in snapshot mode, and wait until it is on the disk.
 
         Raises:
-            BagError: it is not in snapshot mode.
+            BagError: it is not in snapshot mode, or is stopped.
             BagWriteError: the disk is full, or fails.
         """
         if not self._is_snapshot:
             raise BagError(str(self.path), "the recorder is not in snapshot mode")
-        await self._in_thread(self._writing.write_snapshot)
+        await self._open_recording.do(self._open_recording.thread.write_snapshot)
 
     async def failed(self) -> None:
         """Wait until nothing can be written any more: the disk is full, or fails.
@@ -295,75 +356,102 @@ class Recorder:
         Raises:
             BagWriteError: always, then.
         """
-        await self._failed.wait()
-        self._raise_failure()
+        while True:
+            await self._failed.wait()
+            self._failed.clear()
+            if self._recording is not None:
+                self._recording.raise_failure()
+
+    def summary(self) -> str:
+        """Return in one line what was recorded and what was lost."""
+        return summary_of(self.stats, str(self.path))
 
     # Inside
 
     @property
-    def _writing(self) -> WriterThread:
-        assert self._thread is not None  # noqa: S101  # it is entered
-        return self._thread
+    def _open_recording(self) -> Recording:
+        if self._recording is None:
+            raise BagError(str(self.path), "the recorder is stopped", "begin another bag: record()")
+        return self._recording
 
-    async def _in_thread(self, work: Any) -> None:
-        """Have the thread of the writer do something, and wait for it."""
+    async def _open_bag(self) -> None:
         loop = asyncio.get_running_loop()
-        done: asyncio.Future[None] = loop.create_future()
 
-        def finish() -> None:
-            if not done.done():
-                done.set_result(None)
+        def tell_split(closed: str, opened: str) -> None:
+            loop.call_soon_threadsafe(self._tell_split, closed, opened)
 
-        def run() -> None:
-            try:
-                work()
-            finally:
-                loop.call_soon_threadsafe(finish)
-
-        self._writing.call(run)
-        await done
-        self._raise_failure()
-
-    def _raise_failure(self) -> None:
-        failure = self._writing.failure
-        if failure is not None:
-            raise failure
+        writer = await run_in_thread(partial(self._make_writer, self.path, on_split=tell_split))
+        self._failed.clear()
+        self._recording = self._make_recording(writer)
 
     def _note_failure(self) -> None:
-        self.node.get_logger().error(f"{self._writing.failure}")
+        if self._recording is not None and self._has_node:
+            self.node.get_logger().error(f"{self._recording.thread.failure}")
         self._failed.set()
 
     def _now_ns(self) -> int:
         return self.node.get_clock().now().nanoseconds
 
-    def _number(self, info: TopicInfo, latched_depth: int) -> int:
-        number = self._numbers.get(info.key)
-        if number is None:
-            number = self._numbers[info.key] = len(self._topics)
-            self._topics.append((info, latched_depth))
-            self._taken.append(0)
-            self._refused.append(0)
-        return number
+    def _start_task(self, work: Coroutine[None, None, None]) -> None:
+        """Run something that ends with the recorder at the latest."""
+        task = self._tasks.create_task(work)
+        self._later.add(task)
+        task.add_done_callback(self._later.discard)
 
-    def _put(self, row: Row) -> None:
-        if self._writing.put(row):
-            self._taken[row.topic] += 1
+    def _cancel_tasks(self) -> None:
+        for task in self._later:
+            task.cancel()
+
+    def _at(self, at: Time | None, mode: int, topic: str, act: Callable[[], None]) -> None:
+        """Do something at once, at a time of the node, or with the first message of a time."""
+        if mode not in {NODE_TIME, PUBLISH_TIME, RECEIVE_TIME}:
+            raise BagError(str(self.path), f"there is no mode {mode}", "use 0, 1 or 2")
+        number = -1
+        if topic:
+            numbers = [n for key, n in self._open_recording.numbers.items() if key[0] == topic]
+            if not numbers:
+                raise BagError(str(self.path), f"topic {topic} is not recorded")
+            number = numbers[-1]
+        if at is None or at.nanoseconds <= self._now_ns():
+            act()
+        elif mode == NODE_TIME:
+            self._start_task(self._act_at(at, act))
         else:
-            self._refused[row.topic] += 1
+            self._due.append(Due(at.nanoseconds, mode, number, act))
+
+    async def _act_at(self, at: Time, act: Callable[[], None]) -> None:
+        clock = self.node.get_clock()
+        due = Time(nanoseconds=at.nanoseconds, clock_type=clock.clock_type)
+        while clock.now() < due:
+            with contextlib.suppress(TimeSourceChangedError):  # it counts by the new one then
+                await clock.sleep_until(due)
+        act()
+
+    def _act_on(self, number: int, time_ns: int, sent_ns: int) -> None:
+        """Do what is due before a message."""
+        for due in list(self._due):
+            if due.has_come(number, time_ns, sent_ns):
+                self._due.remove(due)
+                due.act()
+
+    def _go_on(self) -> None:
+        self._paused = False
 
     def _take(self, number: int, raw: bytes, info: MessageInfo) -> None:
         """Take one message of a subscription."""
-        if self._paused:
-            return
         time_ns = self._now_ns() if self._use_sim_time else info["received_timestamp"]
+        sent_ns = info["source_timestamp"] or time_ns
+        if self._due:
+            self._act_on(number, time_ns, sent_ns)
+        if self._paused or self._recording is None:
+            return
         if time_ns < self._last_ns - BACK_NS:
             self._warn(
                 f"the clock was set back by {(self._last_ns - time_ns) / 1e9:.1f} s; the bag has "
                 "the times as they were shown"
             )
         self._last_ns = time_ns
-        sent_ns = info["source_timestamp"] or time_ns
-        self._put(Row(number, time_ns, sent_ns, info["publication_sequence_number"], raw))
+        self._recording.put(Row(number, time_ns, sent_ns, info["publication_sequence_number"], raw))
 
     def _warn(self, text: str) -> None:
         self.node.get_logger().warning(text)
@@ -379,80 +467,82 @@ class Recorder:
 
     async def _subscribe_to_new(self) -> None:
         """Subscribe to each wanted topic that has no subscription yet."""
+        if self._recording is None:
+            return
+        numbers = self._recording.numbers
+        for name, typename in self._static_topics.items():
+            if not any(key[:2] == (name, typename) for key in numbers):
+                await self._subscribe((name, typename, ""), [])
+        for key, endpoints in self._wanted().items():
+            if key not in numbers:
+                await self._subscribe(key, endpoints)
+
+    def _wanted(self) -> dict[Key, list[EndpointInfo]]:
+        """Return the wanted topics that there are, with their endpoints."""
         kinds = TOPIC_KINDS if self._unpublished else (EndpointKind.PUBLISHER,)
+        heard = None
+        if self._ignores_leaf:
+            heard = {each.name for each in self._others(EndpointKind.SUBSCRIPTION)}
         found: dict[Key, list[EndpointInfo]] = {}
-        for endpoint in self.node.graph.endpoints(*kinds):
-            if endpoint.node.fully_qualified_name == self.node.get_fully_qualified_name():
+        for endpoint in self._others(*kinds):
+            if heard is not None and endpoint.name not in heard:
                 continue
             if self._selection.wants(endpoint.name, endpoint.type_name):
                 key = endpoint.name, endpoint.type_name, endpoint.type_hash
                 found.setdefault(key, []).append(endpoint)
-        for key, endpoints in found.items():
-            if key not in self._numbers:
-                await self._subscribe(key, endpoints)
+        return found
+
+    def _others(self, *kinds: EndpointKind) -> list[EndpointInfo]:
+        """Return the endpoints of all other nodes."""
+        own = self.node.get_fully_qualified_name()
+        endpoints = self.node.graph.endpoints(*kinds)
+        return [each for each in endpoints if each.node.fully_qualified_name != own]
 
     async def _subscribe(self, key: Key, endpoints: list[EndpointInfo]) -> None:
         name, typename, _ = key
-        msg_type = await self._class_of(typename, endpoints)
-        if msg_type is None:
+        msg_type = await self._class_of(typename, name, endpoints)
+        recording = self._recording
+        if msg_type is None or recording is None or key in recording.numbers:
             return
-        others = [info.type for info, _ in self._topics if info.name == name]
+        others = recording.types_of(name)
         if others:
             self._warn(f"{name} has the type {typename} besides {others[-1]}: both are recorded")
         offered = [e.qos for e in endpoints if e.kind is EndpointKind.PUBLISHER]
         profile = self._qos.get(name) or adapted_qos(offered)
-        is_latched = profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
-        depth = max((each.depth for each in offered), default=1)
         info = topic_info(name, msg_type, offered)
         info.type_hash = key[2] if key[2].startswith("RIHS") else info.type_hash
-        number = self._number(info, depth * (is_latched and self._repeat_latched))
-        self._numbers[key] = number  # the graph may show no hash
-        self._subscriptions[number] = self.node.create_subscription(
+        number = recording.number_of(info, self._repeated_depth(name, profile, offered))
+        recording.numbers[key] = number  # the graph may show no hash
+        recording.subscriptions[number] = self.node.create_subscription(
             msg_type, name, partial(self._take, number), profile, raw=True
         )
 
-    async def _class_of(self, typename: str, endpoints: list[EndpointInfo]) -> Any | None:
+    def _repeated_depth(self, name: str, profile: QoSProfile, offered: list[QoSProfile]) -> int:
+        """Return with how many messages of a topic each further file begins."""
+        depth = self._repeated.get(name, self._repeated.get("*"))
+        if depth is None or profile.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
+            return 0
+        return depth or max((each.depth for each in offered), default=1)
+
+    async def _class_of(
+        self, typename: str, topic: str, endpoints: list[EndpointInfo]
+    ) -> Any | None:
         """Return the class of a type; None, with one warning, if nobody describes it."""
         gids = frozenset(endpoint.gid for endpoint in endpoints)
         if self._unknown.get(typename) == gids:
             return None
         try:
-            if "/msg/" in typename:
+            if "/msg/" in typename and endpoints:
                 return await self.node.find_type(typename, endpoints=endpoints)
             return known_class(typename)
         except InterfaceNotFoundError as error:
             if typename not in self._unknown:
-                self._warn(f"{endpoints[0].name} is not recorded: {error}")
+                self._warn(f"{topic} is not recorded: {error}")
             self._unknown[typename] = gids
             return None
 
     def _tell_split(self, closed: str, opened: str) -> None:
         self._services.tell_split(closed, opened)
-
-    async def _close_bag(self) -> None:
-        """Write the rest, and say in one line what the bag has."""
-        await to_the_end(run_in_thread(self._writing.stop))
-        if self._failed.is_set() or self.stats:
-            self.node.get_logger().info(self.summary())
-        failure = self._writing.failure
-        if failure is not None:
-            raise failure
-
-    def summary(self) -> str:
-        """Return in one line what was recorded and what was lost."""
-        stats = self.stats
-        recorded = sum(each.recorded for each in stats.values())
-        lost = [
-            f"{name}: {each.lost_in_transport} in transport, {each.lost_in_recorder} in recorder"
-            for name, each in sorted(stats.items())
-            if each.lost_in_transport or each.lost_in_recorder
-        ]
-        end = f"lost: {'; '.join(lost)}" if lost else "lost: nothing"
-        return f"recorded {recorded} messages of {len(stats)} topics to {self.path}; {end}"
-
-
-def void(_: object) -> None:
-    """Return nothing, where that is wanted."""
 
 
 def adapted_qos(offered: list[QoSProfile]) -> QoSProfile:

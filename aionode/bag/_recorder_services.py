@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from aionode.errors import AionodeError, InterfaceNotFoundError
-from aionode.interfaces import get_interface
+from aionode.clock import Time
+from aionode.errors import AionodeError
 from aionode.interfaces.rosbag2_interfaces import msg as bag_msg
 from aionode.interfaces.rosbag2_interfaces import srv as bag_srv
 
@@ -14,10 +14,13 @@ if TYPE_CHECKING:
 
     from aionode.node import Node
 
-__all__ = ["RecorderServices"]
+__all__ = ["RecorderServices", "answered"]
 
-REPORT_S: Final = 1.0
-"""How often losses are told at most, in seconds."""
+NOT_RECORDING: Final = 1
+"""The return code of ``~/split_bagfile`` while no bag is open, as of every failure of others."""
+
+INVALID_TOPIC: Final = {"resume": 2, "split": 3}
+FAILED: Final = {"resume": 3, "split": 4}
 
 
 class Recording(Protocol):
@@ -30,6 +33,10 @@ class Recording(Protocol):
         """What was recorded, lost in transport and lost in the recorder, by topic."""
 
     @property
+    def recording(self) -> bool:
+        """Whether a bag is open."""
+
+    @property
     def paused(self) -> bool:
         """Whether it is paused."""
 
@@ -40,7 +47,7 @@ class Recording(Protocol):
     def pause(self) -> None:
         """Record nothing until `resume`."""
 
-    def resume(self) -> None:
+    def resume(self, at: Time | None = None, *, mode: int = 0, topic: str = "") -> None:
         """Record again."""
 
     def start_discovery(self) -> None:
@@ -49,8 +56,14 @@ class Recording(Protocol):
     def stop_discovery(self) -> None:
         """Record no further topics."""
 
-    async def split(self) -> None:
+    async def split(self, at: Time | None = None, *, mode: int = 0, topic: str = "") -> None:
         """Begin a new file."""
+
+    async def stop(self) -> None:
+        """Close the bag."""
+
+    async def record(self, path: str = "") -> None:
+        """Begin another bag."""
 
     async def snapshot(self) -> None:
         """Write what is kept."""
@@ -61,16 +74,19 @@ class RecorderServices:
 
     Args:
         recorder: The recorder, whose node runs.
+        report_hz: How often losses are published at most, in Hz; 0 for never.
     """
 
-    def __init__(self, recorder: Recording) -> None:
+    def __init__(self, recorder: Recording, report_hz: float) -> None:
         self._recorder = recorder
         self._node = node = recorder.node
         self._splits = node.create_publisher(bag_msg.WriteSplitEvent, "events/write_split", 10)
         self._reported: dict[str, tuple[int, int]] = {}
         handlers: dict[str, tuple[Any, Callable[[Any, Any], Any]]] = {
             "pause": (bag_srv.Pause, doing(recorder.pause)),
-            "resume": (bag_srv.Resume, doing(recorder.resume)),
+            "resume": (bag_srv.Resume, self._resume),
+            "record": (bag_srv.Record, self._record),
+            "stop": (bag_srv.Stop, self._stop),
             "is_paused": (bag_srv.IsPaused, self._tell_paused),
             "split_bagfile": (bag_srv.SplitBagfile, self._split),
             "snapshot": (bag_srv.Snapshot, self._snapshot),
@@ -80,13 +96,10 @@ class RecorderServices:
         }
         for name, (srv_type, handler) in handlers.items():
             node.create_service(srv_type, f"~/{name}", handler)
-        try:
-            self._loss_type = get_interface("rosbag2_interfaces/msg/MessagesLostEvent")
-            self._topic_type = get_interface("rosbag2_interfaces/msg/MessagesLostEventTopicStat")
-        except InterfaceNotFoundError:
-            return
-        self._losses = node.create_publisher(self._loss_type, "events/rosbag2_messages_lost", 10)
-        node.create_timer(REPORT_S, self._tell_losses)
+        if report_hz:
+            topic = "events/rosbag2_messages_lost"
+            self._losses = node.create_publisher(bag_msg.MessagesLostEvent, topic, 10)
+            node.create_timer(1 / report_hz, self._tell_losses)
 
     def tell_split(self, closed: str, opened: str) -> None:
         """Publish that the recorder went on to its next file."""
@@ -106,17 +119,17 @@ class RecorderServices:
         }
         before, self._reported = self._reported, now
         lost = [
-            self._topic_type(
+            bag_msg.MessagesLostEventTopicStat(
                 topic_name=name,
-                messages_lost_in_transport=transport - before.get(name, (0, 0))[0],
-                messages_lost_in_recorder=recorder - before.get(name, (0, 0))[1],
+                messages_lost_in_transport=max(transport - before.get(name, (0, 0))[0], 0),
+                messages_lost_in_recorder=max(recorder - before.get(name, (0, 0))[1], 0),
             )
             for name, (transport, recorder) in now.items()
             if (transport, recorder) != before.get(name, (0, 0))
         ]
         if lost:
             self._losses.publish(
-                self._loss_type(
+                bag_msg.MessagesLostEvent(
                     node_name=self._node.get_fully_qualified_name(),
                     messages_lost_statistics=lost,
                 )
@@ -130,9 +143,45 @@ class RecorderServices:
         response.running = self._recorder.discovering
         return response
 
-    async def _split(self, _: Any, response: Any) -> Any:
-        await self._recorder.split()
-        return response
+    def _resume(self, request: Any, response: Any) -> Any:
+        at, mode, topic = when(request, "resume")
+        if mode not in {0, 1, 2}:
+            return answered(response, 1, f"there is no resume_mode {mode}; use 0, 1 or 2")
+        try:
+            self._recorder.resume(at, mode=mode, topic=topic)
+        except AionodeError as error:
+            return answered(response, (INVALID_TOPIC if topic else FAILED)["resume"], str(error))
+        return answered(response, 0)
+
+    async def _split(self, request: Any, response: Any) -> Any:
+        at, mode, topic = when(request, "split")
+        if not self._recorder.recording:
+            return answered(response, NOT_RECORDING, "the recorder is stopped")
+        if mode not in {0, 1, 2}:
+            return answered(response, 2, f"there is no split_mode {mode}; use 0, 1 or 2")
+        try:
+            await self._recorder.split(at, mode=mode, topic=topic)
+        except OSError as error:
+            return answered(response, FAILED["split"], str(error))
+        except AionodeError as error:
+            return answered(response, INVALID_TOPIC["split"], str(error))
+        return answered(response, 0)
+
+    async def _record(self, request: Any, response: Any) -> Any:
+        try:
+            await self._recorder.record(request.uri)
+        except AionodeError as error:
+            return answered(response, 1, str(error))
+        return answered(response, 0)
+
+    async def _stop(self, _: Any, response: Any) -> Any:
+        if not self._recorder.recording:
+            return answered(response, 1, "the recorder is stopped already")
+        try:
+            await self._recorder.stop()
+        except AionodeError as error:
+            return answered(response, 1, str(error))
+        return answered(response, 0)
 
     async def _snapshot(self, _: Any, response: Any) -> Any:
         try:
@@ -143,6 +192,23 @@ class RecorderServices:
         else:
             response.success = True
         return response
+
+
+def when(request: Any, what: str) -> tuple[Time | None, int, str]:
+    """Return from when on a request is meant; before Lyrical, it has no fields."""
+    stamp = getattr(request, f"{what}_time", None)
+    if stamp is None:
+        return None, 0, ""
+    at = Time.from_msg(stamp)
+    mode = getattr(request, f"{what}_mode")
+    return at if at.nanoseconds > 0 else None, mode, request.tracking_topic_name
+
+
+def answered(response: Any, code: int, text: str = "") -> Any:
+    """Return a response with a code and a text, if its type has them: before Lyrical, few have."""
+    if hasattr(response, "return_code"):
+        response.return_code, response.error_string = code, text
+    return response
 
 
 def doing(act: Callable[[], None]) -> Callable[[Any, Any], Any]:

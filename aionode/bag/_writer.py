@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode._distribution import choose_distribution
 from aionode.bag._mcap_writer import COMPRESSIONS, McapWriter
-from aionode.bag._metadata import FilePart, metadata_of, metadata_text, write_metadata
+from aionode.bag._metadata import FilePart, metadata_of, metadata_text, sync_folder, write_metadata
 from aionode.bag._qos import profiles_to_yaml
 from aionode.bag._record import Record, TopicInfo
 from aionode.bag._types import definition_of
@@ -115,9 +115,10 @@ class BagWriter:
         except OSError as error:
             raise BagWriteError(str(path), error.strerror or str(error)) from error
         try:
+            sync_folder(self.path.parent)
             (self.path / RESERVE).write_bytes(b"#" * RESERVE_BYTES)
             self._file = self._new_file()
-            self._write_metadata()
+            self.write_metadata()
         except BagWriteError:
             raise
         except OSError as error:
@@ -248,7 +249,7 @@ class BagWriter:
                     channel, record.sequence, time_ns, record.publish_time_ns, record.raw
                 )
                 self.topics[number].message_count += 1
-        self._write_metadata()
+        self.write_metadata()
         if self._on_split is not None:
             self._on_split(closed, self.file_name)
 
@@ -269,7 +270,7 @@ class BagWriter:
         finally:
             self._count_again()
             with contextlib.suppress(OSError):
-                self._write_metadata()
+                self.write_metadata()
 
     def _is_full(self, time_ns: int) -> bool:
         """Return whether a message of this time belongs to the next file."""
@@ -339,7 +340,12 @@ class BagWriter:
         distro = choose_distribution(os.environ, None)
         return metadata_of(topics, files, custom_data=self.custom_data, ros_distro=distro)
 
-    def _write_metadata(self) -> None:
+    def write_metadata(self) -> None:
+        """Write ``metadata.yaml`` anew, as it is now.
+
+        Raises:
+            OSError: it cannot be written.
+        """
         files = [part for part, _ in self._closed]
         if self._is_open:
             files.append((self.file_name, 0, 0, 0))

@@ -60,8 +60,11 @@ class WriterThread:
         topics: The topics by number, each with the number of messages that further files begin
             with; the recorder adds to it.
         cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
+        cache_ns: How long messages are kept in snapshot mode, in nanoseconds; 0 for no limit.
         snapshot: Whether messages are only kept until somebody asks for a snapshot.
         on_failure: Called in the thread, once, when nothing can be written any more.
+        before_close: Called in the thread before the bag is closed, and again when losses are
+            counted after that.
 
     Attributes:
         failure: Why nothing is written any more; None while all is well.
@@ -74,16 +77,20 @@ class WriterThread:
         topics: list[tuple[TopicInfo, int]],
         cache_bytes: int,
         *,
+        cache_ns: int = 0,
         snapshot: bool,
         on_failure: Callable[[], None],
+        before_close: Callable[[], None],
     ) -> None:
         self.failure: BagWriteError | None = None
         self.lost: dict[int, int] = {}
         self._writer = writer
         self._topics = topics
         self._cache_bytes = cache_bytes
+        self._cache_ns = cache_ns
         self._waiting_bytes = max(cache_bytes, LEAST_WAITING) if snapshot else cache_bytes
         self._on_failure = on_failure
+        self._before_close = before_close
         self._rows: deque[Row | Callable[[], None]] = deque()
         self._put_bytes = 0
         self._taken_bytes = 0
@@ -123,11 +130,16 @@ class WriterThread:
         while not self._stopping.wait(BATCH_S):
             self._guarded(self._step)
         self._guarded(self._take_all)
+        self._before_close()
         try:
             self._writer.close()
         except BagWriteError as error:
             self._fail(error)
-        self._count_lost()
+        if self.failure is not None:
+            self._count_lost()
+            self._before_close()
+            with contextlib.suppress(OSError):
+                self._writer.write_metadata()
 
     def _guarded(self, step: Callable[[], None]) -> None:
         try:
@@ -182,8 +194,6 @@ class WriterThread:
 
     def _count_lost(self) -> None:
         """Count what a full disk has taken back, once the bag is closed."""
-        if self.failure is None:
-            return
         in_bag = {topic.key: topic.message_count for topic in self._writer.topics}
         for number, written in self._written.items():
             missing = written - in_bag.get(self._topics[number][0].key, 0)
@@ -196,12 +206,18 @@ class WriterThread:
         """Keep a row for a snapshot, and let go of the oldest."""
         kept.append(row)
         self._kept_bytes += len(row.raw)
-        while self._kept_bytes > self._cache_bytes and len(kept) > 1:
+        while len(kept) > 1 and self._is_too_much(kept):
             oldest = kept.popleft()
             self._kept_bytes -= len(oldest.raw)
             depth = self._topics[oldest.topic][1]
             if depth:
                 self._latched.setdefault(oldest.topic, deque(maxlen=depth)).append(oldest)
+
+    def _is_too_much(self, kept: deque[Row]) -> bool:
+        """Return whether the oldest row has to go."""
+        if self._kept_bytes > self._cache_bytes:
+            return True
+        return 0 < self._cache_ns < kept[-1].time_ns - kept[0].time_ns
 
     def write_snapshot(self) -> None:
         """Write what is kept, after the latched messages before it; only by `call`."""

@@ -158,12 +158,21 @@ def run(argv: Sequence[str] | None) -> int:
         return INTERRUPTED
     except AionodeError as error:
         return report(one_line(error), status_of(error))
-    except OSError as error:
-        if error.errno not in UNWRITABLE:
-            raise
-        discard(sys.stdout)
-        return report(unwritable(error), 1)  # written by click: help, completion scripts
+    except (OSError, ModuleNotFoundError) as error:
+        return report(system_text(error), 1)
     return status if isinstance(status, int) else 0
+
+
+def system_text(error: OSError | ModuleNotFoundError) -> str:
+    """Return what to say of an error that is none of aionode's own, and raise it if it is a bug."""
+    if isinstance(error, ModuleNotFoundError):
+        if "pip install 'aionode[" not in str(error):
+            raise error
+        return str(error)
+    if error.errno not in UNWRITABLE:
+        raise error
+    discard(sys.stdout)
+    return unwritable(error)  # written by click: help, completion scripts
 
 
 def report(text: str, status: int) -> int:

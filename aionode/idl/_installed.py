@@ -31,8 +31,19 @@ __all__ = [
     "replaced_types",
 ]
 
+EMPTY_SERVICES: dict[str, str] = dict.fromkeys(
+    (
+        "rosbag2_interfaces/srv/Resume",
+        "rosbag2_interfaces/srv/SplitBagfile",
+        "rosbag2_interfaces/srv/Stop",
+    ),
+    "---\n",
+)
+"""Services without fields before Lyrical."""
+
 DIFFERENCES: dict[str, dict[str, str]] = {
     "humble": {
+        **EMPTY_SERVICES,
         "sensor_msgs/msg/Range": """\
 uint8 ULTRASOUND=0
 uint8 INFRARED=1
@@ -46,6 +57,8 @@ float32 range
         "rosbag2_interfaces/msg/ReadSplitEvent": "string closed_file\nstring opened_file\n",
         "rosbag2_interfaces/msg/WriteSplitEvent": "string closed_file\nstring opened_file\n",
     },
+    "jazzy": EMPTY_SERVICES,
+    "kilted": EMPTY_SERVICES,
     "lyrical": {
         "lifecycle_msgs/msg/TransitionEvent": """\
 builtin_interfaces/Time stamp

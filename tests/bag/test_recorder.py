@@ -8,6 +8,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,9 +16,10 @@ from aionode import bag
 from aionode.bag._recorder import adapted_qos
 from aionode.clock import ClockType, Time
 from aionode.context import Context
-from aionode.errors import BagError, BagWriteError
+from aionode.errors import BagError, BagWriteError, InterfaceNotFoundError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rosbag2_interfaces.srv import IsPaused, Snapshot
+from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
@@ -131,6 +133,54 @@ async def test_both_types_of_a_topic_whose_type_changes_are_recorded(tmp_path: P
         assert [record.message.data for record in run.read()] == ["a", 1]
 
 
+async def test_a_topic_of_an_unknown_type_is_named_once_and_the_rest_is_recorded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its bytes would be of no use to anybody without a definition."""
+    known = Node.find_type
+
+    async def find_type(self: Node, typename: str, **options: Any) -> Any:
+        if typename == "std_msgs/msg/Int32":
+            raise InterfaceNotFoundError(typename, problem="nobody describes it")
+        return await known(self, typename, **options)
+
+    monkeypatch.setattr(Node, "find_type", find_type)
+    async with local_context() as context, Node("talker", context=context) as node:
+        node.create_publisher(Int32, "odd", 1)
+        words = node.create_publisher(String, "words", LATCHED)
+        words.publish(String(data="a"))
+        async with bag.Recorder(tmp_path / "run", context=context) as recorder:
+            node.create_publisher(String, "more", 1)
+            await settle()
+            assert recorder.stats.keys() >= {"/words", "/more"}
+            assert "/odd" not in recorder.stats
+    assert texts(tmp_path / "run") == ["a"]
+    told = [each.message for each in caplog.records if "/odd is not recorded" in each.message]
+    assert len(told) == 1
+
+
+async def test_a_clock_that_is_set_back_is_one_line_and_no_message_is_lost(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Simulations start again, and computers without a battery get their time from the network."""
+    async with local_context() as context, Node("talker", context=context) as node:
+        words = node.create_publisher(String, "words", 10)
+        clock = node.create_publisher(Clock, "/clock", 10)
+        async with bag.Recorder(
+            tmp_path / "run", topics=["/words"], context=context, use_sim_time=True
+        ):
+            for sec in (100, 101, 40, 41):
+                clock.publish(Clock(clock=Time(seconds=sec).to_msg()))
+                await settle()
+                words.publish(String(data=str(sec)))
+                await settle()
+    assert texts(tmp_path / "run") == ["40", "41", "100", "101"]
+    told = [each.message for each in caplog.records if "was set back" in each.message]
+    assert len(told) == 1
+    assert "61.0 s" in told[0]
+    assert not bag.check(tmp_path / "run")[0].repaired
+
+
 async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:
     """That is how rosbag2 records services."""
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
@@ -147,6 +197,14 @@ async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:
     with bag.open(tmp_path / "run") as run:
         first = next(iter(run.read("/add/_service_event")))
         assert first.message.request[0].a == 2
+
+
+async def test_an_error_of_the_block_is_raised_as_it_is(tmp_path: Path) -> None:
+    """A program catches its own errors, and not groups of them."""
+    async with local_context() as context:
+        with pytest.raises(KeyError, match="mine"):
+            async with bag.Recorder(tmp_path / "run", topics=[], context=context):
+                raise KeyError("mine")
 
 
 async def test_a_folder_that_cannot_be_made_is_one_clear_error(tmp_path: Path) -> None:

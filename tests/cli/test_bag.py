@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import click
@@ -118,3 +119,17 @@ def test_all_excludes_what_is_named() -> None:
     assert selection.wants("/add/_service_event", "x/srv/X_Event")
     assert not selection.wants("/a", "x/msg/X")
     assert not selection.wants("/_hidden", "x/msg/X")
+
+
+def test_a_missing_extra_is_one_line_that_says_how_to_install_it(
+    run: str, capsys: Captured, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without the extra, the first command of a newcomer would end in a traceback."""
+    monkeypatch.delitem(vars(bag), "open")
+    monkeypatch.delitem(sys.modules, "aionode.bag._bag")
+    monkeypatch.setitem(sys.modules, "mcap", None)
+    monkeypatch.delitem(sys.modules, "aionode.bag._source")
+    monkeypatch.delitem(sys.modules, "mcap.exceptions")
+    assert main(["bag", "info", run]) == 1
+    text = capsys.readouterr().err
+    assert text == "aionode.bag: mcap is not installed; pip install 'aionode[bag]'\n"

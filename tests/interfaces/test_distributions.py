@@ -10,8 +10,9 @@ from typing import Any
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-from aionode.interfaces import get_message
+from aionode.interfaces import get_interface, get_message
 from aionode.message import FieldType, fields, type_name
+from aionode.wire.typehash import type_hash
 from tests.support.strategies import shipped_types
 
 OTHER: dict[str, set[str]] = {
@@ -24,8 +25,13 @@ OTHER: dict[str, set[str]] = {
     "ROS2_KILTED": set(),
     "ROS2_LYRICAL": {"lifecycle_msgs/msg/TransitionEvent"},
 }
+NEW_IN_LYRICAL = {
+    "rosbag2_interfaces/msg/MessagesLostEvent",
+    "rosbag2_interfaces/msg/MessagesLostEventTopicStat",
+}
 MISSING: dict[str, set[str]] = {
     "ROS2_HUMBLE": {
+        *NEW_IN_LYRICAL,
         "geometry_msgs/msg/PolygonInstance",
         "geometry_msgs/msg/PolygonInstanceStamped",
         "geometry_msgs/msg/VelocityStamped",
@@ -40,8 +46,8 @@ MISSING: dict[str, set[str]] = {
         "type_description_interfaces/msg/TypeDescription",
         "type_description_interfaces/msg/TypeSource",
     },
-    "ROS2_JAZZY": {"nav_msgs/msg/Goals"},
-    "ROS2_KILTED": set(),
+    "ROS2_JAZZY": {"nav_msgs/msg/Goals", *NEW_IN_LYRICAL},
+    "ROS2_KILTED": NEW_IN_LYRICAL,
     "ROS2_LYRICAL": {
         "actionlib_msgs/msg/GoalID",
         "actionlib_msgs/msg/GoalStatus",
@@ -90,6 +96,22 @@ def test_the_shipped_types_are_those_of_ros_but_for_what_the_docs_say(distributi
 
     assert differing == OTHER[distribution]
     assert missing == MISSING[distribution]
+
+
+@pytest.mark.parametrize(
+    ("typename", "begin"),
+    [
+        ("msg/MessagesLostEvent", "b4a1d6322a232c78"),
+        ("srv/Resume", "fb0ccd61ead193e5"),
+        ("srv/SplitBagfile", "d2ffa105574b58e4"),
+        ("srv/Stop", "850e221df0c7d2a5"),
+    ],
+)
+def test_what_lyrical_has_changed_for_bags_has_its_hashes(typename: str, begin: str) -> None:
+    """They are those of code that rosidl has generated from Lyrical's rosbag2."""
+    shipped = get_interface(f"rosbag2_interfaces/{typename}")
+
+    assert type_hash(shipped).startswith(f"RIHS01_{begin}")
 
 
 def test_a_type_is_written_as_in_a_definition() -> None:

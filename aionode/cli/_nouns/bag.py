@@ -255,6 +255,7 @@ def info_text(found: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
         f"End:               {found.end_ns / 1e9:.9f}",
         f"Messages:          {found.message_count}",
     ]
+    lines.append(f"Lost:              {lost_text(found)}")
     lines += [f"Custom data:       {key}={value}" for key, value in found.custom_data.items()]
     for each in topics:
         lines.append(f"Topic: {each.name} | Type: {each.type} | Count: {each.message_count}")
@@ -262,6 +263,19 @@ def info_text(found: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
             lines.append(f"  Hash: {each.type_hash or 'none'}")
             lines += [f"  QoS:  {profile}" for profile in each.qos]
     return "\n".join(lines)
+
+
+def lost_text(found: Bag) -> str:
+    """Return in one line what the recorder of a bag has lost."""
+    if found.losses is None:
+        return "not known: its recorder does not say"
+    return (
+        "; ".join(
+            f"{name}: {lost.in_transport} in transport, {lost.in_recorder} in recorder"
+            for name, lost in sorted(found.losses.items())
+        )
+        or "nothing"
+    )
 
 
 def info_record(found: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
@@ -273,6 +287,9 @@ def info_record(found: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
         "duration_ns": found.duration.nanoseconds,
         "message_count": found.message_count,
         "custom_data": found.custom_data,
+        "lost": None
+        if found.losses is None
+        else {name: lost._asdict() for name, lost in found.losses.items()},
         "topics": [
             {
                 "name": each.name,

@@ -3,9 +3,36 @@
 Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
 """
 
-from aionode.message import Message
+from aionode.message import DEFAULT, Message, Sequence, uint64
 
-__all__ = ["ReadSplitEvent", "WriteSplitEvent"]
+__all__ = [
+    "MessagesLostEvent",
+    "MessagesLostEventTopicStat",
+    "ReadSplitEvent",
+    "WriteSplitEvent",
+]
+
+
+class MessagesLostEventTopicStat(
+    Message, typename="rosbag2_interfaces/msg/MessagesLostEventTopicStat"
+):
+    """How many messages of one topic were lost since the last event.
+
+    Attributes:
+        messages_lost_in_transport: How many did not arrive at the recorder.
+        messages_lost_in_recorder: How many arrived and were not written.
+    """
+
+    topic_name: str = ""
+    messages_lost_in_transport: uint64 = 0
+    messages_lost_in_recorder: uint64 = 0
+
+
+class MessagesLostEvent(Message, typename="rosbag2_interfaces/msg/MessagesLostEvent"):
+    """A recorder has lost messages, topic by topic."""
+
+    node_name: str = ""
+    messages_lost_statistics: Sequence[MessagesLostEventTopicStat] = DEFAULT
 
 
 class ReadSplitEvent(Message, typename="rosbag2_interfaces/msg/ReadSplitEvent"):

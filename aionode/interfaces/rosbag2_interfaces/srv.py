@@ -3,6 +3,8 @@
 Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
 """
 
+from typing import ClassVar
+
 from aionode.interfaces.builtin_interfaces.msg import Duration, Time
 from aionode.message import DEFAULT, Message, ServiceType, float64, int32, uint64
 
@@ -140,10 +142,32 @@ class Resume(ServiceType, typename="rosbag2_interfaces/srv/Resume"):
     """Let a paused player or recorder go on."""
 
     class Request(Message):
-        """The request of Resume."""
+        """From when on: 0 is at once. A player has no such time.
+
+        Attributes:
+            resume_time: The time at which a recorder goes on.
+            resume_mode: By which time: the node's, that of publishing, or that of receiving.
+            tracking_topic_name: The topic whose messages have that time; empty for all.
+        """
+
+        RESUME_MODE_NODE_TIME: ClassVar[int32] = 0
+        RESUME_MODE_PUBLISH_TIME: ClassVar[int32] = 1
+        RESUME_MODE_RECEIVE_TIME: ClassVar[int32] = 2
+
+        resume_time: Time = DEFAULT
+        resume_mode: int32 = 0
+        tracking_topic_name: str = ""
 
     class Response(Message):
-        """The response of Resume."""
+        """0 if it goes on, or will, else a number and a text that say why not."""
+
+        RETURN_CODE_SUCCESS: ClassVar[int32] = 0
+        RETURN_CODE_INVALID_RESUME_MODE: ClassVar[int32] = 1
+        RETURN_CODE_INVALID_TRACKING_TOPIC: ClassVar[int32] = 2
+        RETURN_CODE_RESUME_FAILED: ClassVar[int32] = 3
+
+        return_code: int32 = 0
+        error_string: str = ""
 
 
 class Seek(ServiceType, typename="rosbag2_interfaces/srv/Seek"):
@@ -190,10 +214,33 @@ class SplitBagfile(ServiceType, typename="rosbag2_interfaces/srv/SplitBagfile"):
     """Have a recorder go on in a new file."""
 
     class Request(Message):
-        """The request of SplitBagfile."""
+        """From when on: 0 is at once.
+
+        Attributes:
+            split_time: The time at which the new file begins.
+            split_mode: By which time: the node's, that of publishing, or that of receiving.
+            tracking_topic_name: The topic whose messages have that time; empty for all.
+        """
+
+        SPLIT_MODE_NODE_TIME: ClassVar[int32] = 0
+        SPLIT_MODE_PUBLISH_TIME: ClassVar[int32] = 1
+        SPLIT_MODE_RECEIVE_TIME: ClassVar[int32] = 2
+
+        split_time: Time = DEFAULT
+        split_mode: int32 = 0
+        tracking_topic_name: str = ""
 
     class Response(Message):
-        """The response of SplitBagfile."""
+        """0 if it goes on in a new file, or will, else a number and a text that say why not."""
+
+        RETURN_CODE_SUCCESS: ClassVar[int32] = 0
+        RETURN_CODE_NOT_RECORDING: ClassVar[int32] = 1
+        RETURN_CODE_INVALID_SPLIT_MODE: ClassVar[int32] = 2
+        RETURN_CODE_INVALID_TRACKING_TOPIC: ClassVar[int32] = 3
+        RETURN_CODE_SPLIT_FAILED: ClassVar[int32] = 4
+
+        return_code: int32 = 0
+        error_string: str = ""
 
 
 class StartDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StartDiscovery"):
@@ -216,7 +263,10 @@ class Stop(ServiceType, typename="rosbag2_interfaces/srv/Stop"):
         """The request of Stop."""
 
     class Response(Message):
-        """The response of Stop."""
+        """0 if it stopped, else a number and a text that say why not."""
+
+        return_code: int32 = 0
+        error_string: str = ""
 
 
 class StopDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StopDiscovery"):
