@@ -10,6 +10,8 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.message import Message, ServiceType
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from aionode.node import Node
     from aionode.system._log import SystemLog
     from aionode.system._status import MemberStatus
@@ -73,9 +75,9 @@ class Control:
         """Publish nothing any more."""
         self._system.log.listeners.remove(self._publish)
 
-    def _publish(self, lines: bytearray) -> None:
+    def _publish(self, lines: Sequence[bytes | memoryview]) -> None:
         if self._log.get_subscription_count() > 0:
-            self._log.publish(String(data=lines.decode(errors="replace")))
+            self._log.publish(String(data=b"".join(lines).decode(errors="replace")))
 
     async def _serve(self, request: SystemCommand.Request) -> SystemCommand.Response:
         try:

@@ -350,8 +350,11 @@ def children() -> list[int]:
 def stat_of(name: str) -> list[str]:
     """Return the fields of ``/proc/PID/stat`` after the name of the program; none if it is gone."""
     try:
-        with open(f"/proc/{name}/stat", encoding="utf-8", errors="replace") as file:  # noqa: PTH123
-            return file.read().rpartition(")")[2].split()
+        file = os.open(f"/proc/{name}/stat", os.O_RDONLY)
+        try:
+            return os.read(file, 4096).decode(errors="replace").rpartition(")")[2].split()
+        finally:
+            os.close(file)
     except OSError:
         return []
 

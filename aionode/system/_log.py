@@ -8,7 +8,7 @@ import stat
 import sys
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, TextIO
+from typing import TYPE_CHECKING, Final, TextIO, TypeAlias
 
 import msgspec
 
@@ -16,7 +16,7 @@ from aionode._streams import accepts, is_lost
 from aionode.clock import MachineTime
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
 __all__ = ["SystemLog"]
 
@@ -31,6 +31,11 @@ LONGEST_LINE: Final = 65_536
 
 PIECE: Final = 4096
 """How many bytes a pipe takes at once, if it takes any: PIPE_BUF."""
+
+MOST_PIECES: Final = 1024
+"""How many pieces are written at once: IOV_MAX."""
+
+Buffer: TypeAlias = bytes | memoryview
 
 COLORS: Final = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)
 
@@ -77,14 +82,16 @@ class SystemLog:
         if self._folder is not None:
             self._folder.mkdir(parents=True, exist_ok=True)
         self._max_bytes, self._backups = max_bytes, backups
-        self._time = MachineTime()
+        self._clock = MachineTime()
+        self._time = self._zone = ""  # of the lines since the last flush
+        self._lost_file = False
         self._width = len("system")
         self._colors: dict[str, int] = {}
         self._unfinished: dict[str, bytes] = {}
-        self._last: dict[str, bytes] = {}
-        self._new = bytearray()  # since the last flush
+        self._last: dict[str, bytearray] = {}
+        self._new: list[Buffer] = []  # since the last flush
         self._unwritten = bytearray()  # what the stream has not taken
-        self.listeners: list[Callable[[bytearray], object]] = []
+        self.listeners: list[Callable[[Sequence[Buffer]], object]] = []
 
     def add_member(self, name: str) -> None:
         """Reserve a colour and the width of a name, before the first line of it."""
@@ -101,18 +108,24 @@ class SystemLog:
 
         The stream gets it at the next `flush`.
         """
-        lines, newline, rest = (self._unfinished.pop(name, b"") + output).rpartition(b"\n")
-        if len(rest) > LONGEST_LINE:
-            lines, newline, rest = lines + newline + rest, b"\n", b""
-        if rest:
-            self._unfinished[name] = rest
-        if newline:
-            self._write_lines(name, lines)
+        before = self._unfinished.pop(name, b"")
+        end = output.rfind(b"\n") + 1
+        if len(output) - end + (0 if end else len(before)) > LONGEST_LINE:
+            output += b"\n"
+            end = len(output)
+        if not end:
+            before += output
+        elif end < len(output):
+            self._unfinished[name] = output[end:]
+        if end:
+            self._write_lines(name, before, output, end)
+        elif before:
+            self._unfinished[name] = before
 
     def end_line(self, name: str) -> None:
         """Write the rest of a line whose end will not come."""
         if rest := self._unfinished.pop(name, b""):
-            self._write_lines(name, rest)
+            self._write_lines(name, rest, b"\n", 1)
 
     def last_lines(self, name: str) -> list[str]:
         """Return the last lines of a member, 20 at most."""
@@ -121,35 +134,51 @@ class SystemLog:
         )
         return text.splitlines()[-LAST_LINES:]
 
-    def _write_lines(self, name: str, lines: bytes) -> None:
-        self._last[name] = (self._last.get(name, b"") + lines[-KEPT_BYTES:] + b"\n")[-KEPT_BYTES:]
-        moment = datetime.fromtimestamp(self._time.system_ns() / 1e9)  # noqa: DTZ006  # of here
-        time = moment.isoformat(" ", "milliseconds")
+    def _write_lines(self, name: str, before: bytes, output: bytes, end: int) -> None:
+        """Write the lines of `before` and of `output` up to `end`, which is that of a line."""
+        last = self._last.setdefault(name, bytearray())
+        last += before
+        last += output[max(0, end - KEPT_BYTES) : end]
+        if len(last) > 2 * KEPT_BYTES:
+            del last[:-KEPT_BYTES]
+        if not self._time:
+            moment = datetime.fromtimestamp(self._clock.system_ns() / 1e9)  # noqa: DTZ006  # of here
+            self._time = moment.isoformat(" ", "milliseconds")
+            self._zone = moment.astimezone().isoformat(timespec="milliseconds")
         if self._json:
-            text = records(moment.astimezone().isoformat(timespec="milliseconds"), name, lines)
+            self._new.append(records(self._zone, name, before + output[:end]))
         else:
-            text = prefixed(self._prefix(name, time), lines)
+            self._new += prefixed(self._prefix(name), before, output, end)
         if self._folder is not None:
-            self._file(name).write(prefixed(f"{time} ".encode(), lines))
-        self._new += text
+            self._write_file(name, prefixed(f"{self._time} ".encode(), before, output, end))
 
-    def _prefix(self, name: str, time: str) -> bytes:
+    def _write_file(self, name: str, lines: Sequence[Buffer]) -> None:
+        try:
+            self._file(name).write(lines)
+        except OSError as error:  # such as a full disk; the system goes on, and so does its log
+            if not self._lost_file:
+                self._lost_file = True
+                self.note(f"files of the log are incomplete from here on: {error}")
+
+    def _prefix(self, name: str) -> bytes:
         label = f"{name:>{self._width}} |"
         if self._color:
             label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
-        return f"{time[len('2026-11-23 ') :]} {label} ".encode()
+        return f"{self._time[len('2026-11-23 ') :]} {label} ".encode()
 
     def flush(self) -> bool:
         """Write what the stream takes without blocking, and return whether that was everything."""
-        new, self._new = self._new, bytearray()
-        if new:
-            for listener in self.listeners:
-                listener(new)
+        new, self._new, self._time = self._new, [], ""
+        for listener in self.listeners if new else ():
+            listener(new)
         descriptor = self._descriptor
         if descriptor is None:
-            self._stream.write(new.decode(errors="replace"))
+            self._stream.write(b"".join(new).decode(errors="replace"))
             return True
-        self._unwritten = self._unwritten + new if self._unwritten else new
+        if self._never_blocks and not self._unwritten:
+            new = unwritten(descriptor, new)
+        for lines in new:
+            self._unwritten += lines
         while self._unwritten:
             if not self._never_blocks and not accepts(descriptor):
                 return False
@@ -197,9 +226,27 @@ def never_blocks(descriptor: int) -> bool:
     return stat.S_ISREG(mode) or (stat.S_ISCHR(mode) and not os.isatty(descriptor))
 
 
-def prefixed(prefix: bytes, lines: bytes) -> bytes:
-    """Return lines, each with a prefix. One call in C for a megabyte: programs may log a lot."""
-    return b"".join((prefix, lines.replace(b"\n", b"\n" + prefix), b"\n"))
+def prefixed(prefix: bytes, before: bytes, output: bytes, end: int) -> tuple[Buffer, Buffer]:
+    """Return the lines of `before` and of `output` up to `end`, each with a prefix.
+
+    One call in C for all of them, and no further copy: programs may log a lot.
+    """
+    text = output.replace(b"\n", b"\n" + prefix)
+    return prefix + before, memoryview(text)[: len(text) - len(prefix) - (len(output) - end)]
+
+
+def unwritten(descriptor: int, lines: list[Buffer]) -> list[Buffer]:
+    """Write to what never blocks, as it is; return what was not taken."""
+    while lines:
+        some = lines[:MOST_PIECES]
+        try:
+            written = os.writev(descriptor, some)
+        except OSError:
+            return lines
+        if written < sum(map(len, some)):
+            return [memoryview(b"".join(lines))[written:]]
+        lines = lines[MOST_PIECES:]
+    return lines
 
 
 def records(time: str, name: str, lines: bytes) -> bytes:
@@ -207,7 +254,7 @@ def records(time: str, name: str, lines: bytes) -> bytes:
     encode = msgspec.json.encode
     return b"".join(
         encode({"time": time, "name": name, "text": line.decode(errors="replace")}) + b"\n"
-        for line in lines.split(b"\n")
+        for line in lines.removesuffix(b"\n").split(b"\n")
     )
 
 
@@ -225,11 +272,15 @@ class RotatingFile:
         self._file = path.open("ab", buffering=0)
         self._size = self._file.tell()
 
-    def write(self, text: bytes) -> None:
-        """Append whole lines."""
-        if self._size and self._size + len(text) > self._max_bytes:
+    def write(self, lines: Sequence[Buffer]) -> None:
+        """Append whole lines.
+
+        Raises:
+            OSError: it cannot be written.
+        """
+        if self._size and self._size + sum(map(len, lines)) > self._max_bytes:
             self._rotate()
-        self._size += self._file.write(text)
+        self._size += os.writev(self._file.fileno(), lines)
 
     def _rotate(self) -> None:
         self._file.close()

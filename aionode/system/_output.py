@@ -23,6 +23,10 @@ SMALL_PIPE: Final = 1 << 16
 LARGE_PIPE: Final = 1 << 20
 """How large a pipe becomes that was full, in bytes: what an ordinary user may ask for."""
 
+PIECE: Final = 1 << 18
+"""How much of a large pipe is read at once, in bytes. The allocator gives buffers that are much
+larger back to the system each time, whose pages cost more than the copy."""
+
 F_SETPIPE_SZ: Final = 1031
 """Of fcntl; Python 3.10 has a name for it on Linux alone."""
 
@@ -67,7 +71,12 @@ class OutputReader:
     def _turn(self) -> None:
         self._loop.remove_reader(self._epoll.fileno())
         for pipe, _ in self._epoll.poll(0):
-            if self._read(pipe) == 0:
+            count = self._read(pipe)
+            for _ in range(LARGE_PIPE // PIECE - 1):
+                if count != PIECE or not self._log.flush():
+                    break
+                count = self._read(pipe)
+            if count == 0:
                 with suppress(FileNotFoundError):
                     self._epoll.unregister(pipe)  # at its end; `remove` closes it
         self._log.flush()
@@ -82,7 +91,7 @@ class OutputReader:
     def _read(self, pipe: int) -> int | None:
         """Read once, and return how many bytes: 0 at the end of the pipe, None if it is empty."""
         try:
-            output = os.read(pipe, LARGE_PIPE if pipe in self._large else SMALL_PIPE)
+            output = os.read(pipe, PIECE if pipe in self._large else SMALL_PIPE)
         except BlockingIOError:
             return None
         if not output:

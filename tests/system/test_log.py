@@ -5,12 +5,9 @@ from __future__ import annotations
 import io
 import json
 import os
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from aionode.system import SystemLog
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 def test_each_line_has_its_time_and_the_name_of_its_member() -> None:
@@ -62,6 +59,40 @@ def test_files_are_rotated_and_the_oldest_is_removed(tmp_path: Path) -> None:
     assert set(kept) == {"driver.log", "driver.log.1", "driver.log.2"}
     assert kept["driver.log"].endswith("9\n")
     assert all(len(text) <= 140 for text in kept.values())
+
+
+def test_a_full_disk_is_named_once_and_the_log_goes_on(tmp_path: Path) -> None:
+    """The robot runs without its files: its programs would wait for a log that nobody reads."""
+    stream = io.StringIO()
+    log = SystemLog(stream, folder=tmp_path)
+    (tmp_path / "driver.log").symlink_to("/dev/full")
+    for _ in range(2):
+        log.write("driver", b"line\n")
+    log.close()
+
+    assert stream.getvalue().count("driver | line") == 2
+    assert stream.getvalue().count("files of the log are incomplete from here on: ") == 1
+
+
+def test_lines_that_are_read_in_any_pieces_are_the_same_in_stream_and_files(tmp_path: Path) -> None:
+    """Large output is read in pieces that end anywhere."""
+    lines = [b"", b"a", b"b" * 70_000, b"\r", b"", b"c"]
+    text = b"\n".join(lines)
+    for size in (1, 2, 3, 1000):
+        folder = tmp_path / str(size)
+        with (folder.parent / f"{size}.txt").open("w+") as stream:
+            log = SystemLog(stream, folder=folder)
+            for begin in range(0, len(text), size):
+                log.write("x", text[begin : begin + size])
+            log.close()
+            stream.seek(0)
+            shown = Path(stream.name).read_bytes()
+        time = len("2026-11-23 12:00:00.000 ")
+        kept = (folder / "x.log").read_bytes().split(b"\n")
+
+        assert b"".join(line.partition(b"| ")[2] for line in shown.split(b"\n")) == b"".join(lines)
+        assert [len(line) - time for line in kept[:2]] == [0, 1]
+        assert b"".join(line[time:] for line in kept) == b"".join(lines)
 
 
 def test_the_last_twenty_lines_of_a_member_are_kept() -> None:
