@@ -59,6 +59,7 @@ SHARED = {
 LATE = {
     ("aionode.message._message", "aionode.message._schema"): "few programs use Pydantic",
     ("aionode.message._service_types", "aionode.interfaces"): "services have generated messages",
+    ("aionode.testing._system", "aionode.launch"): "a system under test may be a launch file",
 }
 """Imports against the direction of all others, inside a function, and why."""
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import AsyncIterator, Iterator, Mapping
+from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +24,7 @@ from aionode.launch._watch import restart_changed
 if TYPE_CHECKING:
     from aionode.system import System
 
-__all__ = ["DeclaredArgument", "Plan", "run_plan", "share_directory"]
+__all__ = ["DeclaredArgument", "Plan", "plan_running", "run_plan", "share_directory"]
 
 
 @dataclass(frozen=True)
@@ -128,14 +129,15 @@ async def run_plan(
     Args:
         plan: The plan.
         system: The system.
-        watch: Whether a process is restarted when the file of its program changes.
+        watch: Whether a process is restarted when the file of its program changes, also after it
+            has ended. A launch description goes on until it is asked to end then.
         once_ready: A command for the shell, which is run when all nodes are in the graph.
 
     Raises:
         LaunchFileError: What an event handler or a timer does cannot be evaluated (a ValueError).
         NotReadyError: A node did not come, so that `once_ready` was not run (a TimeoutError).
     """
-    running = RunningLaunch(system, waits_for_nodes=once_ready is not None)
+    running = RunningLaunch(system, waits_for_nodes=once_ready is not None, stays=watch)
     try:
         async with asyncio.TaskGroup() as tasks:
             beside = [tasks.create_task(note_start(system))]
@@ -152,6 +154,36 @@ async def run_plan(
                 task.cancel()
     except BaseExceptionGroup as group:
         raise first_of(group) from None
+
+
+@asynccontextmanager
+async def plan_running(plan: Plan, system: System) -> AsyncIterator[None]:
+    """Run what a plan says beside the body of ``async with``, which begins when all is ready.
+
+    A process is ready when its node is in the graph, if the file names that, and else when it runs.
+    At the end, the event handlers see a shutdown; `system`, which has been entered, stops the rest.
+
+    Args:
+        plan: The plan.
+        system: The system.
+
+    Raises:
+        LaunchFileError: The file cannot be evaluated, or what an event handler or a timer does (a
+            ValueError).
+        NotReadyError: A node did not come (a TimeoutError).
+    """
+    running = RunningLaunch(system, waits_for_nodes=True)
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            work = tasks.create_task(running.run(plan.steps))
+            if plan.main is not None:
+                await plan.main(system)
+            await running.begun.wait()
+            await system.ready()
+            yield
+            work.cancel()
+    except BaseExceptionGroup as group:
+        raise group.exceptions[0] from None  # that of the body, or of the launch
 
 
 async def note_start(system: System) -> None:

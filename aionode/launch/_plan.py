@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 __all__ = [
+    "Call",
+    "Completed",
     "Component",
     "Emit",
     "LoadNodes",
@@ -47,7 +49,11 @@ class Process(Step):
     respawn_delay_sec: float = 0.0
     respawn_max_retries: int = -1
     output: str = "log"
-    on_exit: Any = None
+    term_after_sec: float = 7.0
+    """How long after SIGINT it gets SIGTERM."""
+    kill_after_sec: float = 5.0
+    """How long after SIGTERM it gets SIGKILL."""
+    emulate_tty: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,6 +91,21 @@ class Timer(Step):
     period_sec: float
     entities: list[Any]
     context: Any
+
+
+@dataclass(frozen=True)
+class Call(Step):
+    """A coroutine that runs beside the processes."""
+
+    action: Any
+    context: Any
+
+
+@dataclass(frozen=True)
+class Completed(Step):
+    """An action has been evaluated; it is complete when what it started has ended."""
+
+    action: Any
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import yaml
 
 from aionode.launch._evaluation import evaluate
 from aionode.launch._plan import (
+    Call,
     Component,
     Emit,
     LoadNodes,
@@ -21,7 +22,7 @@ from aionode.launch._plan import (
     Watch,
 )
 
-__all__ = ["records", "text_of"]
+__all__ = ["changes", "records", "text_of"]
 
 
 def records(
@@ -48,6 +49,8 @@ def records(
                 yield from records(later, before, (*when, f"after {step.period_sec:g} s"))
             case Watch(ends=False):
                 yield from of_handler(step, before, when)
+            case Call():
+                yield {"when": list(when), "calls": step.action.describe()}
             case Log():
                 yield {"when": list(when), "log": step.text}
             case Emit():
@@ -89,10 +92,18 @@ def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) 
         "when": list(when),
         "name": step.name,
         "argv": [word.content if isinstance(word, ParameterValues) else word for word in step.argv],
-        "env": {name: value for name, value in step.env.items() if before.get(name) != value},
+        "env": changes(before, step.env),
         "cwd": step.cwd,
         "where": step.where,
     }
+
+
+def changes(before: Mapping[str, str], env: Mapping[str, str]) -> dict[str, str | None]:
+    """Return what differs from the environment before; None for what is not there any more."""
+    found: dict[str, str | None] = {
+        name: value for name, value in env.items() if before.get(name) != value
+    }
+    return found | {name: None for name in before if name not in env}
 
 
 def of_component(step: LoadNodes, component: Component, when: tuple[str, ...]) -> dict[str, Any]:
@@ -137,7 +148,7 @@ def process_lines(record: Mapping[str, Any]) -> Iterator[str]:
     if record["cwd"]:
         yield f"    in {record['cwd']}"
     for name, value in record["env"].items():
-        yield f"    {name}={value}"
+        yield f"    {name} is not set" if value is None else f"    {name}={value}"
     for number, content in enumerate(files, start=1):
         yield f"    parameters {number}:"
         text = yaml.safe_dump(content, default_flow_style=False, sort_keys=False)

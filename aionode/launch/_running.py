@@ -6,7 +6,7 @@ import asyncio
 import os
 import re
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,13 +16,12 @@ from aionode.clock import SteadyClock
 from aionode.interfaces.composition_interfaces.srv import LoadNode
 from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState
-from aionode.launch._evaluation import evaluate
+from aionode.launch._evaluation import evaluate, failure_of
 from aionode.launch._launch.event import Event
 from aionode.launch._launch.event_handler import entities_of
-from aionode.launch._launch.events import Shutdown
+from aionode.launch._launch.event_handlers import OnProcessIO
+from aionode.launch._launch.events import ExecutionComplete, Shutdown
 from aionode.launch._launch.events.process import (
-    ProcessExited,
-    ProcessStarted,
     ProcessTargetedEvent,
     ShutdownProcess,
     SignalProcess,
@@ -30,6 +29,8 @@ from aionode.launch._launch.events.process import (
 from aionode.launch._launch_ros.actions import LifecycleNode
 from aionode.launch._launch_ros.events import lifecycle
 from aionode.launch._plan import (
+    Call,
+    Completed,
     Component,
     Emit,
     LoadNodes,
@@ -40,6 +41,8 @@ from aionode.launch._plan import (
     Timer,
     Watch,
 )
+from aionode.launch._preview import changes
+from aionode.launch._process_events import ProcessEvents
 from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
@@ -54,11 +57,19 @@ class RunningLaunch:
     Args:
         system: The system that its processes and nodes are added to.
         waits_for_nodes: Whether a process is ready only when its node is in the graph.
+        stays: Whether it goes on when nothing runs any more, until a shutdown is asked for.
+
+    Attributes:
+        begun: Set when the first steps are done: the processes and nodes are members.
     """
 
-    def __init__(self, system: System, *, waits_for_nodes: bool = False) -> None:
+    def __init__(
+        self, system: System, *, waits_for_nodes: bool = False, stays: bool = False
+    ) -> None:
         self.system = system
         self.waits_for_nodes = waits_for_nodes
+        self.stays = stays
+        self.begun = asyncio.Event()
         self.members: dict[Any, Member] = {}
         """The process that each action has started last."""
         self._watches: list[Watch] = []
@@ -66,6 +77,11 @@ class RunningLaunch:
         self._clock = SteadyClock()
         self._work: set[asyncio.Task[None]] = set()
         """What may start something more: timers, requests, processes that run."""
+        self._work_of: dict[Any, asyncio.Task[None]] = {}
+        """What each action has begun last."""
+        self._ends: dict[asyncio.Task[None], Event] = {}
+        """What is told to event handlers when work has ended."""
+        self._hears_output = False
         self._idle = asyncio.Event()
         self._is_shutdown = False
 
@@ -83,6 +99,7 @@ class RunningLaunch:
                 async with asyncio.TaskGroup() as self._tasks:
                     handling = self._tasks.create_task(self._handle_events())
                     self.carry_out(steps)
+                    self.begun.set()
                     self._note_idle()
                     await self._idle.wait()
                     handling.cancel()
@@ -94,41 +111,50 @@ class RunningLaunch:
                 if not self._is_shutdown:
                     self._dispatch(Shutdown(reason="the launch ends"))
 
-    def _spawn(self, work: Any) -> None:
+    def _spawn(self, work: Any, action: Any = None) -> None:
         task = self._tasks.create_task(work)
         self._work.add(task)
+        if action is not None:
+            self._work_of[action] = task
         task.add_done_callback(self._forget)
 
     def _forget(self, task: asyncio.Task[None]) -> None:
         self._work.discard(task)
+        if (event := self._ends.pop(task, None)) is not None:
+            self._events.put_nowait(event)
         self._note_idle()
 
     def _note_idle(self) -> None:
-        if self._is_shutdown or not (self._work or self._events.qsize()):
+        if self._is_shutdown or not (self.stays or self._work or self._events.qsize()):
             self._idle.set()
 
     # Steps
 
     def carry_out(self, steps: Iterable[Step]) -> None:
         """Do steps: processes are started, timers and handlers begin."""
+        steps = list(steps)
+        self._hears_output |= any(
+            isinstance(step, Watch) and isinstance(step.handler, OnProcessIO) for step in steps
+        )
+        does: dict[type[Step], Callable[[Any], object]] = {
+            Call: lambda step: self._spawn(self._call(step), step.action),
+            Completed: self._note_completed,
+            Emit: lambda step: self._events.put_nowait(step.event),
+            LoadNodes: self._load,
+            Log: lambda step: self.system.log.note(step.text),
+            Process: self._start,
+            Timer: lambda step: self._spawn(self._wait_for(step), step.action),
+            Watch: self._watch,
+        }
         for step in steps:
-            match step:
-                case Process():
-                    self._start(step)
-                case LoadNodes():
-                    self._load(step)
-                case Timer():
-                    self._spawn(self._wait_for(step))
-                case Watch(ends=False):
-                    self._watches.insert(0, step)
-                case Watch():
-                    self._watches = [one for one in self._watches if one.handler != step.handler]
-                case Log():
-                    self.system.log.note(step.text)
-                case Emit():
-                    self._events.put_nowait(step.event)
-                case _:
-                    raise AssertionError(step)
+            does[type(step)](step)
+
+    def _watch(self, step: Watch) -> None:
+        """Begin to call an event handler, or end that."""
+        if step.ends:
+            self._watches = [one for one in self._watches if one.handler != step.handler]
+        else:
+            self._watches.insert(0, step)
 
     def _start(self, step: Process) -> None:
         """Start a process, and follow it."""
@@ -142,20 +168,42 @@ class RunningLaunch:
         name = step.node_name
         is_awaited = self.waits_for_nodes and name is not None
         retries = step.respawn_max_retries
+        events = ProcessEvents(step, argv, self._events.put_nowait)
         member = self.system.process(
             step.name,
             argv,
-            env=step.env,
+            # The rest is left to the system, whose processes join the domain of its context.
+            env=changes(os.environ, step.env),
             cwd=step.cwd,
+            terminal=step.emulate_tty,
+            on_output=self._listener(step, events),
             restart="always" if step.respawn else "never",
             min_delay_sec=step.respawn_delay_sec or 0.5,
             max_restarts=None if retries < 0 else retries,
             ready=NodeExists(name) if is_awaited and name is not None else None,
+            term_after_sec=step.term_after_sec,
+            kill_after_sec=step.kill_after_sec,
         )
         self.members[step.action] = member
         if isinstance(step.action, LifecycleNode):
             self._spawn(self._follow_states(step.action))
-        self._spawn(self._follow(step, member, argv))
+        self._spawn(self._follow(member, events), step.action)
+
+    def _listener(
+        self, step: Process, events: ProcessEvents
+    ) -> Callable[[bytes, int], object] | None:
+        """Return what is told of the output of a process; None if nobody asks for that."""
+        listeners: list[Callable[[bytes, int], object]] = []
+        if step.action.cached_output:
+            listeners.append(step.action.note_output)
+        if self._hears_output:
+            listeners.append(events.note_output)
+
+        def listen(output: bytes, stream: int) -> None:
+            for listener in listeners:
+                listener(output, stream)
+
+        return listen if listeners else None
 
     def _written(self, step: Process) -> list[str]:
         """Return the command line, its parameters written into files."""
@@ -169,25 +217,11 @@ class RunningLaunch:
                 argv.append(word)
         return argv
 
-    async def _follow(self, step: Process, member: Member, argv: list[str]) -> None:
+    async def _follow(self, member: Member, events: ProcessEvents) -> None:
         """Tell the event handlers of each start and end of a process."""
-        pid, end = None, None
-        facts = {"action": step.action, "name": step.name, "cmd": argv}
-        facts |= {"cwd": step.cwd, "env": step.env}
         while True:
-            ended = member.last_end if member.last_end is not end else None
-            # A process that ended at once may never have been seen while it ran.
-            ran_unseen = ended is not None and ended.ran_sec > 0 and pid is None
-            if ran_unseen or member.pid not in (None, pid):
-                pid = member.pid or 0
-                step.action.process_details = {"name": step.name, "cmd": argv, "pid": pid}
-                self._events.put_nowait(ProcessStarted(pid=pid, **facts))
-            if ended is not None:
-                end = ended
-                step.action.return_code = end.status
-                self._events.put_nowait(ProcessExited(pid=pid or 0, returncode=end.status, **facts))
-                pid = None
-            if member.is_over():
+            events.look(member)
+            if member.is_over() and not self.stays:
                 return
             await self.system.changed()
 
@@ -195,6 +229,24 @@ class RunningLaunch:
         await self._clock.sleep(step.period_sec)
         if not (step.action.is_canceled or self._is_shutdown):
             self.carry_out(evaluate(step.entities, step.context))
+
+    async def _call(self, step: Call) -> None:
+        """Run a coroutine; what it adds to its context is done at once."""
+        step.context.steps = AtOnce(self.carry_out)
+        try:
+            await step.action.call(step.context)
+        except Exception as error:
+            raise failure_of(step.action, error) from error
+
+    def _note_completed(self, step: Completed) -> None:
+        """Tell the event handlers when what an action has begun has ended, if one asks."""
+        event = ExecutionComplete(action=step.action)
+        if any(watch.handler.matches(event) for watch in self._watches):
+            work = self._work_of.get(step.action)
+            if work is None or work.done():
+                self._events.put_nowait(event)
+            else:
+                self._ends[work] = event
 
     # Events
 
@@ -307,6 +359,17 @@ class RunningLaunch:
                 self.system.log.note(f"{container}: {done if response.success else failed}")
         finally:
             client.destroy()
+
+
+class AtOnce(list[Step]):
+    """The steps of a context while things run: each is done as it is added."""
+
+    def __init__(self, carry_out: Callable[[list[Step]], object]) -> None:
+        self._carry_out = carry_out
+
+    def append(self, step: Step) -> None:
+        """Do a step."""
+        self._carry_out([step])
 
 
 def first_of(error: BaseException) -> BaseException:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from stat import S_ISREG
+from typing import TYPE_CHECKING, Any
 
 from aionode.clock import SteadyClock
 
@@ -17,12 +19,15 @@ EVERY_SEC = 0.5
 
 
 async def restart_changed(system: System) -> None:
-    """Restart each process when a file of its command line has changed; never return."""
+    """Restart each process when a file of its command line has changed; never return.
+
+    One that has ended is started again, too: a file may be saved when it is half written.
+    """
     clock = SteadyClock()
     seen: dict[str, dict[Path, int]] = {}
     while True:
-        for name, files in files_of(system):
-            times = {file: time for file in files if (time := changed_ns(file)) is not None}
+        for name in system.status():
+            times = dict(times_of(command_line(system.member(name))))
             before = seen.setdefault(name, times)
             if times != before:
                 seen[name] = times
@@ -31,34 +36,20 @@ async def restart_changed(system: System) -> None:
         await clock.sleep(EVERY_SEC)
 
 
-def files_of(system: System) -> list[tuple[str, list[Path]]]:
-    """Return the files on the command line of each process that runs."""
-    found = []
-    for name, status in system.status().items():
-        if status.pid is not None:
-            found.append((name, list(program_files(command_line(status.pid)))))
-    return found
+def command_line(member: Any) -> Iterable[str]:
+    """Return the command line of a member; none if it has no process of its own."""
+    process = getattr(member, "process", None)
+    return () if process is None else process.argv
 
 
-def command_line(pid: int) -> list[str]:
-    """Return the words of the command line of a process; none if it has ended."""
-    try:
-        return Path(f"/proc/{pid}/cmdline").read_text(encoding="utf-8").split("\0")
-    except (OSError, ValueError):
-        return []
+def times_of(words: Iterable[str]) -> Iterator[tuple[Path, int]]:
+    """Yield the files that words name, and when each was changed last, in nanoseconds.
 
-
-def program_files(words: Iterable[str]) -> Iterable[Path]:
-    """Yield the files that words name: programs, their parameters, and files of node classes."""
+    They are programs, their parameters, and files of node classes.
+    """
     for word in words:
         file = Path(word.partition(".py:")[0] + ".py") if ".py:" in word else Path(word)
-        if file.suffix and file.is_file():
-            yield file
-
-
-def changed_ns(file: Path) -> int | None:
-    """Return when a file was changed last, in nanoseconds; None if it is not there."""
-    try:
-        return file.stat().st_mtime_ns
-    except OSError:
-        return None
+        with suppress(OSError, ValueError):  # it is not there now, or a word that is no path
+            found = file.stat()
+            if file.suffix and S_ISREG(found.st_mode):
+                yield file, found.st_mtime_ns

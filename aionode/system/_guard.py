@@ -129,7 +129,7 @@ class Orphans:
         for running, description in programs:
             # One whose start was under way is stopped; its session is not known, but its token is.
             pid = running.pid or -1
-            program = Program(running.number, pid, -1, list(description.ladder), guardian)
+            program = Program(running.number, pid, [], list(description.ladder), guardian)
             if not running.started.done():
                 running.refuse(description.argv, LOST)
                 program.note_end()
@@ -202,14 +202,14 @@ class Guard:
         SENDS.append(self._kill_at_sudden_end)
 
     def start(
-        self, description: ProgramDescription, streams: Sequence[int], output: int
+        self, description: ProgramDescription, streams: Sequence[int], outputs: Sequence[int]
     ) -> RunningProgram:
         """Have a program started; the caller closes its descriptors afterwards.
 
         Args:
             description: What is started.
             streams: Its standard input, output and error.
-            output: The end of its output that is read. The guardian keeps it open, so that a
+            outputs: The ends of its output that are read. The guardian keeps them open, so that a
                 program that prints as it ends is not killed for it, after the supervisor has ended.
         """
         self._last_number += 1
@@ -222,7 +222,7 @@ class Guard:
         os.write(text, description.encoded())
         os.lseek(text, 0, os.SEEK_SET)
         self._send(
-            {"do": "start", "number": program.number}, [text, *map(os.dup, (*streams, output))]
+            {"do": "start", "number": program.number}, [text, *map(os.dup, (*streams, *outputs))]
         )
         return program
 

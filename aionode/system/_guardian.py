@@ -10,9 +10,9 @@ the guardian's child from then on, so every process of the system is found below
 Which program such a process belongs to, its session tells, its parent, or the token in its
 environment.
 
-Commands and events are packets of JSON. Commands: ``start`` (with five descriptors: the description
-of the program, its three standard streams, and the end of its output that is read), ``stop``,
-``kill``. Events: ``started``, ``refused``, ``exited``, ``gone`` (no process of it is left).
+Commands and events are packets of JSON. Commands: ``start`` (with five or six descriptors: the
+description of the program, its three standard streams, and the ends of its output that are read),
+``stop``, ``kill``. Events: ``started``, ``refused``, ``exited``, ``gone`` (nothing is left).
 """
 
 from __future__ import annotations
@@ -58,15 +58,20 @@ class Program:
         pid: Of its first process; also its session and process group.
         ended: Whether the first process has ended.
         gone: Whether no process is left.
-        output: The end of its output that is read when the supervisor is gone.
+        outputs: The ends of its output that are read when the supervisor is gone.
         ladder: The signals that end it, and how long each is waited for, in seconds.
         token: What is in the environment of its processes.
     """
 
     def __init__(
-        self, number: int, pid: int, output: int, ladder: list[tuple[str, float]], guardian: int
+        self,
+        number: int,
+        pid: int,
+        outputs: list[int],
+        ladder: list[tuple[str, float]],
+        guardian: int,
     ) -> None:
-        self.number, self.pid, self.output, self.ladder = number, pid, output, ladder
+        self.number, self.pid, self.outputs, self.ladder = number, pid, outputs, ladder
         self.token = token_of(guardian, number)
         self.ended = self.gone = False
         self.stopping = False
@@ -162,8 +167,8 @@ class Guardian:
             poll.register(self._link, select.POLLIN)
         else:
             for program in self._programs.values():
-                if program.output >= 0:
-                    poll.register(program.output, select.POLLIN)
+                for output in program.outputs:
+                    poll.register(output, select.POLLIN)
         busy = self._link is None or any(
             program.stopping and not program.gone for program in self._programs.values()
         )
@@ -177,17 +182,20 @@ class Guardian:
 
     def _drain(self, descriptor: int) -> None:
         """Read what nobody else does, so that a program that prints as it ends is not blocked."""
-        if not os.read(descriptor, 1 << 16):
+        output = b""
+        with suppress(OSError):  # a terminal that nobody has open any more
+            output = os.read(descriptor, 1 << 16)
+        if not output:
             for program in self._programs.values():
-                if program.output == descriptor:
+                if descriptor in program.outputs:
                     os.close(descriptor)
-                    program.output = -1
+                    program.outputs.remove(descriptor)
 
     # Commands and events
 
     def _receive(self, link: socket.socket) -> None:
         try:
-            packet, descriptors, _, _ = socket.recv_fds(link, 65536, 5)
+            packet, descriptors, _, _ = socket.recv_fds(link, 65536, 6)
         except ConnectionError:
             packet, descriptors = b"", []
         if not packet:
@@ -211,7 +219,7 @@ class Guardian:
                 self._link.send(json.dumps(event).encode())
 
     def _start(
-        self, number: int, description: int, stdin: int, stdout: int, stderr: int, output: int
+        self, number: int, description: int, stdin: int, stdout: int, stderr: int, *outputs: int
     ) -> None:
         with open(description, "rb") as file:  # a descriptor
             program = json.load(file)
@@ -230,12 +238,13 @@ class Guardian:
                 preexec_fn=joining(program["cgroup"]),  # noqa: PLW1509  # it has no threads
             )
         except (OSError, subprocess.SubprocessError) as error:
-            os.close(output)
+            for output in outputs:
+                os.close(output)
             self._tell(event="refused", number=number, text=str(error))
         else:
             process.returncode = 0  # it is reaped here, not by subprocess
             self._programs[number] = Program(
-                number, process.pid, output, program["ladder"], os.getpid()
+                number, process.pid, [*outputs], program["ladder"], os.getpid()
             )
             self._tell(event="started", number=number, pid=process.pid)
         finally:
@@ -284,8 +293,8 @@ class Guardian:
 
     def _forget(self, program: Program) -> None:
         if self._link is not None:
-            if program.output >= 0:
-                os.close(program.output)
+            for output in program.outputs:
+                os.close(output)
             del self._programs[program.number]
 
 

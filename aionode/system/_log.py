@@ -87,7 +87,7 @@ class SystemLog:
         self._lost_file = False
         self._width = len("system")
         self._colors: dict[str, int] = {}
-        self._unfinished: dict[str, bytes] = {}
+        self._unfinished: dict[tuple[str, int], bytes] = {}
         self._last: dict[str, bytearray] = {}
         self._new: list[Buffer] = []  # since the last flush
         self._unwritten = bytearray()  # what the stream has not taken
@@ -103,12 +103,18 @@ class SystemLog:
         self.write("system", f"{text}\n".encode())
         self.flush()
 
-    def write(self, name: str, output: bytes) -> None:
+    def write(self, name: str, output: bytes, stream: int = 1) -> None:
         """Take what a member has printed; the rest of a line waits for its end.
 
-        The stream gets it at the next `flush`.
+        The stream of the log gets it at the next `flush`.
+
+        Args:
+            name: The member.
+            output: What it has printed.
+            stream: 2 for standard error, if that is known; a line is of one stream.
         """
-        before = self._unfinished.pop(name, b"")
+        key = name, stream
+        before = self._unfinished.pop(key, b"")
         end = output.rfind(b"\n") + 1
         if len(output) - end + (0 if end else len(before)) > LONGEST_LINE:
             output += b"\n"
@@ -116,23 +122,22 @@ class SystemLog:
         if not end:
             before += output
         elif end < len(output):
-            self._unfinished[name] = output[end:]
+            self._unfinished[key] = output[end:]
         if end:
             self._write_lines(name, before, output, end)
         elif before:
-            self._unfinished[name] = before
+            self._unfinished[key] = before
 
-    def end_line(self, name: str) -> None:
+    def end_line(self, name: str, stream: int = 1) -> None:
         """Write the rest of a line whose end will not come."""
-        if rest := self._unfinished.pop(name, b""):
+        if rest := self._unfinished.pop((name, stream), b""):
             self._write_lines(name, rest, b"\n", 1)
 
     def last_lines(self, name: str) -> list[str]:
         """Return the last lines of a member, 20 at most."""
-        text = (self._last.get(name, b"") + self._unfinished.get(name, b"")).decode(
-            errors="replace"
-        )
-        return text.splitlines()[-LAST_LINES:]
+        begun = [self._unfinished.get((name, stream), b"") for stream in (1, 2)]
+        text = self._last.get(name, b"") + b"\n".join(filter(None, begun))
+        return text.decode(errors="replace").splitlines()[-LAST_LINES:]
 
     def _write_lines(self, name: str, before: bytes, output: bytes, end: int) -> None:
         """Write the lines of `before` and of `output` up to `end`, which is that of a line."""
@@ -203,8 +208,8 @@ class SystemLog:
 
     def close(self) -> None:
         """Write what is left, as far as the stream takes it, and close the files."""
-        for name in list(self._unfinished):
-            self.end_line(name)
+        for name, stream in list(self._unfinished):
+            self.end_line(name, stream)
         self.flush()
         for file in self._files.values():
             file.close()

@@ -9,9 +9,11 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.system._log import SystemLog
 
-__all__ = ["OutputReader"]
+__all__ = ["OutputReader", "open_output"]
 
 PAUSE_SEC: Final = 0.04
 """Between two turns, in seconds. A program may write a line at a time, a hundred thousand a second:
@@ -31,6 +33,26 @@ F_SETPIPE_SZ: Final = 1031
 """Of fcntl; Python 3.10 has a name for it on Linux alone."""
 
 
+def open_output(*, terminal: bool) -> tuple[int, int]:
+    """Return the end of a pipe that is read, without blocking, and the one that a program gets.
+
+    Args:
+        terminal: Whether it is a terminal instead: programs write each line at once then, and in
+            colours.
+    """
+    if terminal:
+        import termios  # not on Windows
+
+        output, pipe = os.openpty()
+        attributes = termios.tcgetattr(pipe)
+        attributes[1] &= ~termios.OPOST  # lines end as they are written
+        termios.tcsetattr(pipe, termios.TCSANOW, attributes)
+    else:
+        output, pipe = os.pipe()
+    os.set_blocking(output, False)
+    return output, pipe
+
+
 class OutputReader:
     """Reads the pipes of programs into the log.
 
@@ -45,14 +67,31 @@ class OutputReader:
         self._log = log
         self._loop = asyncio.get_running_loop()
         self._names: dict[int, str] = {}
+        self._streams: dict[int, int] = {}
+        self._listeners: dict[int, Callable[[bytes, int], object]] = {}
         self._epoll = select.epoll()
         self._large: set[int] = set()  # pipes that were full
         self._pause: asyncio.TimerHandle | None = None
         self._loop.add_reader(self._epoll.fileno(), self._turn)
 
-    def add(self, pipe: int, name: str) -> None:
-        """Read a pipe from now on, until `remove`; it must not block."""
-        self._names[pipe] = name
+    def add(
+        self,
+        pipe: int,
+        name: str,
+        stream: int = 1,
+        listener: Callable[[bytes, int], object] | None = None,
+    ) -> None:
+        """Read a pipe from now on, until `remove`; it must not block.
+
+        Args:
+            pipe: The pipe.
+            name: The member that prints to it.
+            stream: 1 for standard output, 2 for standard error.
+            listener: Called with all that is read, and with `stream`.
+        """
+        self._names[pipe], self._streams[pipe] = name, stream
+        if listener is not None:
+            self._listeners[pipe] = listener
         self._epoll.register(pipe, select.EPOLLIN)
 
     def remove(self, pipe: int) -> None:
@@ -61,8 +100,9 @@ class OutputReader:
             pass
         name = self._names.pop(pipe, None)
         if name is not None:
-            self._log.end_line(name)
+            self._log.end_line(name, self._streams.pop(pipe))
             self._log.flush()
+            self._listeners.pop(pipe, None)
             self._large.discard(pipe)
             with suppress(FileNotFoundError):  # it was at its end
                 self._epoll.unregister(pipe)
@@ -94,6 +134,8 @@ class OutputReader:
             output = os.read(pipe, PIECE if pipe in self._large else SMALL_PIPE)
         except BlockingIOError:
             return None
+        except OSError:  # a terminal that nobody has open any more
+            return 0
         if not output:
             return 0
         if len(output) == SMALL_PIPE and pipe not in self._large:
@@ -102,7 +144,10 @@ class OutputReader:
                 import fcntl  # not on Windows
 
                 fcntl.fcntl(pipe, F_SETPIPE_SZ, LARGE_PIPE)
-        self._log.write(self._names[pipe], output)
+        self._log.write(self._names[pipe], output, self._streams[pipe])
+        if listener := self._listeners.get(pipe):
+            # Not now: what it raises is no affair of the programs whose output is read next.
+            self._loop.call_soon(listener, output, self._streams[pipe])
         return len(output)
 
     def close(self) -> None:

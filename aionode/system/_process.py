@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Protocol
 from aionode.errors import ProgramStartError
 from aionode.system._guard import ProgramDescription
 from aionode.system._member import Member
+from aionode.system._output import open_output
 from aionode.system._status import MemberEnd, end_text, shell_status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from aionode.system._guard import Guard, RunningProgram
     from aionode.system._limits import Limits
@@ -31,21 +32,25 @@ class ProcessOptions:
 
     Attributes:
         argv: The command line.
-        env: Variables beside those of the system.
+        env: Variables beside those of the system; None for one that it does not get.
         cwd: The working folder.
         stdin: Whether it reads the keyboard: it gets the terminal.
         term_after_sec: How long after SIGINT it gets SIGTERM, in seconds.
         kill_after_sec: How long after SIGTERM it gets SIGKILL, in seconds.
         limits: Of memory and processors.
+        terminal: Whether it prints to a terminal of its own.
+        on_output: Called with what it prints, and with 1 for standard output and 2 for error.
     """
 
     argv: Sequence[str]
-    env: Mapping[str, str]
+    env: Mapping[str, str | None]
     cwd: str | None
     stdin: bool
     term_after_sec: float
     kill_after_sec: float
     limits: Limits
+    terminal: bool = False
+    on_output: Callable[[bytes, int], object] | None = None
 
     def ladder(self) -> list[tuple[str, float]]:
         """Return the signals that end it, and how long each is waited for, in seconds."""
@@ -93,11 +98,11 @@ class ProcessMember(Member):
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
         """Start it, and wait until no process of it is left."""
         cgroup = self.process.limits.enter(self.name, self.host.log)
-        pipe, program = self._start(cgroup)
+        pipes, program = self._start(cgroup)
         try:
             await program.started
         except ProgramStartError as error:
-            self._processes.reader.remove(pipe)
+            self._stop_reading(pipes)
             self.host.log.note(f"{self.name}: {error}")
             return MemberEnd(self.name, failed=True, text="could not be started", status=127)
         self.note_running(program.pid)
@@ -107,12 +112,16 @@ class ProcessMember(Member):
             await program.gone
         finally:
             stopper.cancel()
-            self._processes.reader.remove(pipe)
+            self._stop_reading(pipes)
             self.process.limits.leave(cgroup)
         if stop.is_set() and code == -signal.SIGKILL:
             self.host.log.note(f"{self.name} did not end by itself, and {end_text(code)}")
         return MemberEnd(
-            self.name, failed=code != 0, text=end_text(code), status=shell_status(code)
+            self.name,
+            failed=code != 0,
+            text=end_text(code),
+            status=shell_status(code),
+            code=code,
         )
 
     async def _stop_at(self, stop: asyncio.Event, program: RunningProgram) -> None:
@@ -120,26 +129,38 @@ class ProcessMember(Member):
         self.set_state("stopping")
         self._processes.guard.stop(program)
 
-    def _start(self, cgroup: str | None) -> tuple[int, RunningProgram]:
-        """Have it started; return the pipe that it prints to, and the program."""
-        output, pipe = os.pipe()
-        os.set_blocking(output, False)
+    def _stop_reading(self, pipes: Sequence[int]) -> None:
+        for pipe in pipes:
+            self._processes.reader.remove(pipe)
+
+    def _start(self, cgroup: str | None) -> tuple[list[int], RunningProgram]:
+        """Have it started; return the pipes that it prints to, and the program.
+
+        Both streams share one pipe, which keeps the order of their lines, unless somebody wants to
+        know them apart.
+        """
+        apart = self.process.on_output is not None
+        ends = [open_output(terminal=self.process.terminal) for _ in range(2 if apart else 1)]
         null = os.open(os.devnull, os.O_RDONLY)
-        streams = [null, pipe, pipe]
+        streams = [null, ends[0][1], ends[-1][1]]
         if self.process.stdin and sys.__stdin__ is not None:
             terminal = sys.__stdin__.fileno()
             streams[0] = terminal
             if os.isatty(terminal) and os.isatty(1):
                 streams[1] = 1
+        variables = {"PYTHONUNBUFFERED": "1", **self.process.env}
+        env = self._processes.environment() | variables
         description = ProgramDescription(
             [os.fspath(word) for word in self.process.argv],
-            self._processes.environment() | {"PYTHONUNBUFFERED": "1"} | dict(self.process.env),
+            {name: value for name, value in env.items() if value is not None},
             self.process.ladder(),
             self.process.cwd,
             cgroup,
         )
-        program = self._processes.guard.start(description, streams, output)
-        os.close(pipe)
-        os.close(null)
-        self._processes.reader.add(output, self.name)
-        return output, program
+        outputs = [output for output, _ in ends]
+        program = self._processes.guard.start(description, streams, outputs)
+        for descriptor in (null, *(pipe for _, pipe in ends)):
+            os.close(descriptor)
+        for stream, output in enumerate(outputs, start=1):
+            self._processes.reader.add(output, self.name, stream, self.process.on_output)
+        return outputs, program

@@ -26,6 +26,8 @@ class MemberEnd:
         status: Its exit status as a shell has it; that of a node that failed is 1.
         ran_sec: How long it had run, in seconds.
         last_lines: What it printed last, 20 lines at most.
+        code: The exit code of its process as `subprocess` has it, negative for a signal; None for
+            a node in this process, and for a process that could not be started.
     """
 
     name: str
@@ -34,6 +36,7 @@ class MemberEnd:
     status: int
     ran_sec: float = 0.0
     last_lines: tuple[str, ...] = ()
+    code: int | None = None
 
 
 @dataclass(frozen=True)

@@ -119,11 +119,13 @@ class System:
         name: str,
         argv: Sequence[str | os.PathLike[str]],
         *,
-        env: Mapping[str, str] | None = None,
+        env: Mapping[str, str | None] | None = None,
         cwd: str | os.PathLike[str] | None = None,
         restart: Restart = "never",
         ready: Fact | Sequence[Fact] | None = None,
         stdin: bool = False,
+        terminal: bool = False,
+        on_output: Callable[[bytes, int], object] | None = None,
         term_after_sec: float = 7.0,
         kill_after_sec: float = 5.0,
         memory_bytes: int | None = None,
@@ -138,7 +140,8 @@ class System:
         Args:
             name: Its name in the system.
             argv: Its command line.
-            env: Variables of its environment beside those of this process.
+            env: Variables of its environment beside those of this process; None for one that it
+                does not get.
             cwd: Its working folder.
             restart: When it is started again: ``"never"``, ``"on-failure"`` (an exit status other
                 than 0, or a signal) or ``"always"``.
@@ -146,6 +149,10 @@ class System:
             stdin: Whether it reads the keyboard: standard input and output are the terminal then,
                 if there is one, and standard error goes to the log. Others have an empty standard
                 input.
+            terminal: Whether it prints to a terminal of its own, into the log: many programs
+                write each line at once then, and in colours.
+            on_output: Called with what it prints, as it comes, and with 1 for standard output or 2
+                for standard error. In the log, lines of the two may change their order then.
             term_after_sec: How long after SIGINT it gets SIGTERM, in seconds.
             kill_after_sec: How long after SIGTERM it gets SIGKILL, in seconds.
             memory_bytes: How much memory it may have, by cgroup v2. Where that is not allowed, it
@@ -171,6 +178,8 @@ class System:
             term_after_sec,
             kill_after_sec,
             Limits(memory_bytes, cpu_cores),
+            terminal,
+            on_output,
         )
         shared = options_of(restart, facts_of(ready, name), options, name)
         return self._add(ProcessMember(name, self, self, shared, process))

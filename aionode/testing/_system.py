@@ -14,7 +14,7 @@ from aionode.context import Context
 from aionode.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
+    from collections.abc import AsyncIterator, Awaitable, Callable, Iterator, Mapping
 
     from aionode.system import System
 
@@ -27,35 +27,73 @@ DOMAINS: Final = range(102, 233)
 @contextlib.asynccontextmanager
 async def system_under_test(
     description: str | os.PathLike[str] | Callable[[System], Awaitable[object]],
+    arguments: Mapping[str, str] | None = None,
 ) -> AsyncIterator[System]:
     """Start a system for a test, in a domain of its own, and yield it when it is ready.
 
     ::
 
-        async with system_under_test("robot.py") as system, Node("test", context=system.context):
+        async with (
+            system_under_test("robot.launch.py") as system,
+            Node("test", context=system.context) as node,
+        ):
             ...
 
     It is stopped at the end, and nothing of it is left. What its members print goes to
     ``sys.stdout``, which pytest shows when the test fails.
 
     Args:
-        description: A file with ``async def main(system)``, or such a function; it adds the
-            members.
+        description: A launch file of ROS 2, in Python, XML or YAML; or a file with
+            ``async def main(system)``, or such a function, which adds the members.
+        arguments: Values for the arguments of a launch file.
 
     Raises:
+        LaunchFileError: the launch file cannot be evaluated; nothing was started (a ValueError).
         NotReadyError: a member is not ready; the text names what is missing, and has the last lines
             of the member (a TimeoutError).
-        ConfigurationError: the file has no such function (a ValueError).
+        ConfigurationError: the file is no launch file, and has no such function (a ValueError).
+        TypeError: there are `arguments` for what is no launch file.
     """
     from aionode.system import System
 
-    main = description if callable(description) else main_of(Path(description))
+    starting = how_to_start(description, arguments)
     with own_domain() as domain_id:
         context = Context(domain_id=domain_id, discovery_range="LOCALHOST")
-        async with System("under_test", context=context) as system:
-            await main(system)
-            await system.ready()
+        async with System("under_test", context=context) as system, starting(system):
             yield system
+
+
+def how_to_start(
+    description: str | os.PathLike[str] | Callable[[System], Awaitable[object]],
+    arguments: Mapping[str, str] | None,
+) -> Callable[[System], contextlib.AbstractAsyncContextManager[None]]:
+    """Return what starts the members of a system, and has them ready."""
+    if not callable(description) and is_launch_file(Path(description)):
+        # A program that tests nodes alone imports no launch; and the recordings that rclpy's
+        # programs use need this package.
+        from aionode.launch import Plan, plan_running
+
+        plan = Plan(os.fspath(description), arguments)
+        return lambda system: plan_running(plan, system)
+    if arguments is not None:
+        raise TypeError(f"system_under_test: {description} is no launch file; it has no arguments")
+    main = description if callable(description) else main_of(Path(description))
+    return lambda system: started_by(main, system)
+
+
+def is_launch_file(file: Path) -> bool:
+    """Return whether a file is a launch file of ROS 2, and not one with ``main``."""
+    return file.suffix != ".py" or b"generate_launch_description" in file.read_bytes()
+
+
+@contextlib.asynccontextmanager
+async def started_by(
+    main: Callable[[System], Awaitable[object]], system: System
+) -> AsyncIterator[None]:
+    """Have a function add the members of a system, and yield when they are ready."""
+    await main(system)
+    await system.ready()
+    yield
 
 
 def main_of(file: Path) -> Callable[[System], Awaitable[object]]:
@@ -67,7 +105,9 @@ def main_of(file: Path) -> Callable[[System], Awaitable[object]]:
     main: Any = runpy.run_path(str(file)).get("main")
     if not inspect.iscoroutinefunction(main):
         raise ConfigurationError(
-            "system_under_test", str(file), "the file needs `async def main(system)`"
+            "system_under_test",
+            str(file),
+            "the file needs `async def main(system)` or generate_launch_description()",
         )
     return main  # type: ignore[no-any-return]  # a coroutine function
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import io
+import os
 import signal
 import subprocess
 import sys
@@ -35,15 +36,15 @@ class Robot:
         context = Context(transport="local")
         self.system = System("tested", context=context, log=SystemLog(self.output))
 
-    def plan(self, entities: str) -> Plan:
+    def plan(self, entities: str, imports: str = "") -> Plan:
         """Return the plan of a file in Python with these entities."""
-        text = HEAD + BODY.format(entities=textwrap.dedent(entities))
+        text = HEAD + textwrap.dedent(imports) + BODY.format(entities=textwrap.dedent(entities))
         return Plan(self.files.write("a.launch.py", text))
 
-    async def run(self, entities: str) -> list[str]:
+    async def run(self, entities: str, imports: str = "") -> list[str]:
         """Run a file until it is over, and return the texts of the log."""
         async with self.system:
-            await run_plan(self.plan(entities), self.system)
+            await run_plan(self.plan(entities, imports), self.system)
         return self.lines()
 
     def lines(self) -> list[str]:
@@ -152,23 +153,19 @@ async def test_components_that_are_aionode_classes_run_as_tasks(robot: Robot) ->
 
 
 async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
-    """With `watch`; the others go on."""
-    program = Path(robot.files.write("program.py", "import time; time.sleep(1000)"))
+    """With `watch`; also one that has ended, such as one that was saved half written."""
+    programs = [Path(robot.files.write(name, "exit 3")) for name in ("ends.sh", "stays.sh")]
     plan = robot.plan(
         f"""
-        ExecuteProcess(cmd=['python3', {str(program)!r}], name='changing'),
-        ExecuteProcess(cmd=['sleep', '1000'], name='other'),
+        ExecuteProcess(cmd=['sh', {str(programs[0])!r}], name='ending'),
+        ExecuteProcess(cmd=['sh', {str(programs[1])!r}], name='other'),
         """
     )
     async with robot.system as system, asyncio.TaskGroup() as tasks:
         running = tasks.create_task(run_plan(plan, system, watch=True))
-
-        def is_restarted() -> bool:
-            program.write_text("import time; time.sleep(1000)")  # what it was is not known at once
-            status = system.status().get("changing-1")
-            return status is not None and status.restarts > 0
-
-        await until(is_restarted)
+        await until(lambda: [one.state for one in system.status().values()] == ["failed"] * 2)
+        os.utime(programs[0], (0, 0))
+        await until(lambda: system.status()["ending-1"].restarts)
         assert system.status()["other-2"].restarts == 0
         running.cancel()
 
@@ -181,6 +178,140 @@ async def test_a_command_runs_once_all_is_ready(robot: Robot) -> None:
         running = tasks.create_task(run_plan(plan, system, once_ready=f"touch {mark}"))
         await until(mark.exists)
         running.cancel()
+
+
+async def test_what_a_process_writes_is_an_event(robot: Robot) -> None:
+    """The two streams are known apart, all of it comes before the exit, and the log has it."""
+    lines = await robot.run(
+        """
+        first := ExecuteProcess(cmd=['sh', '-c', 'echo out; echo err >&2; printf rest']),
+        RegisterEventHandler(OnProcessIO(
+            target_action=first,
+            on_stdout=lambda event: LogInfo(msg=f'1 {event.text!r}'),
+            on_stderr=lambda event: LogInfo(msg=f'2 {event.text!r}'))),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=[LogInfo(msg='over')])),
+        """
+    )
+
+    told = [line for line in lines if line[:2] in ("1 ", "2 ")]
+    assert "2 b'err\\n'" in told
+    assert "".join(line[4:-1] for line in told if line[0] == "1") == "out\\nrest"
+    assert lines.index("over") > max(map(lines.index, told))
+    assert {"out", "err", "rest"} <= set(lines)
+
+
+async def test_the_output_of_a_process_can_be_kept(robot: Robot) -> None:
+    """Functions of the file ask the action for it."""
+    lines = await robot.run(
+        """
+        first := ExecuteProcess(cmd=['echo', 'hello'], cached_output=True, log_cmd=True),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=lambda event, context: [
+            LogInfo(msg=f'kept {event.action.get_stdout()!r} {event.action.get_stderr()!r}')])),
+        """
+    )
+
+    assert "kept 'hello\\n' ''" in lines
+    assert "process details: cmd='echo hello'" in lines
+
+
+async def test_the_completion_of_an_action_is_an_event(robot: Robot) -> None:
+    """That of a process is its end, that of a timer when it has fired; others complete at once."""
+    lines = await robot.run(
+        """
+        *[RegisterEventHandler(OnExecutionComplete(
+            target_action=action, on_completion=[LogInfo(msg=f'{name} is complete')]))
+          for name, action in ACTIONS.items()],
+        *ACTIONS.values(),
+        """,
+        imports="""
+        ACTIONS = {
+            'process': ExecuteProcess(cmd=['sh', '-c', 'echo running']),
+            'timer': TimerAction(period=0.01, actions=[LogInfo(msg='fired')]),
+            'setting': SetLaunchConfiguration('a', 'b'),
+            'never': LogInfo(msg='none', condition=IfCondition('false')),
+        }
+        """,
+    )
+
+    assert lines.index("running") < lines.index("process is complete")
+    assert lines.index("fired") < lines.index("timer is complete")
+    assert "setting is complete" in lines
+    assert "never is complete" not in lines
+
+
+async def test_a_coroutine_runs_beside_the_processes(robot: Robot) -> None:
+    """What it adds to its context is done at once, and the launch waits for its end."""
+    lines = await robot.run(
+        "OpaqueCoroutine(coroutine=work, args=['word']),",
+        imports="""
+        import asyncio
+        async def work(context, word):
+            LogInfo(msg=f'{word} first').execute(context)
+            await asyncio.sleep(0.01)
+            await context.emit_event(ShutdownEvent(reason='the work is done'))
+            await asyncio.Event().wait()
+        """,
+    )
+
+    assert lines.index("word first") < lines.index("shutdown: the work is done")
+
+
+async def test_a_coroutine_that_fails_is_one_error_with_its_line(robot: Robot) -> None:
+    """As that of a function."""
+    with pytest.raises(LaunchFileError, match=r"a\.launch\.py:\d+: OpaqueCoroutine: broken"):
+        await robot.run(
+            "OpaqueCoroutine(coroutine=work, ignore_context=True),",
+            imports="""
+            async def work():
+                raise ValueError("broken")
+            """,
+        )
+
+
+async def test_a_process_is_ended_as_its_time_limits_say(robot: Robot) -> None:
+    """A launch configuration serves all processes; the exit code is that of Python's library."""
+    await robot.run(
+        """
+        SetLaunchConfiguration('sigkill_timeout', '0.1'),
+        first := ExecuteProcess(
+            cmd=['sh', '-c', 'trap "" INT TERM; echo up; while :; do sleep 0.05; done'],
+            sigterm_timeout='0.1'),
+        RegisterEventHandler(OnProcessIO(target_action=first, on_stdout=lambda event: [
+            EmitEvent(event=ShutdownProcess(process_matcher=matches_action(first)))])),
+        RegisterEventHandler(OnProcessExit(target_action=first, on_exit=lambda event, context: [
+            LogInfo(msg=f'code {event.returncode}')])),
+        """
+    )
+
+    assert "code -9" in robot.lines()
+
+
+async def test_a_process_has_the_environment_that_the_file_gives_it(
+    robot: Robot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A variable that is unset is not there; and all are in the domain of the system."""
+    monkeypatch.setenv("GONE", "1")
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    lines = await robot.run(
+        """
+        UnsetEnvironmentVariable('GONE'),
+        ExecuteProcess(cmd=['sh', '-c', 'echo "gone: $GONE" "domain: $ROS_DOMAIN_ID"']),
+        """
+    )
+
+    assert f"gone:  domain: {robot.system.context.domain_id}" in lines
+
+
+async def test_a_process_may_print_to_a_terminal(robot: Robot) -> None:
+    """With `emulate_tty`; its lines end as others do."""
+    lines = await robot.run(
+        """
+        ExecuteProcess(cmd=['sh', '-c', 'test -t 1 && echo yes'], emulate_tty=True),
+        ExecuteProcess(cmd=['sh', '-c', 'test -t 1 || echo no']),
+        """
+    )
+
+    assert {"yes", "no"} <= set(lines)
 
 
 async def test_an_error_in_an_event_handler_ends_the_launch(robot: Robot) -> None:

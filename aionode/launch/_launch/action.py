@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.launch._launch.condition import Condition
 from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
+from aionode.launch._plan import Completed
 
 if TYPE_CHECKING:
     from aionode.launch._launch.launch_context import LaunchContext
@@ -33,7 +34,9 @@ class Action(LaunchDescriptionEntity):
         """Do it if the condition holds."""
         if self._condition is not None and not self._condition.evaluate(context):
             return None
-        return self.execute(context)
+        entities = self.execute(context)
+        context.steps.append(Completed(self))
+        return entities
 
     def execute(self, context: LaunchContext) -> Any:
         """Do it, and return further entities or None."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 from collections.abc import Callable, Iterable, Mapping
 from types import SimpleNamespace
@@ -52,6 +53,15 @@ class LaunchContext:
         later.packages = self.packages
         later.names = self.names  # one count for the whole description
         return later
+
+    @property
+    def asyncio_loop(self) -> asyncio.AbstractEventLoop:
+        """The event loop.
+
+        Raises:
+            RuntimeError: The description is being evaluated, and nothing runs yet.
+        """
+        return asyncio.get_running_loop()
 
     def perform_substitution(self, sub: Any) -> str:
         """Return the text of a substitution."""

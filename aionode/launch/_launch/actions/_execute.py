@@ -19,7 +19,7 @@ from aionode.launch._launch.substitution import (
     perform_substitutions,
 )
 from aionode.launch._launch.utilities.type_utils import perform_typed_substitution
-from aionode.launch._plan import ParameterValues, Process
+from aionode.launch._plan import Log, ParameterValues, Process
 
 __all__ = ["ExecuteLocal", "ExecuteProcess"]
 
@@ -53,6 +53,12 @@ class ExecuteLocal(Action):
         self.respawn = respawn
         self.respawn_delay = respawn_delay
         self.respawn_max_retries = respawn_max_retries
+        self.sigterm_timeout = sigterm_timeout
+        self.sigkill_timeout = sigkill_timeout
+        self.emulate_tty = emulate_tty
+        self.cached_output = cached_output
+        self.log_cmd = log_cmd
+        self._cached = {1: bytearray(), 2: bytearray()}
         self.process_details: dict[str, Any] | None = None
         """What is known of the process while it runs: name, cmd, pid, …."""
         self.return_code: int | None = None
@@ -85,6 +91,9 @@ class ExecuteLocal(Action):
         program = self.program_name(context, words)
         prefix = self._prefix(context, program)
         argv = [*prefix, *words, *self.arguments_of_ros(context)]
+        if self.log_cmd:
+            shown = [str(getattr(word, "content", word)) for word in argv]
+            context.steps.append(Log(f"process details: cmd='{shlex.join(shown)}'"))
         base = Path(prefix[0]).name if prefix else program
         if described.name is not None:
             base = perform_substitutions(context, described.name)
@@ -107,8 +116,28 @@ class ExecuteLocal(Action):
                 respawn_delay_sec=self.respawn_delay or 0.0,
                 respawn_max_retries=self.respawn_max_retries,
                 output=self._output(context),
+                **self._limits(context),
+                emulate_tty=self._emulates_tty(context),
             )
         )
+
+    def _limits(self, context: LaunchContext) -> dict[str, float]:
+        """Return how long signals are waited for, in seconds, as far as that is said."""
+        found = {}
+        for name, option in (("sigterm", "term_after_sec"), ("sigkill", "kill_after_sec")):
+            configured = context.launch_configurations.get(f"{name}_timeout")
+            given = getattr(self, f"{name}_timeout")
+            given = configured if given is None else given
+            if given is not None:
+                found[option] = float(perform_typed_substitution(context, given, float))
+        return found
+
+    def _emulates_tty(self, context: LaunchContext) -> bool:
+        given = context.launch_configurations.get("emulate_tty", self.emulate_tty)
+        return bool(perform_typed_substitution(context, given, bool))
+
+    def _text(self, context: LaunchContext, subs: SomeSubstitutionsType) -> str:
+        return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
 
     def _prefix(self, context: LaunchContext, program: str) -> list[str]:
         """Return the command that stands before the program, such as ``gdb --args``."""
@@ -125,9 +154,7 @@ class ExecuteLocal(Action):
 
         def texts(pairs: Mapping[Any, Any]) -> dict[str, str]:
             return {
-                perform_substitutions(
-                    context, normalize_to_list_of_substitutions(name)
-                ): perform_substitutions(context, normalize_to_list_of_substitutions(value))
+                self._text(context, name): self._text(context, value)
                 for name, value in pairs.items()
             }
 
@@ -137,17 +164,36 @@ class ExecuteLocal(Action):
     def _output(self, context: LaunchContext) -> str:
         if isinstance(self.output, Mapping):
             return ",".join(f"{name}={value}" for name, value in self.output.items())
-        return perform_substitutions(context, normalize_to_list_of_substitutions(self.output))
+        return self._text(context, self.output)
 
     def describe(self) -> str:
         """Return which program it starts, and where that is said."""
         return f"{type(self).__name__} of {os.path.basename(self.where)}"  # noqa: PTH119  # with the line
 
-    def get_stdout(self) -> str:
-        """Return nothing: the log has what processes write."""
-        return ""
+    def note_output(self, output: bytes, stream: int) -> None:
+        """Keep what the process has written: 1 is standard output, 2 is standard error."""
+        self._cached[stream] += output
 
-    get_stderr = get_stdout
+    def get_stdout(self) -> str:
+        """Return what it has written to standard output so far.
+
+        Raises:
+            RuntimeError: The action has no ``cached_output=True``.
+        """
+        return self._written_to(1)
+
+    def get_stderr(self) -> str:
+        """Return what it has written to standard error so far.
+
+        Raises:
+            RuntimeError: The action has no ``cached_output=True``.
+        """
+        return self._written_to(2)
+
+    def _written_to(self, stream: int) -> str:
+        if not self.cached_output:
+            raise RuntimeError("cached output must be true to be able to get output")
+        return self._cached[stream].decode(errors="replace")
 
 
 class ExecuteProcess(ExecuteLocal):

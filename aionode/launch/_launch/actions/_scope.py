@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -17,6 +18,7 @@ from aionode.launch._launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from aionode.launch._plan import Call
 
 __all__ = [
     "DeclareLaunchArgument",
@@ -201,15 +203,34 @@ class OpaqueFunction(Action):
 
 
 class OpaqueCoroutine(Action):
-    """Is refused: a description is evaluated before anything runs."""
+    """Runs a coroutine function with the context, beside the processes, until the launch ends."""
 
-    def __init__(self, *, coroutine: Callable[..., Any], **options: Any) -> None:
-        options = {name: value for name, value in options.items() if name == "condition"}
+    def __init__(
+        self,
+        *,
+        coroutine: Callable[..., Any],
+        args: Iterable[Any] | None = None,
+        kwargs: Mapping[str, Any] | None = None,
+        ignore_context: bool = False,
+        **options: Any,
+    ) -> None:
         super().__init__(**options)
+        if not inspect.iscoroutinefunction(coroutine):
+            raise TypeError(f"OpaqueCoroutine: coroutine= is {coroutine!r}; an async function fits")
         self.coroutine = coroutine
+        self.args = list(args or ())
+        self.kwargs = dict(kwargs or {})
+        self.ignore_context = ignore_context
 
     def execute(self, context: LaunchContext) -> None:
-        """Refuse."""
-        raise NotImplementedError(
-            "OpaqueCoroutine does not run here; write `async def main(system)` in the file instead"
-        )
+        """Note that it is to be run."""
+        context.steps.append(Call(self, context.fork()))
+
+    async def call(self, context: LaunchContext) -> None:
+        """Run it to its end."""
+        first = () if self.ignore_context else (context,)
+        await self.coroutine(*first, *self.args, **self.kwargs)
+
+    def describe(self) -> str:
+        """Return which function it runs."""
+        return f"OpaqueCoroutine({getattr(self.coroutine, '__name__', self.coroutine)})"
