@@ -16,15 +16,19 @@ from typing import TYPE_CHECKING, Any
 
 from aionode._packages import Packages, workspace_of
 from aionode.launch._evaluation import arguments_of, evaluate, load_file, new_context
+from aionode.launch._launch.launch_service import LaunchService
 from aionode.launch._plan import Step
 from aionode.launch._preview import records, text_of
-from aionode.launch._running import RunningLaunch, first_of
+from aionode.launch._running import RunningLaunch, first_of, run_service
 from aionode.launch._watch import restart_changed
 
 if TYPE_CHECKING:
     from aionode.system import System
 
 __all__ = ["DeclaredArgument", "Plan", "plan_running", "run_plan", "share_directory"]
+
+# Programs import it as a name of launch, and the engine stands on those.
+LaunchService.engine = run_service
 
 
 @dataclass(frozen=True)

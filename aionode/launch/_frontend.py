@@ -11,6 +11,7 @@ from typing import Any
 from aionode.errors import LaunchFileError
 from aionode.launch import _launch_ros as launch_ros
 from aionode.launch._launch import actions, substitutions
+from aionode.launch._launch.actions._loops import PopLocals, PushLocals
 from aionode.launch._launch.conditions import IfCondition, UnlessCondition
 from aionode.launch._launch.launch_description import LaunchDescription
 from aionode.launch._launch.launch_description_sources import AnyLaunchDescriptionSource
@@ -44,7 +45,9 @@ def register_substitutions() -> None:
         "find-exec": substitutions.FindExecutable.of_words,
         "find-pkg-prefix": launch_ros.substitutions.FindPackagePrefix,
         "find-pkg-share": launch_ros.substitutions.FindPackageShare,
+        "for-var": substitutions.ForEachVar.of_words,
         "if": substitutions.IfElseSubstitution,
+        "index": substitutions.ForLoopIndex,
         "launch_log_dir": substitutions.LaunchLogDir,
         "log_dir": substitutions.LaunchLogDir,
         "not": substitutions.NotSubstitution,
@@ -434,6 +437,32 @@ def timer(kind: Any, reading: Reading, options: Options) -> actions.Action:
     return made
 
 
+def for_each(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``for_each``."""
+    once = iteration(reading)
+    values = words_of(reading.need("values"))
+    return actions.ForEach(values, function=lambda **given: once(given), **options)
+
+
+def for_loop(reading: Reading, options: Options) -> actions.Action:
+    """Return the action of a ``for``."""
+    once, name = iteration(reading), str(reading.need("name"))
+    length = words_of(reading.need("len"))
+    return actions.ForLoop(length, function=lambda i: once({name: i}), name=name, **options)
+
+
+def iteration(reading: Reading) -> Callable[[Options], list[actions.Action]]:
+    """Return what makes the actions inside a loop, with the values of one round."""
+    inner_actions(reading)  # what is wrong with them is wrong without a round, too
+    name_of = substitutions.ForEachVar.get_local_arg_name
+
+    def once(values: Options) -> list[actions.Action]:
+        known = {name_of(name): str(value) for name, value in values.items()}
+        return [PushLocals(known), *inner_actions(reading), PopLocals()]
+
+    return once
+
+
 def set_parameter(reading: Reading, options: Options) -> actions.Action:
     """Return the action of a ``set_parameter``."""
     name = words_of(reading.need("name"))
@@ -465,6 +494,8 @@ ACTIONS: dict[str, Callable[[Reading, Options], actions.Action]] = {
     "append_env": append_env,
     "arg": argument,
     "executable": executable,
+    "for": for_loop,
+    "for_each": for_each,
     "group": group,
     "include": include,
     "let": of(actions.SetLaunchConfiguration, "name", "value"),

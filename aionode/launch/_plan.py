@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -54,6 +55,13 @@ class Process(Step):
     kill_after_sec: float = 5.0
     """How long after SIGTERM it gets SIGKILL."""
     emulate_tty: bool = False
+
+    def changes(self, before: Mapping[str, str]) -> dict[str, str | None]:
+        """Return which variables differ from those before; None for what is not there any more."""
+        found: dict[str, str | None] = {
+            name: value for name, value in self.env.items() if before.get(name) != value
+        }
+        return found | {name: None for name in before if name not in self.env}
 
 
 @dataclass(frozen=True)

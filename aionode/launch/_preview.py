@@ -22,7 +22,7 @@ from aionode.launch._plan import (
     Watch,
 )
 
-__all__ = ["changes", "records", "text_of"]
+__all__ = ["records", "text_of"]
 
 
 def records(
@@ -92,18 +92,10 @@ def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) 
         "when": list(when),
         "name": step.name,
         "argv": [word.content if isinstance(word, ParameterValues) else word for word in step.argv],
-        "env": changes(before, step.env),
+        "env": step.changes(before),
         "cwd": step.cwd,
         "where": step.where,
     }
-
-
-def changes(before: Mapping[str, str], env: Mapping[str, str]) -> dict[str, str | None]:
-    """Return what differs from the environment before; None for what is not there any more."""
-    found: dict[str, str | None] = {
-        name: value for name, value in env.items() if before.get(name) != value
-    }
-    return found | {name: None for name in before if name not in env}
 
 
 def of_component(step: LoadNodes, component: Component, when: tuple[str, ...]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import re
+import sys
 import tempfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -13,10 +14,11 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from aionode.clock import SteadyClock
+from aionode.errors import LaunchFileError
 from aionode.interfaces.composition_interfaces.srv import LoadNode
 from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState
-from aionode.launch._evaluation import evaluate, failure_of
+from aionode.launch._evaluation import evaluate, failure_of, load_description
 from aionode.launch._launch.event import Event
 from aionode.launch._launch.event_handler import entities_of
 from aionode.launch._launch.event_handlers import OnProcessIO
@@ -41,14 +43,15 @@ from aionode.launch._plan import (
     Timer,
     Watch,
 )
-from aionode.launch._preview import changes
 from aionode.launch._process_events import ProcessEvents
 from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
+    from aionode.launch._launch.launch_context import LaunchContext
+    from aionode.launch._launch.launch_service import LaunchService
     from aionode.system import Member, System
 
-__all__ = ["RunningLaunch", "first_of"]
+__all__ = ["RunningLaunch", "first_of", "run_service"]
 
 
 class RunningLaunch:
@@ -149,6 +152,14 @@ class RunningLaunch:
         for step in steps:
             does[type(step)](step)
 
+    def add(self, entities: Iterable[Any], context: LaunchContext) -> None:
+        """Have entities evaluated and done while it runs; what is wrong with them ends it."""
+
+        async def work() -> None:
+            self.carry_out(evaluate(entities, context))
+
+        self._spawn(work())
+
     def _watch(self, step: Watch) -> None:
         """Begin to call an event handler, or end that."""
         if step.ends:
@@ -173,7 +184,7 @@ class RunningLaunch:
             step.name,
             argv,
             # The rest is left to the system, whose processes join the domain of its context.
-            env=changes(os.environ, step.env),
+            env=step.changes(os.environ),
             cwd=step.cwd,
             terminal=step.emulate_tty,
             on_output=self._listener(step, events),
@@ -359,6 +370,28 @@ class RunningLaunch:
                 self.system.log.note(f"{container}: {done if response.success else failed}")
         finally:
             client.destroy()
+
+
+async def run_service(service: LaunchService) -> int:
+    """Run what a program's service includes; return 0, or 1 if that cannot be evaluated."""
+    from aionode.system import System  # as above
+
+    context = service.context
+    context.load_file = load_description
+
+    def take() -> list[Any]:
+        included, service.included = service.included, []
+        return included
+
+    try:
+        async with System() as system:
+            running = RunningLaunch(system, stays=not service.shuts_down_when_idle)
+            service.wake = lambda: running.add(take(), context)
+            await running.run(evaluate(take(), context))
+    except LaunchFileError as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    return 0
 
 
 class AtOnce(list[Step]):

@@ -193,6 +193,20 @@ def test_an_opaque_function_sees_the_context_and_returns_actions(files: Files) -
     assert commands(records) == [["echo", "5", "word"]]
 
 
+def test_loops_make_actions_for_each_number_and_each_set_of_values(files: Files) -> None:
+    """A function gets them by their names."""
+    records = files.python(
+        """
+        SetLaunchConfiguration('robots', '{name: a, id: 1}; {name: b}'),
+        ForLoop('2', function=lambda i: [ExecuteProcess(cmd=['echo', str(i)])]),
+        ForEach(LaunchConfiguration('robots'), function=lambda name, id=0: [
+            ExecuteProcess(cmd=['echo', name, str(id)])]),
+        """
+    )
+
+    assert [argv[1:] for argv in commands(records)] == [["0"], ["1"], ["a", "1"], ["b", "0"]]
+
+
 def test_a_parameter_has_the_type_that_yaml_gives_its_text(files: Files) -> None:
     """Unless `ParameterValue` says which one it has."""
     records = files.python(
@@ -329,6 +343,10 @@ BAD_ENTITIES = {
     "Node(executable='n', parameters=[{'a': []}])": "parameter 'a'",
     "Node(executable='n', name='no/name')": "no/name",
     "IncludeLaunchDescription('missing.launch.py')": "missing.launch.py",
+    "ForLoop('x', function=print)": "length is 'x'; a whole number fits",
+    "ForEach('[a]', function=print)": "'[a]' is no set of values",
+    "OpaqueCoroutine(coroutine=print)": "an async function fits",
+    "OpaqueFunction(function=lambda context: context.asyncio_loop)": "no running event loop",
     "5": "5",
 }
 

@@ -89,6 +89,24 @@ def test_the_same_file_in_xml_and_yaml_starts_the_same(files: Files) -> None:
     assert xml[1]["when"] == yaml[1]["when"] == ["after 2 s"]
 
 
+def test_loops_have_their_values_in_substitutions(files: Files) -> None:
+    """Those of an outer loop are there in an inner one, and no others after it."""
+    records = files.plan(
+        "a.launch.xml",
+        """<launch>
+        <for_each values="{name: a};{name: b}">
+          <for len="2" name="i">
+            <executable cmd="echo $(for-var name) $(index i) $(for-var other none)"/>
+          </for>
+        </for_each>
+        <executable cmd="echo $(for-var name none)"/>
+        </launch>""",
+    )
+
+    said = [" ".join(record["argv"][1:]) for record in records]
+    assert said == ["a 0 none", "a 1 none", "b 0 none", "b 1 none", "none"]
+
+
 BAD_XML = {
     "<launch><nod/></launch>": (1, "'nod' is not an action; there are: append_env"),
     '<launch>\n<node exec="a" pgk="b"/></launch>': (2, "'node' has no 'pgk'; it has: "),
@@ -97,6 +115,7 @@ BAD_XML = {
     '<launch><node exec="$(var x"/></launch>': (1, "')' is missing"),
     '<launch><node exec="a"><param name="b"/></node></launch>': (1, "'param' needs 'value'"),
     '<launch><node exec="a" if="1" unless="1"/></launch>': (1, "one of them fits"),
+    '<launch>\n<for len="0" name="i"><nod/></for></launch>': (2, "'nod' is not an action"),
     "<launch>\n</lunch>": (2, "not valid XML: mismatched tag"),
     "<robot/>": (1, "begins with 'robot'; 'launch' fits"),
     '<!DOCTYPE launch [<!ENTITY a "b">]><launch/>': (1, "a document type (<!DOCTYPE>)"),

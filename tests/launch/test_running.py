@@ -342,6 +342,44 @@ async def test_a_file_may_describe_its_system_itself(robot: Robot) -> None:
     assert "from main" in robot.lines()
 
 
+def test_a_program_may_run_launch_descriptions_itself(files: Files) -> None:
+    """With `LaunchService`, which another thread may stop."""
+    program = files.write(
+        "program.py",
+        HEAD
+        + """
+import sys, threading
+from launch import LaunchDescription, LaunchService
+service = LaunchService(argv=sys.argv[1:])
+say = ExecuteProcess(cmd=['echo', 'hello'])
+more = LaunchDescription([ExecuteProcess(cmd=['echo', 'more'])])
+service.include_launch_description(LaunchDescription([
+    say,
+    RegisterEventHandler(OnProcessExit(target_action=say, on_exit=lambda event, context: [
+        OpaqueFunction(function=lambda _: threading.Thread(target=stop).start())])),
+]))
+def stop():
+    service.include_launch_description(more)
+    service.emit_event(ShutdownEvent(reason='enough'))
+status = service.run(shutdown_when_idle=False)
+service.include_launch_description(LaunchDescription([LogInfo(msg=LaunchConfiguration('nope'))]))
+print('status', status, service.run())
+""",
+    )
+    done = subprocess.run(
+        [sys.executable, "-m", "aionode.rclpy", program],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert "| hello\n" in done.stdout, done.stderr
+    assert "shutdown: enough" in done.stdout
+    assert done.stdout.endswith("status 0 1\n")
+    assert "program.py" in done.stderr
+    assert "'nope' does not exist" in done.stderr
+
+
 def test_the_command_starts_nothing_of_a_bad_file(files: Files) -> None:
     """The error is one line, and the mark of the first process is not there."""
     mark = files.folder / "started"

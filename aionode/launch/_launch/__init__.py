@@ -19,6 +19,7 @@ from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.launch_description import LaunchDescription
 from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
 from aionode.launch._launch.launch_description_sources import LaunchDescriptionSource
+from aionode.launch._launch.launch_service import LaunchService
 from aionode.launch._launch.some_substitutions_type import (
     SomeSubstitutionsType,
     SomeSubstitutionsType_types_tuple,
@@ -35,6 +36,7 @@ __all__ = [
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchService",
     "SomeSubstitutionsType",
     "SomeSubstitutionsType_types_tuple",
     "Substitution",

@@ -42,6 +42,7 @@ class LaunchContext:
         """How many processes had a name so far."""
         self._configurations: list[dict[str, Any]] = []
         self._environments: list[dict[str, str]] = []
+        self._locals: list[dict[str, Any]] = []
 
     def fork(self) -> Self:
         """Return a context with the same state and no steps, for what is done later."""
@@ -74,6 +75,14 @@ class LaunchContext:
     def get_locals_as_dict(self) -> dict[str, Any]:
         """Return the values in `locals`."""
         return dict(vars(self.locals))
+
+    def push_locals(self) -> None:
+        """Remember the values in `locals` until the matching pop."""
+        self._locals.append(self.get_locals_as_dict())
+
+    def pop_locals(self) -> None:
+        """Restore what the matching push remembered."""
+        self.locals = SimpleNamespace(**self._locals.pop())
 
     def push_launch_configurations(self) -> None:
         """Remember the launch configurations until the matching pop."""

@@ -34,6 +34,8 @@ __all__ = [
     "EqualsSubstitution",
     "FileContent",
     "FindExecutable",
+    "ForEachVar",
+    "ForLoopIndex",
     "IfElseSubstitution",
     "LaunchConfiguration",
     "LaunchLogDir",
@@ -197,6 +199,40 @@ class LocalSubstitution(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the value of an expression such as ``event.returncode``."""
         return str(eval("context.locals." + self.expression, {}, {"context": context}))  # noqa: S307  # the launch file is the user's own program
+
+
+class ForEachVar(Substitution):
+    """A value of the set that a ``for_each`` of a file is at."""
+
+    def __init__(
+        self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
+    ) -> None:
+        self.name = normalize_to_list_of_substitutions(name)
+        self.default_value = default_value
+
+    @classmethod
+    def of_words(cls, *words: Any) -> Self:
+        """Return that of ``$(for-var name default)``."""
+        return cls(words[0], default_value=words[1] if len(words) > 1 else None)
+
+    @staticmethod
+    def get_local_arg_name(name: str) -> str:
+        """Return under which name `locals` has the value."""
+        return f"ForEachVar__{name}"
+
+    def perform(self, context: LaunchContext) -> str:
+        """Return the value, or the default."""
+        name = perform_substitutions(context, self.name)
+        value = context.get_locals_as_dict().get(self.get_local_arg_name(name))
+        if value is not None:
+            return str(value)
+        if self.default_value is None:
+            raise SubstitutionFailure(f"no loop around this has '{name}', and there is no default")
+        return text_of(context, self.default_value)
+
+
+class ForLoopIndex(ForEachVar):
+    """The number that a ``for`` of a file is at."""
 
 
 class AnonName(Substitution):

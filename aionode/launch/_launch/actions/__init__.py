@@ -22,6 +22,7 @@ from aionode.launch._launch.actions._events import (
 )
 from aionode.launch._launch.actions._execute import ExecuteLocal, ExecuteProcess
 from aionode.launch._launch.actions._include import IncludeLaunchDescription
+from aionode.launch._launch.actions._loops import ForEach, ForLoop
 from aionode.launch._launch.actions._scope import (
     DeclareLaunchArgument,
     GroupAction,
@@ -41,6 +42,8 @@ __all__ = [
     "EmitEvent",
     "ExecuteLocal",
     "ExecuteProcess",
+    "ForEach",
+    "ForLoop",
     "GroupAction",
     "IncludeLaunchDescription",
     "LogInfo",
