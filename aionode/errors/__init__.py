@@ -44,6 +44,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     │   ├── InvalidServiceNameException
     │   └── InvalidTopicNameException
     ├── PackageNotFoundError (LookupError)
+    ├── PolicyFileError (ValueError)
     ├── ParameterException
     │   ├── InvalidParameterException (ValueError)
     │   ├── InvalidParameterTypeException (TypeError)
@@ -58,6 +59,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── NotReadyError (TimeoutError)
     ├── ProgramStartError (OSError)
     ├── QueueFullError (RuntimeError)
+    ├── RefusedError (PermissionError)
     ├── ServiceError (RuntimeError)
     │   └── ServiceUnavailableError (TimeoutError)
     ├── RequestRefusedError (ValueError)
@@ -96,6 +98,7 @@ from aionode.errors._calls import (
     ServiceUnavailableError,
 )
 from aionode.errors._commands import CommandError, LaunchFileError
+from aionode.errors._gateway import PolicyFileError, RefusedError
 from aionode.errors._interfaces import (
     DecodeError,
     IdlError,
@@ -222,8 +225,10 @@ __all__ = [
     "ParameterImmutableException",
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
+    "PolicyFileError",
     "ProgramStartError",
     "QueueFullError",
+    "RefusedError",
     "RequestRefusedError",
     "RequestTimeoutError",
     "ServiceError",

@@ -1,0 +1,41 @@
+"""What the gateway refuses, and what is wrong with its policy file."""
+
+from __future__ import annotations
+
+from aionode.errors._base import AionodeError
+
+__all__ = ["PolicyFileError", "RefusedError"]
+
+
+class RefusedError(AionodeError, PermissionError):
+    """The gateway refuses what a client asked for; the robot was not touched.
+
+    Attributes:
+        subject: What the client asked for, such as ``publish to /cmd_vel``.
+        reason: Why it is refused, and what fits.
+        code: The reason as a word for programs: ``not_allowed`` by the policy, ``unauthorized``
+            without a valid token or from a page that may not connect, ``out_of_limits`` for a value
+            outside the limits of its field, ``too_large``, ``too_fast``, ``not_confirmed`` by a
+            person, ``held`` by another client that commands the topic, ``too_many`` of what is
+            counted, ``too_old`` for a command that arrived late.
+    """
+
+    def __init__(self, subject: str, reason: str, code: str = "not_allowed") -> None:
+        self.subject = subject
+        self.reason = reason
+        self.code = code
+        super().__init__(f"{subject}: refused: {reason}")
+
+
+class PolicyFileError(AionodeError, ValueError):
+    """A policy file cannot be read, or is not a policy.
+
+    Attributes:
+        path: The file.
+        problem: What is wrong, and what fits.
+    """
+
+    def __init__(self, path: str, problem: str) -> None:
+        self.path = path
+        self.problem = problem
+        super().__init__(f"policy {path}: {problem}")

@@ -1,0 +1,142 @@
+"""The clients of a gateway: their sessions, the policy that they are under, and what they did."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import AsyncIterator, MutableMapping
+from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+
+from aionode.errors import RefusedError
+from aionode.gateway._identity import Identity
+from aionode.gateway._session import Session
+
+if TYPE_CHECKING:
+    from aionode.gateway._identity import Credentials
+    from aionode.gateway._policy import Policy
+    from aionode.gateway._robot import Robot
+    from aionode.node import Node
+
+__all__ = ["Clients", "GatewayStats"]
+
+
+class GatewayStats(msgspec.Struct, frozen=True):
+    """What a gateway has done.
+
+    Attributes:
+        sessions: How many clients there are, by the way in.
+        refused: How many things were refused.
+        sent: How many frames were sent to the clients there are.
+        dropped: How many frames were dropped, as their clients were too slow, by topic.
+        received: How many messages of topics arrived, by topic.
+        holders: Who commands which topic.
+        audit_lost: How many lines of the audit log were not written.
+    """
+
+    sessions: dict[str, int]
+    refused: int
+    sent: int
+    dropped: dict[str, int]
+    received: dict[str, int]
+    holders: dict[str, str]
+    audit_lost: int
+
+
+class Clients:
+    """The part of `Gateway` that the ways in use.
+
+    Attributes:
+        node: The node by which the gateway takes part.
+    """
+
+    def __init__(self, node: Node, policy: Policy) -> None:
+        self.node = node
+        self._policy = policy
+        self._sessions: dict[Session, None] = {}
+        self._refused = 0
+        self._robot: Robot | None = None
+
+    @property
+    def robot(self) -> Robot:
+        """What the sessions share.
+
+        Raises:
+            RuntimeError: the gateway was not entered.
+        """
+        if self._robot is None:
+            raise RuntimeError("gateway: use `async with Gateway(...)`")
+        return self._robot
+
+    @property
+    def policy(self) -> Policy:
+        """Who may do what, as the file says now."""
+        return self._policy
+
+    @asynccontextmanager
+    async def session(
+        self, identity: Identity, kind: str, credentials: Credentials | None = None
+    ) -> AsyncIterator[Session]:
+        """Yield a session, whose end gives everything back.
+
+        Args:
+            identity: Who the client is.
+            kind: The way in: ``rosbridge``, ``foxglove``, ``http``.
+            credentials: What it has shown, to be judged again when the policy changes.
+
+        Raises:
+            RefusedError: there are too many clients.
+        """
+        limit = self._policy.limits.clients
+        if len(self._sessions) >= limit:
+            raise RefusedError("connection", f"there are {limit} clients already", "too_many")
+        async with Session(self.robot, identity, kind, credentials) as session:
+            self._sessions[session] = None
+            try:
+                yield session
+            finally:
+                del self._sessions[session]
+                self._refused += session.refused
+
+    def session_of(
+        self, scope: MutableMapping[str, Any], kind: str
+    ) -> contextlib.AbstractAsyncContextManager[Session]:
+        """Return the session of a request, whose client the guard has identified."""
+        return self.session(scope["aionode.identity"], kind, scope["aionode.credentials"])
+
+    @property
+    def stats(self) -> GatewayStats:
+        """What it has done."""
+        sessions: dict[str, int] = {}
+        dropped: dict[str, int] = {}
+        sent, refused = 0, self._refused
+        for session in self._sessions:
+            sessions[session.kind] = sessions.get(session.kind, 0) + 1
+            sent += session.outbox.sent
+            refused += session.refused
+            for topic, count in session.dropped().items():
+                dropped[topic] = dropped.get(topic, 0) + count
+        robot = self.robot
+        return GatewayStats(
+            sessions,
+            refused,
+            sent,
+            dropped,
+            {feed.topic: feed.received for feed in robot.feeds},
+            {topic: identity.name for topic, identity in robot.commands.holders().items()},
+            robot.audit.lost,
+        )
+
+    def note_refusal(self, credentials: Credentials, error: RefusedError) -> None:
+        """Write down that a client was refused before it had a session."""
+        self._refused += 1
+        stranger = Identity("", address=credentials.address)
+        self.robot.audit.note(stranger, "connect", "", result=error.reason, code=error.code)
+
+    def use_policy(self, policy: Policy) -> None:
+        """Have another policy count from now on; what it does not allow any more is ended."""
+        self._policy = self.robot.policy = policy
+        for session in list(self._sessions):
+            session.check_again()
+        self.node.get_logger().info("gateway: the policy was read again")

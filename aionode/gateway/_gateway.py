@@ -1,0 +1,230 @@
+"""The gateway: one port for everything, and a session for each client."""
+
+from __future__ import annotations
+
+import asyncio
+import socket
+from collections.abc import Coroutine
+from contextlib import AsyncExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Self
+
+from starlette.applications import Starlette
+from starlette.responses import PlainTextResponse
+from starlette.routing import Route, WebSocketRoute
+
+from aionode._concurrency import to_the_end
+from aionode.errors import ConfigurationError, PolicyFileError
+from aionode.gateway import _foxglove, _http, _rosbridge
+from aionode.gateway._audit import Audit
+from aionode.gateway._clients import Clients
+from aionode.gateway._guard import Guard
+from aionode.gateway._identity import parsed_address
+from aionode.gateway._policy import Policy
+from aionode.gateway._robot import Robot
+from aionode.gateway._server import Server, server_config
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from starlette.requests import Request
+    from starlette.responses import Response
+    from starlette.routing import BaseRoute
+    from starlette.websockets import WebSocket
+
+    from aionode.gateway._robot import Ask
+    from aionode.node import Node
+
+__all__ = ["Gateway"]
+
+RELOAD_SEC: Final = 1.0
+"""How often the policy file is looked at, in seconds."""
+
+
+class Gateway(Clients):
+    """Serves a robot to browsers, programs and apps: ``async with Gateway(node) as gateway:``.
+
+    Args:
+        node: The node by which it takes part; it has to run.
+        policy: Who may do what; by default `Policy.default`, which only reads, on this host only.
+        host: The address to listen on.
+        port: The port; 0 for a free one.
+        ask: Asks a person whether a client may do something, where the policy says ``ask``; called
+            with the identity, the verb, the name and the message. Without it that is refused.
+
+    Raises:
+        ConfigurationError: another interface than loopback is to be served, and the policy knows
+            no client by a token or certificate (a ValueError).
+
+    Attributes:
+        node: The node.
+        port: The port it listens on.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        policy: Policy | None = None,
+        *,
+        host: str = "127.0.0.1",
+        port: int = 9090,
+        ask: Ask | None = None,
+    ) -> None:
+        super().__init__(node, Policy.default() if policy is None else policy)
+        self.host = host
+        self.port = port
+        self._ask = ask
+        if not is_loopback(host) and not self._policy.knows_secrets:
+            raise ConfigurationError(
+                "gateway's host",
+                host,
+                "other machines can connect there, and the policy knows no client by a token or "
+                "certificate; add [[who]] with a token, or listen on 127.0.0.1",
+            )
+
+    # Lifetime
+
+    async def __aenter__(self) -> Self:
+        """Listen.
+
+        Raises:
+            OSError: the address cannot be listened on: another program does, for example.
+            RuntimeError: the node does not run.
+        """
+        if not self.node.is_running:
+            raise RuntimeError(f"gateway: {self.node!r} does not run; enter it first")
+        listener = bound(self.host, self.port)
+        self.port = listener.getsockname()[1]
+        async with AsyncExitStack() as stack:
+            stack.callback(listener.close)
+            tasks = await stack.enter_async_context(asyncio.TaskGroup())
+            audit = Audit(self.node, self._policy.audit_file)
+            stack.callback(audit.close)
+            self._robot = Robot(self.node, self._policy, audit, tasks, self._ask)
+            stack.callback(self._robot.close)
+            for work in (audit.run(), self._follow_policy()):
+                stack.callback(tasks.create_task(work).cancel)
+            app = Guard(self._application(), self)
+            server = Server(server_config(app, lambda: self._policy))
+            serving = tasks.create_task(server.serve(sockets=[listener]))
+            stack.push_async_callback(self._stop, server, serving)
+            await server.has_started.wait()
+            self._stack = stack.pop_all()
+        self.node.get_logger().info(f"gateway: listening on {self.host}:{self.port}")
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Disconnect the clients: the stops of their leases are sent, and their goals cancelled."""
+        await to_the_end(self._stack.__aexit__(kind, error, traceback))
+
+    async def _stop(self, server: Server, serving: asyncio.Task[None]) -> None:
+        for session in list(self._sessions):
+            session.ended.set()
+        server.should_exit = True
+        await serving
+
+    # Routes
+
+    def _application(self) -> Starlette:
+        routes: list[BaseRoute] = [
+            WebSocketRoute("/", self._websocket),
+            WebSocketRoute("/ws", self._websocket),
+            *_http.routes(self),
+            Route("/", page),
+        ]
+        return Starlette(routes=routes)
+
+    async def _websocket(self, websocket: WebSocket) -> None:
+        """Serve a WebSocket by the protocol that its client asks for."""
+        is_foxglove = _foxglove.SUBPROTOCOL in websocket.scope["subprotocols"]
+        kind, serve = ("foxglove", _foxglove.serve) if is_foxglove else (
+            "rosbridge", _rosbridge.serve
+        )  # fmt: skip
+        async with self.session_of(websocket.scope, kind) as session:
+            await until(session.ended, serve(websocket, session))
+
+    # The policy file
+
+    async def _follow_policy(self) -> None:
+        """Read the policy file again when it changes; a file with a mistake changes nothing."""
+        path = self._policy.path
+        if not path:
+            return
+        read = modified(path)
+        while True:
+            await self.robot.clock.sleep(RELOAD_SEC)
+            if modified(path) == read:
+                continue
+            read = modified(path)
+            try:
+                policy = Policy.load(path)
+            except PolicyFileError as error:
+                self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
+            else:
+                self.use_policy(policy)
+
+
+async def page(_request: Request) -> Response:
+    """Answer where a page will be."""
+    return PlainTextResponse("aionode gateway\n")
+
+
+async def until(event: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
+    """Run work until it ends, or an event cancels it; its exception is raised as it is."""
+    error: Exception | None = None
+
+    async def run() -> None:
+        nonlocal error
+        try:
+            await work
+        except Exception as raised:  # noqa: BLE001  # raised below, without a group around it
+            error = raised
+
+    async with asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run())
+        waiting = tasks.create_task(event.wait())
+        await asyncio.wait([running, waiting], return_when=asyncio.FIRST_COMPLETED)
+        running.cancel()
+        waiting.cancel()
+    if error is not None:
+        raise error
+
+
+def modified(path: str) -> tuple[int, int] | None:
+    """Return when a file was written, and its number; None if it is not there."""
+    try:
+        found = Path(path).stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_ino
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether only this host can connect to an address."""
+    address = parsed_address(host)
+    return host == "localhost" or (address is not None and address.is_loopback)
+
+
+def bound(host: str, port: int) -> socket.socket:
+    """Return a socket that is bound to an address.
+
+    Raises:
+        OSError: it cannot be bound.
+    """
+    family, kind, _, _, address = socket.getaddrinfo(
+        host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
+    )[0]
+    listener = socket.socket(family, kind)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+    except OSError:
+        listener.close()
+        raise
+    listener.setblocking(False)
+    return listener

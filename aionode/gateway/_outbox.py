@@ -1,0 +1,145 @@
+"""What waits for one client: a bounded queue for each topic, so that a slow client slows nobody."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import defaultdict, deque
+from collections.abc import AsyncIterator, Hashable
+from typing import Final, TypeAlias
+
+__all__ = ["Frame", "Outbox"]
+
+Frame: TypeAlias = bytes | str
+"""A WebSocket frame, or a chunk of an HTTP response."""
+
+MOST_ANSWERS: Final = 1000
+"""How many answers may wait: a client that reads none of them is disconnected."""
+
+
+class Outbox:
+    """The frames that wait for one client, and the order in which they leave.
+
+    Answers leave first. Of topics, each has its turn, and keeps its newest frames: the oldest are
+    dropped and counted.
+
+    Args:
+        most_bytes: How much may wait. Beyond it, the topic that has the most waiting loses its
+            oldest frames.
+
+    Attributes:
+        dropped: How many frames were dropped, by key.
+        sent: How many frames have left.
+        overflowed: Whether it was closed because the client reads no answers.
+    """
+
+    def __init__(self, most_bytes: int = 64 << 20) -> None:
+        self.dropped: dict[Hashable, int] = defaultdict(int)
+        self.sent = 0
+        self.overflowed = False
+        self._most_bytes = most_bytes
+        self._bytes = 0
+        self._answers: deque[Frame] = deque()
+        self._answer_bytes = 0
+        self._queues: dict[Hashable, deque[Frame]] = {}
+        self._key_bytes: dict[Hashable, int] = defaultdict(int)
+        self._turns: deque[Hashable] = deque()  # each key that has frames, once
+        self._filled = asyncio.Event()
+        self._closed = False
+
+    @property
+    def waiting_bytes(self) -> int:
+        """How many bytes of topics wait."""
+        return self._bytes
+
+    def put(self, key: Hashable, frame: Frame, depth: int = 10) -> None:
+        """Add a frame of a topic; beyond `depth` of them the oldest is dropped.
+
+        Args:
+            key: Which queue it belongs to, such as the name of the topic.
+            frame: The frame.
+            depth: How many frames of this key may wait.
+        """
+        if self._closed:
+            return
+        queue = self._queues.setdefault(key, deque())
+        if not queue:
+            self._turns.append(key)
+        queue.append(frame)
+        self._count(key, len(frame))
+        if len(queue) > depth:
+            self._drop(key)
+        while self._bytes > self._most_bytes:
+            self._drop(max(self._key_bytes, key=self._key_bytes.__getitem__))
+        self._filled.set()
+
+    def send(self, frame: Frame) -> None:
+        """Add an answer, which leaves before all frames of topics.
+
+        A client that lets too many of them wait is disconnected: the outbox is closed then.
+        """
+        if self._closed:
+            return
+        self._answers.append(frame)
+        self._answer_bytes += len(frame)
+        if len(self._answers) > MOST_ANSWERS or self._answer_bytes > self._most_bytes:
+            self.overflowed = True
+            self.close()
+        self._filled.set()
+
+    def discard(self, key: Hashable) -> None:
+        """Forget the frames of a topic that the client has unsubscribed from."""
+        while self._queues.get(key):
+            self._take(key)
+        self._queues.pop(key, None)
+        self._key_bytes.pop(key, None)
+
+    def close(self) -> None:
+        """End the iteration, and forget what waits."""
+        self._closed = True
+        self._answers.clear()
+        self._queues.clear()
+        self._turns.clear()
+        self._key_bytes.clear()
+        self._bytes = self._answer_bytes = 0
+        self._filled.set()
+
+    async def __aiter__(self) -> AsyncIterator[Frame]:
+        """Yield what leaves, until the outbox is closed. For the one task that writes."""
+        while not self._closed:
+            frame = self._next()
+            if frame is None:
+                self._filled.clear()
+                await self._filled.wait()
+            else:
+                self.sent += 1
+                yield frame
+
+    def _next(self) -> Frame | None:
+        if self._answers:
+            answer = self._answers.popleft()
+            self._answer_bytes -= len(answer)
+            return answer
+        if not self._turns:
+            return None
+        key = self._turns[0]
+        frame = self._take(key)
+        if self._turns and self._turns[0] == key:
+            self._turns.rotate(-1)
+        return frame
+
+    def _take(self, key: Hashable) -> Frame:
+        """Return the oldest frame of a topic."""
+        queue = self._queues[key]
+        frame = queue.popleft()
+        self._count(key, -len(frame))
+        if not queue:
+            self._turns.remove(key)
+        return frame
+
+    def _drop(self, key: Hashable) -> None:
+        self._take(key)
+        self.dropped[key] += 1
+
+    def _count(self, key: Hashable, size: int) -> None:
+        self._bytes += size
+        self._key_bytes[key] += size

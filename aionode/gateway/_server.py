@@ -1,0 +1,137 @@
+"""The web server of the gateway: uvicorn in the running loop, as a guest of the process."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ssl
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, Final
+
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+if TYPE_CHECKING:
+    from aionode.gateway._policy import Policy
+
+__all__ = ["HttpConnection", "Server", "WebSocketConnection", "server_config"]
+
+PING_SEC: Final = 20.0
+CLOSING_SEC: Final = 1
+
+
+class Server(uvicorn.Server):
+    """A server that leaves signals to the program, and says when it has started."""
+
+    def __init__(self, config: uvicorn.Config) -> None:
+        super().__init__(config)
+        self.has_started = asyncio.Event()
+
+    @contextlib.contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave the handlers of signals alone."""
+        yield
+
+    async def startup(self, sockets: Any = None) -> None:
+        """Listen, and tell who waits for it."""
+        await super().startup(sockets)
+        self.has_started.set()
+
+
+class HttpConnection(H11Protocol):
+    """A connection that has to say within some seconds what it wants.
+
+    The application finds in the state of the scope who the client is by its TLS certificate.
+    """
+
+    _handshake: asyncio.TimerHandle | None = None
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Begin the time within which a request has to arrive."""
+        super().connection_made(transport)
+        self.access_log = False  # it would have the paths of requests, and belongs to the program
+        limits = self.config.policy().limits  # type: ignore[attr-defined]  # a ServerConfig
+        if len(self.connections) > limits.clients:
+            transport.abort()
+            return
+        state = {"aionode_certificate": common_name(transport), "aionode_connection": self}
+        self.app_state = {**self.app_state, **state}
+        self._handshake = self.loop.call_later(limits.handshake_sec, self._give_up)
+
+    def _give_up(self) -> None:
+        scope: object = self.scope  # None until the head of a request has arrived
+        if scope is None:
+            self.transport.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget the time limit."""
+        if self._handshake is not None:
+            self._handshake.cancel()
+        super().connection_lost(exc)
+
+
+class WebSocketConnection(WebSocketsSansIOProtocol):
+    """A WebSocket that knows when the last bytes of its client arrived.
+
+    Attributes:
+        heard_s: That time, in seconds of the loop's clock.
+    """
+
+    heard_s: float = 0.0
+
+    def handle_connect(self, event: Any) -> None:
+        """Have the application find this connection."""
+        self.app_state = {**self.app_state, "aionode_connection": self}
+        super().handle_connect(event)
+
+    def data_received(self, data: bytes) -> None:
+        """Note the time."""
+        self.heard_s = self.loop.time()
+        super().data_received(data)
+
+
+def common_name(transport: asyncio.Transport) -> str:
+    """Return the common name of the client's certificate; empty without one."""
+    certificate = transport.get_extra_info("peercert") or {}
+    for part in certificate.get("subject", ()):
+        for name, value in part:
+            if name == "commonName":
+                return str(value)
+    return ""
+
+
+class ServerConfig(uvicorn.Config):
+    """The configuration of a server, and what returns its policy as it is now."""
+
+    policy: Callable[[], Policy]
+
+
+def server_config(app: Any, current: Callable[[], Policy]) -> ServerConfig:
+    """Return the configuration of the server."""
+    policy = current()
+    tls: dict[str, Any] = {}
+    if policy.tls is not None:
+        tls = {
+            "ssl_certfile": policy.tls.certificate,
+            "ssl_keyfile": policy.tls.key,
+            "ssl_ca_certs": policy.tls.clients or None,
+            "ssl_cert_reqs": ssl.CERT_OPTIONAL if policy.tls.clients else ssl.CERT_NONE,
+        }
+    config = ServerConfig(
+        app,
+        http=HttpConnection,
+        ws=WebSocketConnection,
+        ws_max_size=policy.limits.frame_bytes,
+        ws_ping_interval=PING_SEC,
+        ws_ping_timeout=PING_SEC,
+        ws_per_message_deflate=False,  # it takes time and memory for each client
+        lifespan="off",
+        log_config=None,  # the program's logging stays as it is
+        proxy_headers=False,  # a client may claim any address there
+        server_header=False,
+        timeout_graceful_shutdown=CLOSING_SEC,
+        **tls,
+    )
+    config.policy = current
+    return config

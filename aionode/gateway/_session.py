@@ -1,0 +1,140 @@
+"""What one client does with the robot: each way in makes a session, which asks the policy first."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any, Self
+
+from aionode.errors import RefusedError
+from aionode.gateway._serving import Served, serve, serve_action
+from aionode.gateway._session_calls import SessionCalls
+from aionode.gateway._session_graph import SessionGraph
+from aionode.gateway._session_topics import SessionTopics
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+__all__ = ["Session"]
+
+
+class Session(SessionTopics, SessionCalls, SessionGraph):
+    """What one client does with the robot, and what it has to give back when it leaves.
+
+    An async context manager. Its end closes the subscriptions, ends the leases of commands, which
+    sends their stops, cancels the goals, and ends the services that the client offers.
+
+    All methods raise RefusedError for what the policy does not allow, before the robot is touched.
+
+    Attributes:
+        identity: Who the client is.
+        kind: The way in, for the audit log: ``rosbridge``, ``foxglove``, ``http``.
+        credentials: What the client has shown; None if the program made the session itself.
+        outbox: What waits for it.
+        ended: Set when the policy does not know the client any more.
+    """
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._served: dict[str, Served] = {}
+
+    async def __aenter__(self) -> Self:
+        """Begin; nothing of the robot is touched yet."""
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Give everything back: the stops of leases first."""
+        try:
+            await self._robot.commands.leave(self)
+        finally:
+            for goal in list(self._goals):
+                async with goal:  # its end cancels the goal, and waits for nothing
+                    pass
+            for subscribed in list(self._subscribed):
+                subscribed.close()
+            for topic in list(self._published):
+                self._give_back(topic)
+            for served in list(self._served.values()):
+                served.close()
+            self.outbox.close()
+
+    # What the client offers
+
+    async def serve(
+        self, service: str, type_name: str, answer: Callable[[Any], Awaitable[Any]]
+    ) -> Served:
+        """Offer a service, which the client answers.
+
+        Args:
+            service: The name of the service.
+            type_name: The name of its type.
+            answer: Called with each request; returns the response message. What it raises, the
+                caller of the service gets as a ServiceError.
+
+        Raises:
+            RefusedError: the policy does not allow it, or there are too many.
+            InterfaceNotFoundError: nobody knows the type.
+            InvalidServiceNameException: the name is invalid (a ValueError).
+        """
+        service = self.service_name(service)
+        self._count_one("services and actions", len(self._served), self._limits.advertised)
+        cls = await self.service_class(type_name)
+        await self._allow("advertise", service, cls.__ros_type__, None)
+        made = serve(self._robot.node, service, cls, answer, self._limits.calls)
+        return self._keep(service, made)
+
+    async def serve_action(
+        self, action: str, type_name: str, execute: Callable[[Any], Awaitable[Any]]
+    ) -> Served:
+        """Offer an action, whose goals the client executes.
+
+        Args:
+            action: The name of the action.
+            type_name: The name of its type.
+            execute: Called with the `ServerGoalHandle` of each goal; returns the result message.
+                It is cancelled when the goal is. What it raises aborts the goal with that text.
+
+        Raises:
+            RefusedError: the policy does not allow it, or there are too many.
+            InterfaceNotFoundError: nobody knows the type.
+            InvalidTopicNameException: the name is invalid (a ValueError).
+        """
+        action = self.topic_name(action)
+        self._count_one("services and actions", len(self._served), self._limits.advertised)
+        cls = await self.action_class(type_name)
+        await self._allow("advertise", action, cls.__ros_type__, None)
+        made = serve_action(self._robot.node, action, cls, execute, self._limits.calls)
+        return self._keep(action, made)
+
+    def _keep(self, name: str, served: Served) -> Served:
+        """Keep what the client offers until it leaves; an older one of the same name ends."""
+        older = self._served.pop(name, None)
+        if older is not None:
+            older.close()
+        self._served[name] = served
+        served.on_close = lambda: (
+            self._served.pop(name, None) if (self._served.get(name) is served) else None
+        )
+        self._robot.audit.note(self.identity, "advertise", name, way=self.kind)
+        return served
+
+    # A policy that has changed
+
+    def check_again(self) -> None:
+        """End what the policy, which was read again, does not allow any more."""
+        policy = self._robot.policy
+        if self.credentials is not None:
+            try:
+                self.identity = policy.identify(self.credentials)
+            except RefusedError:
+                self.ended.set()
+        self._limits = policy.limits
+        for subscribed in list(self._subscribed):
+            if not policy.decide(
+                self.identity, "subscribe", subscribed.topic, subscribed.type_name
+            ).allowed:
+                subscribed.close()

@@ -1,0 +1,205 @@
+"""A session and the policy: what every part of a session asks before it touches the robot."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
+
+from aionode.errors import InterfaceNotFoundError, RefusedError
+from aionode.gateway._outbox import Outbox
+from aionode.message import Message, from_builtins
+from aionode.names import is_hidden
+from aionode.parameter import Parameter
+
+if TYPE_CHECKING:
+    from aionode.gateway._identity import Credentials, Identity
+    from aionode.gateway._policy import Decision, Verb
+    from aionode.gateway._robot import Robot
+
+__all__ = ["SessionBase", "as_message"]
+
+
+class SessionBase:
+    """What a session is made of, and how it asks the policy; see `Session`."""
+
+    def __init__(
+        self, robot: Robot, identity: Identity, kind: str, credentials: Credentials | None = None
+    ) -> None:
+        self.identity = identity
+        self.kind = kind
+        self.credentials = credentials
+        self.ended = asyncio.Event()
+        self._robot = robot
+        self._limits = robot.policy.limits
+        self.outbox = Outbox(self._limits.queued_bytes)
+        self._busy = 0
+        self.refused = 0
+
+    # The policy
+
+    def decide(self, verb: Verb, name: str, type_name: str, message: Any = None) -> Decision:
+        """Return what the policy allows; see `Policy.decide`.
+
+        Raises:
+            RefusedError: it does not; the refusal is in the audit log.
+        """
+        decision = self._robot.policy.decide(self.identity, verb, name, type_name, message)
+        if not decision.allowed:
+            raise self._refused(verb, name, decision.reason, decision.code)
+        return decision
+
+    def _refused(self, verb: str, name: str, reason: str, code: str) -> RefusedError:
+        """Return the error of a refusal, and write it down."""
+        self.refused += 1
+        self._robot.audit.note(self.identity, verb, name, result=f"refused: {reason}", code=code)
+        return RefusedError(f"{verb} {name}", reason, code)
+
+    async def _allow(self, verb: Verb, name: str, type_name: str, message: Any) -> Decision:
+        """Return what the policy allows, within its rate, and after a person has said yes.
+
+        Raises:
+            RefusedError: it is not allowed.
+        """
+        decision = self.decide(verb, name, type_name, message)
+        rule = decision.rule
+        if rule is not None and not self._robot.rates.allows(self.identity, rule, name):
+            raise self._refused(
+                verb, name, f"more often than {rule.rate_hz:g} times a second", "too_fast"
+            )
+        if decision.ask:
+            await self._ask(verb, name, decision.message)
+        return decision
+
+    async def _ask(self, verb: Verb, name: str, message: Any) -> None:
+        ask = self._robot.ask
+        if ask is None:
+            raise self._refused(
+                verb, name, "a person has to say yes, and nobody is there to ask", "not_confirmed"
+            )
+        if not await ask(self.identity, verb, name, message):
+            raise self._refused(verb, name, "a person has said no", "not_confirmed")
+
+    def _sees(self, name: str, type_names: list[str]) -> bool:
+        policy, identity = self._robot.policy, self.identity
+        return any(
+            policy.decide(identity, "see", name, each).allowed for each in type_names or [""]
+        )
+
+    def _count_one(self, what: str, there_are: int, most: int) -> None:
+        if there_are >= most:
+            raise RefusedError(
+                f"one more of {what}", f"there are {there_are}, which is the limit", "too_many"
+            )
+
+    def _check_size(self, verb: Verb, name: str, decision: Decision, message: Message) -> None:
+        most = None if decision.rule is None else decision.rule.max_bytes
+        if most is None:
+            return
+        from aionode.wire import cdr  # few rules limit the size
+
+        if len(cdr.encode(message)) > most:
+            raise self._refused(verb, name, f"it has more than {most} bytes", "too_large")
+
+    def _decide_parameter(self, node: str, parameter: Parameter) -> Parameter:
+        """Return a parameter that the client may set, within its limits.
+
+        Raises:
+            RefusedError: it may not.
+        """
+        name = f"{node}:{parameter.name}"
+        decision = self.decide("parameter", name, "", {"value": parameter.value})
+        changed = decision.message["value"]
+        return parameter if changed == parameter.value else Parameter(parameter.name, value=changed)
+
+    def _one_more(self) -> Busy:
+        self._count_one("calls and goals", self._busy, self._limits.calls)
+        return Busy(self)
+
+    def _visible(self, found: Any, *, hidden: bool) -> dict[str, list[str]]:
+        return {
+            name: types
+            for name, types in found
+            if (hidden or not is_hidden(name)) and self._sees(name, types)
+        }
+
+    # Types and names
+
+    async def message_class(self, type_name: str) -> Any:
+        """Return the class of a message type: of this program, or as a node describes it.
+
+        Raises:
+            InterfaceNotFoundError: nobody knows it.
+        """
+        return await self._robot.find_type(type_name, "msg")
+
+    async def service_class(self, type_name: str) -> Any:
+        """Return the class of a service type; see `message_class`."""
+        return await self._robot.find_type(type_name, "srv")
+
+    async def action_class(self, type_name: str) -> Any:
+        """Return the class of an action type; see `message_class`."""
+        return await self._robot.find_type(type_name, "action")
+
+    def topic_name(self, name: str) -> str:
+        """Return the full name of a topic or action, as the node resolves it.
+
+        Raises:
+            InvalidTopicNameException: it is invalid (a ValueError).
+        """
+        return self._settled(self._robot.node.resolve_topic_name, name)
+
+    def service_name(self, name: str) -> str:
+        """Return the full name of a service, as the node resolves it.
+
+        Raises:
+            InvalidServiceNameException: it is invalid (a ValueError).
+        """
+        return self._settled(self._robot.node.resolve_service_name, name)
+
+    def _settled(self, resolve: Callable[[str], str], name: str) -> str:
+        """Return the name that an endpoint gets, about which the policy is asked."""
+        full = resolve(name)
+        if resolve(full) != full:  # two remap rules, one after the other
+            raise RefusedError(name, f"the gateway's node remaps {full} once more")
+        return full
+
+    def _known_type(self, name: str, kinds: Any, given: str | None, suffix: str = "") -> str:
+        """Return the type that is given, or that the graph knows of a name."""
+        if given:
+            return given
+        for endpoint in self._robot.node.graph.endpoints(*kinds, name=name):
+            return endpoint.type_name.removesuffix(suffix)
+        raise InterfaceNotFoundError(name, problem="no node has it, so its type is not known")
+
+
+class Busy:
+    """Counts one call or goal of a session while it lasts."""
+
+    def __init__(self, session: SessionBase) -> None:
+        self._session = session
+
+    def __enter__(self) -> None:
+        self._session._busy += 1
+
+    def __exit__(self, *_: object) -> None:
+        self._session._busy -= 1
+
+
+def as_message(cls: Any, values: Message | Mapping[str, Any] | list[Any] | bytes) -> Any:
+    """Return a message of a class: as it is, or of its values, by name or in order, or bytes.
+
+    Raises:
+        MessageError: a value does not fit its field.
+        DecodeError: the bytes are no such message.
+    """
+    if isinstance(values, Message):
+        return values
+    if isinstance(values, bytes | bytearray | memoryview):
+        from aionode.wire import cdr  # few clients send bytes
+
+        return cdr.decode(cls, values)
+    if isinstance(values, list):
+        names = [field.name for field in cls.__ros_fields__]
+        values = dict(zip(names, values, strict=False))
+    return from_builtins(cls, values)

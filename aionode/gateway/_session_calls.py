@@ -1,0 +1,175 @@
+"""The calls and goals of a client."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import AionodeError, ServiceError
+from aionode.gateway._session_base import SessionBase, as_message
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
+from aionode.message import Message
+from aionode.parameter import Parameter
+
+if TYPE_CHECKING:
+    from aionode.gateway._policy import Verb
+
+__all__ = ["SessionCalls"]
+
+SERVER_SEC: Final = 1.0
+"""How long a call or goal waits for its server, in seconds."""
+
+ACTION_PARTS: Final = ("/_action/send_goal", "/_action/get_result", "/_action/cancel_goal")
+SETTERS: Final = ("/set_parameters", "/set_parameters_atomically")
+
+
+class SessionCalls(SessionBase):
+    """The part of `Session` that calls services and sends goals."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._goals: dict[Any, None] = {}
+
+    # Services
+
+    async def call(
+        self,
+        service: str,
+        values: Message | Mapping[str, Any] | list[Any] | bytes,
+        *,
+        type_name: str | None = None,
+        timeout_sec: float | None = 5.0,
+    ) -> Any:
+        """Call a service, and return the response message.
+
+        Cancelling it drops the call on both sides, as `Client.call` says.
+
+        Args:
+            service: The name of the service.
+            values: The request, its values by name or in order, or its CDR bytes.
+            type_name: The type; by default that which the graph shows.
+            timeout_sec: The longest wait for the response, in seconds; None waits for ever.
+
+        Raises:
+            RefusedError: the policy does not allow it, or there are too many calls at once.
+            ServiceError: there is no server, or its handler failed.
+            RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
+            MessageError: a value does not fit its field (a ValueError).
+            InterfaceNotFoundError: nobody knows the service or its type.
+        """
+        service = self.service_name(service)
+        self._decide_call(service, "")
+        cls = await self.service_class(self._known_type(service, SERVICE_KINDS, type_name))
+        request = as_message(cls.Request, values)
+        verb, name = self._decide_call(service, cls.__ros_type__, request)
+        decision = await self._allow(verb, name, cls.__ros_type__, request)
+        self._check_size(verb, name, decision, request)
+        client, give_back = self._robot.shared.take(
+            ("client", service, cls), lambda: self._robot.node.create_client(cls, service)
+        )
+        began_ns = self._robot.time_base.steady_ns()
+        result = "cancelled"
+        try:
+            with self._one_more():
+                if not await client.wait_for_service(SERVER_SEC):
+                    raise ServiceError(service, "there is no server")
+                response = await client.call(decision.message, timeout_sec)
+                result = "ok"
+                return response
+        except AionodeError as error:
+            result = f"failed: {error}"
+            raise
+        finally:
+            give_back()
+            self._robot.audit.note(
+                self.identity, "call", service, arguments=decision.message, result=result,
+                duration_ns=self._robot.time_base.steady_ns() - began_ns, way=self.kind,
+            )  # fmt: skip
+
+    def _decide_call(self, service: str, type_name: str, request: Any = None) -> tuple[Verb, str]:
+        """Return about what the policy is asked for a call, which may be a goal or a parameter.
+
+        Raises:
+            RefusedError: the policy does not allow it.
+        """
+        for part in ACTION_PARTS:
+            if service.endswith(part):
+                action = service.removesuffix(part)
+                if part == ACTION_PARTS[0]:
+                    raise self._refused(
+                        "call", service, "send goals as goals, which end with the client",
+                        "not_allowed",
+                    )  # fmt: skip
+                self.decide("goal", action, "")
+                return "goal", action
+        self.decide("call", service, type_name)
+        for suffix in SETTERS:
+            if service.endswith(suffix):
+                node = service.removesuffix(suffix)
+                for parameter in getattr(request, "parameters", ()):
+                    self._decide_parameter(node, Parameter.from_parameter_msg(parameter))
+        return "call", service
+
+    # Actions
+
+    @asynccontextmanager
+    async def goal(
+        self,
+        action: str,
+        values: Message | Mapping[str, Any] | list[Any],
+        *,
+        type_name: str | None = None,
+    ) -> AsyncIterator[Any]:
+        """Send a goal; leaving the block cancels the goal if it has not ended.
+
+        Yields:
+            The `ClientGoalHandle`: iterate over it for feedback, and await its `result`.
+
+        Args:
+            action: The name of the action.
+            values: The goal, or its values by name or in order.
+            type_name: The type; by default that which the graph shows.
+
+        Raises:
+            RefusedError: the policy does not allow it, or there are too many goals at once.
+            ServiceError: there is no server.
+            GoalRejectedError: the server rejected it.
+            MessageError: a value does not fit its field (a ValueError).
+            InterfaceNotFoundError: nobody knows the action or its type.
+        """
+        action = self.topic_name(action)
+        self.decide("goal", action, "")
+        feedback = f"{action}/_action/feedback"
+        found = self._known_type(feedback, TOPIC_KINDS, type_name, "_FeedbackMessage")
+        cls = await self.action_class(found)
+        goal = as_message(cls.Goal, values)
+        decision = await self._allow("goal", action, cls.__ros_type__, goal)
+        self._check_size("goal", action, decision, goal)
+        client, give_back = self._robot.shared.take(
+            ("action", action, cls), lambda: self._robot.node.create_action_client(cls, action)
+        )
+        began_ns = self._robot.time_base.steady_ns()
+        result = "not sent"
+        try:
+            with self._one_more():
+                if not await client.wait_for_server(SERVER_SEC):
+                    raise ServiceError(action, "there is no action server")
+                handle = await client.send_goal(decision.message)
+                self._goals[handle] = None
+                try:
+                    async with handle:
+                        result = "left"
+                        yield handle
+                finally:
+                    self._goals.pop(handle, None)
+                    result = handle.status.name.lower()
+        except AionodeError as error:
+            result = f"failed: {error}"
+            raise
+        finally:
+            give_back()
+            self._robot.audit.note(
+                self.identity, "goal", action, arguments=decision.message, result=result,
+                duration_ns=self._robot.time_base.steady_ns() - began_ns, way=self.kind,
+            )  # fmt: skip

@@ -1,0 +1,180 @@
+"""What a client sees of the graph, and the parameters of nodes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Mapping
+from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from aionode.errors import NodeNameNonExistentError, ServiceError
+from aionode.gateway._session_base import SessionBase
+from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.parameter import Parameter
+from aionode.parameter_client import AsyncParameterClient
+
+if TYPE_CHECKING:
+    from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
+
+__all__ = ["NodeDetails", "SessionGraph"]
+
+SERVER_SEC: Final = 1.0
+"""How long a question waits for the parameter services of a node, in seconds."""
+
+ANSWER_SEC: Final = 5.0
+"""How long questions about parameters wait for an answer, in seconds."""
+
+
+class NodeDetails(msgspec.Struct, frozen=True):
+    """What one node does, each as names with their types.
+
+    Attributes:
+        name: Its full name.
+        publishers: Topics that it publishes to.
+        subscriptions: Topics that it subscribes to.
+        services: Services that it offers.
+        clients: Services that it calls.
+        actions: Actions that it offers.
+    """
+
+    name: str
+    publishers: dict[str, list[str]]
+    subscriptions: dict[str, list[str]]
+    services: dict[str, list[str]]
+    clients: dict[str, list[str]]
+    actions: dict[str, list[str]]
+
+
+class SessionGraph(SessionBase):
+    """The part of `Session` that shows the graph, and reads and sets parameters."""
+
+    # The graph, without what the policy hides
+
+    def topics(self, *, hidden: bool = False) -> dict[str, list[str]]:
+        """Return the topics that the client may see, with the names of their types."""
+        return self._visible(self._robot.node.graph.names_and_types(*TOPIC_KINDS), hidden=hidden)
+
+    def services(self, *, hidden: bool = False) -> dict[str, list[str]]:
+        """Return the services that the client may see, with the names of their types."""
+        kind = EndpointKind.SERVER
+        return self._visible(self._robot.node.graph.names_and_types(kind), hidden=hidden)
+
+    def actions(self) -> dict[str, list[str]]:
+        """Return the actions that the client may see, with the names of their types."""
+        return self._visible(self._robot.node.get_action_names_and_types(), hidden=True)
+
+    def nodes(self) -> list[str]:
+        """Return the full names of the nodes that the client may see."""
+        found = {node.fully_qualified_name for node in self._robot.node.graph.nodes()}
+        return [name for name in sorted(found) if self._sees(name, [])]
+
+    def node_details(self, node: str) -> NodeDetails:
+        """Return what a node does.
+
+        Raises:
+            NodeNameNonExistentError: there is no such node, or the client may not see it.
+        """
+        info = next(self._robot.node.graph.find_nodes(node), None)
+        if info is None or not self._sees(node, []):
+            raise NodeNameNonExistentError(node)
+
+        def of(kind: EndpointKind) -> dict[str, list[str]]:
+            return self._visible(
+                self._robot.node.graph.names_and_types(kind, node=info), hidden=False
+            )
+
+        actions = self._robot.node.get_action_server_names_and_types_by_node(
+            info.name, info.namespace
+        )
+        return NodeDetails(
+            node,
+            of(EndpointKind.PUBLISHER),
+            of(EndpointKind.SUBSCRIPTION),
+            of(EndpointKind.SERVER),
+            of(EndpointKind.CLIENT),
+            self._visible(actions, hidden=True),
+        )
+
+    # Parameters
+
+    @asynccontextmanager
+    async def _parameters(self, node: str) -> AsyncIterator[AsyncParameterClient]:
+        """Yield a client for the parameters of a node.
+
+        Raises:
+            RefusedError: the client may not see the node.
+            ServiceError: the node offers no parameters.
+        """
+        if not self._sees(node, []):
+            raise self._refused("see", node, "the policy does not show it", "not_allowed")
+        client = AsyncParameterClient(self._robot.node, node)
+        try:
+            with self._one_more():
+                async with asyncio.timeout(ANSWER_SEC):
+                    if not await client.wait_for_services(SERVER_SEC):
+                        raise ServiceError(node, "it offers no parameters")
+                    yield client
+        finally:
+            client.destroy()
+
+    async def parameter_names(self, node: str) -> list[str]:
+        """Return the names of the parameters of a node that the client may see.
+
+        Raises:
+            RefusedError: it may not see the node.
+            ServiceError: the node offers no parameters.
+            TimeoutError: the node has not answered within 5 s.
+        """
+        async with self._parameters(node) as client:
+            found = await client.list_parameters()
+        return [name for name in found.names if self._sees(f"{node}:{name}", [])]
+
+    async def get_parameters(self, node: str, names: list[str]) -> dict[str, Any]:
+        """Return the values of parameters; those that are not declared are left out.
+
+        Raises:
+            RefusedError: the client may not see one of them.
+            ServiceError: the node offers no parameters.
+            TimeoutError: the node has not answered within 5 s.
+        """
+        for name in names:
+            if not self._sees(f"{node}:{name}", []):
+                raise self._refused(
+                    "see", f"{node}:{name}", "the policy does not show it", "not_allowed"
+                )
+        async with self._parameters(node) as client:
+            found = await client.get_parameters(names)
+            if len(found) != len(names):  # one of them is not declared: then there are none
+                declared = set((await client.list_parameters()).names)
+                found = await client.get_parameters([name for name in names if name in declared])
+        return {each.name: each.value for each in found}
+
+    async def set_parameters(
+        self, node: str, values: Mapping[str, Any]
+    ) -> list[SetParametersResult]:
+        """Set parameters one by one, and return a result for each.
+
+        Args:
+            node: The full name of the node.
+            values: The values by name; None undeclares a parameter.
+
+        Raises:
+            RefusedError: the policy does not allow one of them; none was set.
+            ServiceError: the node offers no parameters.
+            TimeoutError: the node has not answered within 5 s.
+        """
+        changed = []
+        for name, value in values.items():
+            parameter = self._decide_parameter(node, Parameter(name, value=value))
+            await self._allow("parameter", f"{node}:{name}", "", {"value": parameter.value})
+            changed.append(parameter)
+        async with self._parameters(node) as client:
+            results = await client.set_parameters(changed)
+        reasons = "; ".join(each.reason for each in results if not each.successful)
+        self._robot.audit.note(
+            self.identity, "parameter", node, arguments=dict(values),
+            result=f"failed: {reasons}" if reasons else "ok", way=self.kind,
+        )  # fmt: skip
+        return results

@@ -1,0 +1,232 @@
+"""The topics of a client: what it receives, and what it publishes."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.clock import S_TO_NS, Duration
+from aionode.errors import AionodeError
+from aionode.gateway._command import check_age
+from aionode.gateway._session_base import SessionBase, as_message
+from aionode.graph import TOPIC_KINDS
+from aionode.message import Message
+from aionode.qos import DurabilityPolicy, QoSProfile
+
+if TYPE_CHECKING:
+    from aionode.gateway._feed import Received
+    from aionode.gateway._outbox import Frame
+
+__all__ = ["SessionTopics", "Subscribed"]
+
+PUBLISHED: Final = QoSProfile(
+    depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1)
+)
+"""For publishers of clients, which publish at once: who subscribes within a second gets it."""
+
+COMMANDS: Final = QoSProfile(depth=10)
+"""For commands: an old one must not reach a subscription that comes late."""
+
+
+class Subscribed:
+    """A subscription of a client; `close` ends it.
+
+    Attributes:
+        topic: The full name of the topic.
+        type_name: The name of its type.
+        message_class: The class of its messages.
+        failed: How many messages had no frame, because they are malformed.
+    """
+
+    def __init__(
+        self,
+        session: SessionTopics,
+        topic: str,
+        message_class: Any,
+        frame: Callable[[Received], Frame | None],
+        key: Hashable,
+        depth: int,
+        min_period_sec: float,
+    ) -> None:
+        self.topic = topic
+        self.message_class = message_class
+        self.type_name: str = message_class.__ros_type__
+        self.failed = 0
+        self._session = session
+        self._frame = frame
+        self._key = key
+        self._depth = depth
+        self._min_period_ns = round(min_period_sec * S_TO_NS)
+        self._due_ns = 0
+        self._leave: Callable[[], None] | None = None
+
+    def _take(self, received: Received) -> None:
+        if self._min_period_ns:
+            if received.time_ns < self._due_ns:
+                return
+            self._due_ns = received.time_ns + self._min_period_ns
+        try:
+            frame = self._frame(received)
+        except AionodeError:
+            self.failed += 1
+            return
+        if frame is not None:
+            self._session.outbox.put(self._key, frame, self._depth)
+
+    def close(self) -> None:
+        """Unsubscribe; what waits for the client is dropped."""
+        if self._leave is not None:
+            self._leave()
+            self._leave = None
+            self._session._subscribed.pop(self, None)
+            self._session.outbox.discard(self._key)
+
+
+class SessionTopics(SessionBase):
+    """The part of `Session` that subscribes and publishes."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self._subscribed: dict[Subscribed, None] = {}
+        self._published: dict[str, tuple[Any, Callable[[], None]]] = {}
+        self._counts: dict[str, int] = defaultdict(int)
+        self._noted_ns: dict[str, int] = {}
+
+    async def subscribe(
+        self,
+        topic: str,
+        type_name: str | None = None,
+        *,
+        frame: Callable[[Received], Frame | None],
+        key: Hashable,
+        depth: int = 10,
+        qos: QoSProfile | None = None,
+        min_period_sec: float = 0.0,
+    ) -> Subscribed:
+        """Have each message of a topic put into the outbox.
+
+        Args:
+            topic: The name of the topic.
+            type_name: The name of its type; by default that which the graph shows.
+            frame: Returns what the client gets for a message, or None for nothing.
+            key: Which queue of the outbox it waits in.
+            depth: How many frames may wait there.
+            qos: The profile; by default the strongest that all publishers offer.
+            min_period_sec: The shortest time between two messages, in seconds; others are left out.
+
+        Raises:
+            RefusedError: the policy does not allow it, or there are too many.
+            InterfaceNotFoundError: nobody knows the topic or its type.
+            InvalidTopicNameException: the name is invalid (a ValueError).
+        """
+        topic = self.topic_name(topic)
+        self._count_one("subscriptions", len(self._subscribed), self._limits.subscriptions)
+        self.decide("subscribe", topic, "")  # before anybody is asked for a type
+        message_class = await self.message_class(self._known_type(topic, TOPIC_KINDS, type_name))
+        self.decide("subscribe", topic, message_class.__ros_type__)
+        subscribed = Subscribed(self, topic, message_class, frame, key, depth, min_period_sec)
+        self._subscribed[subscribed] = None
+        subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed._take)
+        self._robot.audit.note(self.identity, "subscribe", topic, way=self.kind)
+        return subscribed
+
+    async def advertise(
+        self, topic: str, type_name: str | None = None, qos: QoSProfile | None = None
+    ) -> None:
+        """Make a publisher, which others that publish the same share.
+
+        Raises:
+            RefusedError: the policy does not allow it, or there are too many.
+            InterfaceNotFoundError: nobody knows the type.
+            InvalidTopicNameException: the name is invalid (a ValueError).
+        """
+        topic = self.topic_name(topic)
+        if topic in self._published:
+            return
+        self._count_one("topics", len(self._published), self._limits.advertised)
+        message_class = await self.message_class(self._known_type(topic, TOPIC_KINDS, type_name))
+        decision = self.decide("publish", topic, message_class.__ros_type__)
+        profile = COMMANDS if decision.lease is not None else qos or PUBLISHED
+        node = self._robot.node
+        publisher, give_back = self._robot.shared.take(
+            ("publisher", topic, message_class, str(profile)),
+            lambda: node.create_publisher(message_class, topic, profile),
+        )
+        if topic in self._published:  # advertised twice at once
+            give_back()
+            return
+        self._published[topic] = (publisher, give_back)
+        self._robot.audit.note(self.identity, "advertise", topic, way=self.kind)
+
+    async def publish(
+        self,
+        topic: str,
+        values: Message | Mapping[str, Any] | bytes,
+        type_name: str | None = None,
+        *,
+        arrived_ns: int | None = None,
+    ) -> None:
+        """Publish a message, or a command if the policy says that the topic has commands.
+
+        Args:
+            topic: The name of the topic.
+            values: The message, its values, or its CDR bytes.
+            type_name: The type, if the client has not advertised the topic.
+            arrived_ns: When the frame arrived, in nanoseconds of the steady clock; now by default.
+
+        Raises:
+            RefusedError: the policy does not allow it; another client commands the topic; the
+                command is too old.
+            MessageError: a value does not fit its field (a ValueError).
+            DecodeError: the bytes are no such message (a ValueError).
+            InterfaceNotFoundError: nobody knows the type.
+        """
+        arrived_ns = self._robot.time_base.steady_ns() if arrived_ns is None else arrived_ns
+        topic = self.topic_name(topic)
+        if topic not in self._published:
+            await self.advertise(topic, type_name)
+        publisher = self._published[topic][0]
+        message = as_message(publisher.msg_type, values)
+        decision = await self._allow("publish", topic, message.__ros_type__, message)
+        self._check_size("publish", topic, decision, message)
+        lease = decision.lease
+        if lease is None:
+            self._robot.commands.refuse_if_held(topic, self)
+            publisher.publish(decision.message)
+        else:
+            now_ns = self._robot.node.get_clock().now().nanoseconds
+            check_age(topic, message, lease, now_ns=now_ns, arrived_ns=arrived_ns,
+                      time_base=self._robot.time_base)  # fmt: skip
+            await self._robot.commands.publish(
+                publisher, self, self.identity, lease, decision.message
+            )
+        self._note_published(topic, decision.message)
+
+    def dropped(self) -> dict[str, int]:
+        """Return how many frames of each topic were dropped, as the client was too slow."""
+        found: dict[str, int] = defaultdict(int)
+        for subscribed in self._subscribed:
+            found[subscribed.topic] += self.outbox.dropped.get(subscribed._key, 0)
+        return dict(found)
+
+    def _note_published(self, topic: str, message: Message) -> None:
+        """Write down what is published: once a second for each topic, with a count."""
+        self._counts[topic] += 1
+        now_ns = self._robot.time_base.steady_ns()
+        if now_ns - self._noted_ns.get(topic, -S_TO_NS) >= S_TO_NS:
+            self._noted_ns[topic] = now_ns
+            self._robot.audit.note(
+                self.identity, "publish", topic, arguments=message, count=self._counts.pop(topic)
+            )
+
+    async def unadvertise(self, topic: str) -> None:
+        """Give a publisher back, and end the lease of its commands, which sends the stop."""
+        topic = self.topic_name(topic)
+        await self._robot.commands.leave(self, topic)
+        self._give_back(topic)
+
+    def _give_back(self, topic: str) -> None:
+        found = self._published.pop(topic, None)
+        if found is not None:
+            found[1]()
