@@ -129,7 +129,8 @@ class Orphans:
         for running, description in programs:
             # One whose start was under way is stopped; its session is not known, but its token is.
             pid = running.pid or -1
-            program = Program(running.number, pid, [], list(description.ladder), guardian)
+            ladder, cgroup = list(description.ladder), description.cgroup
+            program = Program(running.number, pid, [], ladder, cgroup, guardian)
             if not running.started.done():
                 running.refuse(description.argv, LOST)
                 program.note_end()

@@ -7,8 +7,8 @@ guardian stops every program, the last one first, and ends after the last proces
 Each program is started in a session of its own. The guardian is the subreaper of all of them
 (``PR_SET_CHILD_SUBREAPER``): a process that loses its parent, such as one that forked twice, is
 the guardian's child from then on, so every process of the system is found below the guardian.
-Which program such a process belongs to, its session tells, its parent, or the token in its
-environment.
+Which program such a process belongs to, its session tells, its parent, the token in its
+environment, or its cgroup, if the program has one of its own.
 
 Commands and events are packets of JSON. Commands: ``start`` (with five or six descriptors: the
 description of the program, its three standard streams, and the ends of its output that are read),
@@ -30,7 +30,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable
 
 __all__ = [
     "LOOK_S",
@@ -60,6 +60,7 @@ class Program:
         gone: Whether no process is left.
         outputs: The ends of its output that are read when the supervisor is gone.
         ladder: The signals that end it, and how long each is waited for, in seconds.
+        cgroup: The folder of the cgroup with its processes; None if it has none of its own.
         token: What is in the environment of its processes.
     """
 
@@ -69,9 +70,11 @@ class Program:
         pid: int,
         outputs: list[int],
         ladder: list[tuple[str, float]],
+        cgroup: str | None,
         guardian: int,
     ) -> None:
         self.number, self.pid, self.outputs, self.ladder = number, pid, outputs, ladder
+        self.cgroup = cgroup
         self.token = token_of(guardian, number)
         self.ended = self.gone = False
         self.stopping = False
@@ -116,6 +119,26 @@ class Program:
         else:
             for pid in rest:
                 send(os.kill, pid, number)
+            if number == signal.SIGKILL:
+                kill_cgroup(self.cgroup)
+
+
+def kill_cgroup(cgroup: str | None) -> None:
+    """Kill all processes of a cgroup, also those that run as another user."""
+    if cgroup is not None:
+        with suppress(OSError), open(f"{cgroup}/cgroup.kill", "w") as file:  # noqa: PTH123
+            file.write("1")  # since Linux 5.14
+
+
+def processes_in(cgroup: str | None) -> list[int]:
+    """Return the processes of a cgroup."""
+    if cgroup is None:
+        return []
+    try:
+        with open(f"{cgroup}/cgroup.procs", encoding="ascii") as file:  # noqa: PTH123
+            return list(map(int, file.read().split()))
+    except OSError:
+        return []
 
 
 def send(function: Any, pid: int, number: signal.Signals) -> None:
@@ -244,7 +267,7 @@ class Guardian:
         else:
             process.returncode = 0  # it is reaped here, not by subprocess
             self._programs[number] = Program(
-                number, process.pid, [*outputs], program["ladder"], os.getpid()
+                number, process.pid, [*outputs], program["ladder"], program["cgroup"], os.getpid()
             )
             self._tell(event="started", number=number, pid=process.pid)
         finally:
@@ -299,7 +322,7 @@ class Guardian:
 
 
 def owned_by(
-    programs: Iterable[Program], processes: Iterable[tuple[int, int, int]]
+    programs: Collection[Program], processes: Iterable[tuple[int, int, int]]
 ) -> dict[int, list[int]]:
     """Return the live processes of each program, by its number.
 
@@ -309,9 +332,9 @@ def owned_by(
     """
     sessions = {program.pid: program.number for program in programs}
     tokens = {program.token: program.number for program in programs}
-    owners: dict[int, int] = {}
+    owners = {pid: one.number for one in programs for pid in processes_in(one.cgroup)}
     for pid, parent, session in processes:
-        number = sessions.get(session, owners.get(parent))
+        number = owners.get(pid, sessions.get(session, owners.get(parent)))
         if number is None:
             number = next((tokens[one] for one in tokens_in(pid) if one in tokens), None)
         if number is not None:

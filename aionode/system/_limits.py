@@ -47,10 +47,11 @@ class Limits:
         settings = self.settings()
         if not settings:
             return None
-        parent = own_cgroup()
+        parent, folder = own_cgroup(), None
         try:
             if parent is None:
                 raise FileNotFoundError("there is no cgroup v2 here")
+            enable_controllers(parent, {file.partition(".")[0] for file in settings})
             folder = parent / f"aionode-{os.getpid()}-{name.strip('/').replace('/', '.')}"
             folder.mkdir(exist_ok=True)
             for file, value in settings.items():
@@ -60,9 +61,8 @@ class Limits:
                 f"{name}: runs without its limits ({', '.join(settings)}): {error}; give the "
                 "service Delegate=yes and DelegateSubgroup=supervisor, or leave the limits to it"
             )
-            if parent is not None:
-                with suppress(OSError):
-                    folder.rmdir()
+            if folder is not None:
+                self.leave(str(folder))
             return None
         return str(folder)
 
@@ -73,18 +73,37 @@ class Limits:
                 Path(folder).rmdir()
 
 
+def enable_controllers(parent: Path, wanted: set[str]) -> None:
+    """Let the cgroups below `parent` have limits of these kinds: ``cpu``, ``memory``.
+
+    A cgroup that was delegated to this process has the controllers, and gives none to those below
+    it before it is told to.
+
+    Raises:
+        OSError: there are no such controllers here, or it is not allowed.
+    """
+    if missing := wanted.difference((parent / "cgroup.controllers").read_text().split()):
+        raise FileNotFoundError(f"cgroup v2 has no controller {', '.join(sorted(missing))} here")
+    enabled = parent / "cgroup.subtree_control"
+    if more := wanted.difference(enabled.read_text().split()):
+        enabled.write_text(" ".join(f"+{controller}" for controller in more))
+
+
 def own_cgroup(
     membership: Path = Path("/proc/self/cgroup"), root: Path = Path("/sys/fs/cgroup")
 ) -> Path | None:
     """Return the folder in which cgroups may be created, beside that of this process.
 
-    A cgroup with processes has none below it that have limits, so it is the one above.
+    A cgroup with processes has none below it that have limits, so it is the one above; only that
+    at the root may have both.
     """
     try:
         lines = membership.read_text().splitlines()
     except OSError:
         return None
-    if not (root / "cgroup.controllers").exists():
+    mounts = (root, root / "unified")  # the second beside cgroups of version 1
+    mount = next((one for one in mounts if (one / "cgroup.controllers").exists()), None)
+    own = next((line[3:].strip("/") for line in lines if line.startswith("0::")), None)
+    if mount is None or own is None:
         return None
-    own = next((line[3:] for line in lines if line.startswith("0::")), None)
-    return None if own is None else (root / own.strip("/")).parent
+    return (mount / own).parent if own else mount

@@ -23,7 +23,6 @@ from aionode.system import (
     SystemLog,
     TopicPublished,
 )
-from aionode.system._limits import Limits, own_cgroup
 from tests.support.waiting import until
 
 FOREVER = ["sleep", "1000"]
@@ -381,40 +380,6 @@ async def test_managed_nodes_are_active_when_ready_and_brought_down_before_the_e
         assert Camera.moves == ["activate"]
 
     assert Camera.moves == ["activate", "deactivate"]
-
-
-async def test_limits_that_are_not_allowed_are_named_and_left_out(
-    system: System, output: io.StringIO, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The program runs all the same."""
-    monkeypatch.setattr("aionode.system._limits.own_cgroup", lambda: None)
-    async with system:
-        system.process("greedy", FOREVER, memory_bytes=1_000_000_000, cpu_cores=0.5)
-        await system.ready()
-
-    assert "greedy: runs without its limits (memory.max, cpu.max)" in output.getvalue()
-
-
-def test_limits_are_written_into_a_cgroup_of_its_own(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Beside that of the supervisor, which may have no cgroups with limits below it."""
-    monkeypatch.setattr("aionode.system._limits.own_cgroup", lambda: tmp_path)
-    folder = Limits(1_000_000, 0.5).enter("greedy", SystemLog(io.StringIO()))
-
-    assert folder is not None
-    assert (Path(folder) / "memory.max").read_text() == "1000000"
-    assert (Path(folder) / "cpu.max").read_text() == "50000 100000"
-
-
-def test_the_cgroup_is_found_that_may_have_others_below_it(tmp_path: Path) -> None:
-    """A service with DelegateSubgroup has its own processes one level lower."""
-    (tmp_path / "cgroup.controllers").write_text("cpu memory")
-    membership = tmp_path / "membership"
-    membership.write_text("1:name=systemd:/x\n0::/robot.service/supervisor\n")
-
-    assert own_cgroup(membership, tmp_path) == tmp_path / "robot.service"
-    assert own_cgroup(membership, tmp_path / "none") is None
 
 
 def test_members_may_be_added_before_there_is_an_event_loop(output: io.StringIO) -> None:
