@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -58,6 +60,18 @@ def test_it_finds_a_file_of_a_package(
     assert main(["launch", "robot", "a.launch.xml", "--print"]) == 0
     assert main(["launch", "robot", "b.launch.xml", "--print"]) == 1
     assert "it has: a.launch.xml" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("options", "status"), [([], 3), (["--noninteractive"], 0)])
+def test_its_exit_status_is_that_of_the_first_failure(
+    tmp_path: Path, options: list[str], status: int
+) -> None:
+    """Unless it is asked for that of ros2 launch, as test frameworks do."""
+    path = tmp_path / "a.launch.xml"
+    path.write_text("""<launch><executable cmd="sh -c 'exit 3'"/></launch>""")
+    command = [sys.executable, "-m", "aionode", "launch", str(path), *options]
+
+    assert subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode == status
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,12 @@ __all__ = ["launch_command"]
     help="The packages that the file names, which need no build; else the workspace around it.",
 )
 @click.option("-d", "--debug", is_flag=True, help="Accepted, as in ros2 launch; changes nothing.")
-@click.option("-n", "--noninteractive", is_flag=True, help="The same.")
+@click.option(
+    "-n",
+    "--noninteractive",
+    is_flag=True,
+    help="The exit status is that of ros2 launch: 0, whatever becomes of the processes.",
+)
 def launch_command(
     file: str,
     arguments: tuple[str, ...],
@@ -77,7 +82,9 @@ def launch_command(
     elif prints:
         print_plan(plan, as_json=as_json)
     else:
-        start(plan, watch=watch, once_ready=once_ready, as_json=as_json)
+        status = start(plan, watch=watch, once_ready=once_ready, as_json=as_json)
+        if status and not noninteractive:
+            sys.exit(status)
 
 
 def file_and_values(
@@ -143,8 +150,8 @@ def print_plan(plan: Plan, *, as_json: bool) -> None:
             click.echo(line)
 
 
-def start(plan: Plan, *, watch: bool, once_ready: str | None, as_json: bool) -> None:
-    """Start what a plan says, and end with the exit status of the first failure."""
+def start(plan: Plan, *, watch: bool, once_ready: str | None, as_json: bool) -> int:
+    """Start what a plan says; return the exit status of the first failure, or 0."""
     from aionode.launch import run_plan
     from aionode.runner import run
     from aionode.system import System, SystemLog
@@ -157,8 +164,7 @@ def start(plan: Plan, *, watch: bool, once_ready: str | None, as_json: bool) -> 
             await run_plan(plan, system, watch=watch, once_ready=once_ready)
 
     run(main, args=[])
-    if system.exit_status:
-        sys.exit(system.exit_status)
+    return system.exit_status
 
 
 def run_real(path: str, values: dict[str, str]) -> None:

@@ -8,6 +8,7 @@ from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 
 __all__ = [
@@ -32,7 +33,7 @@ def evaluate_condition_expression(
     Raises:
         InvalidConditionExpressionError: It is another text.
     """
-    text = perform_substitutions(context, normalize_to_list_of_substitutions(expression))
+    text = text_of(context, expression)
     known = {"true": True, "1": True, "false": False, "0": False}
     try:
         return known[text.strip().lower()]

@@ -31,13 +31,21 @@ def entities_of(result: Any) -> list[LaunchDescriptionEntity]:
 
 
 class BaseEventHandler:
-    """Decides which events it handles."""
+    """Decides which events it handles, and what is done then.
+
+    Args:
+        matcher: Says whether an event concerns it.
+        handle_once: Whether it handles one event only.
+        reaction: Entities; or a function of the event and the context, which returns some.
+    """
 
     def __init__(
-        self, *, matcher: Callable[[Event], bool], handle_once: bool = False, **_: Any
+        self, *, matcher: Callable[[Event], bool], handle_once: bool = False, reaction: Any = None
     ) -> None:
         self._matcher = matcher
         self.handle_once = handle_once
+        self._function: Callable[..., Any] | None = reaction if callable(reaction) else None
+        self._entities = None if callable(reaction) else entities_of(reaction)
 
     def matches(self, event: Event) -> bool:
         """Return whether an event concerns this handler."""
@@ -48,11 +56,11 @@ class BaseEventHandler:
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
-        return None
+        return self._entities if self._function is None else self._function(event, context)
 
     def known_entities(self) -> list[LaunchDescriptionEntity] | None:
         """Return the entities that are done at any event; None if a function decides."""
-        return None
+        return self._entities
 
     def describe(self) -> str:
         """Return to what it reacts, such as ``exit of talker-1``."""
@@ -65,14 +73,9 @@ class EventHandler(BaseEventHandler):
     def __init__(
         self, *, matcher: Callable[[Event], bool], entities: Any = None, handle_once: bool = False
     ) -> None:
-        super().__init__(matcher=matcher, handle_once=handle_once)
-        self.entities = entities_of(entities)
+        super().__init__(matcher=matcher, handle_once=handle_once, reaction=entities)
 
-    def handle(self, event: Event, context: LaunchContext) -> Any:
-        """Return the entities."""
-        super().handle(event, context)
-        return self.entities
-
-    def known_entities(self) -> list[LaunchDescriptionEntity] | None:
-        """Return the entities."""
-        return self.entities
+    @property
+    def entities(self) -> list[LaunchDescriptionEntity] | None:
+        """What is done."""
+        return self._entities

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from aionode.launch._launch.event import Event
-from aionode.launch._launch.event_handler import BaseEventHandler, EventHandler, entities_of
+from aionode.launch._launch.event_handler import BaseEventHandler, EventHandler
 from aionode.launch._launch.events import ExecutionComplete, Shutdown
 from aionode.launch._launch.events.process import ProcessExited, ProcessIO, ProcessStarted
 from aionode.launch._launch.launch_context import LaunchContext
@@ -48,19 +48,8 @@ class OnActionEventBase(BaseEventHandler):
             )
             return is_test and bool(action_matcher(action))
 
-        super().__init__(matcher=matcher, **options)
+        super().__init__(matcher=matcher, reaction=on_event, **options)
         self.action_matcher = action_matcher
-        self._function: Callable[..., Any] | None = on_event if callable(on_event) else None
-        self._entities = None if callable(on_event) else entities_of(on_event)
-
-    def handle(self, event: Event, context: LaunchContext) -> Any:
-        """Return the entities, or what the function returns."""
-        super().handle(event, context)
-        return self._entities if self._function is None else self._function(event, context)
-
-    def known_entities(self) -> list[LaunchDescriptionEntity] | None:
-        """Return the entities; None if there is a function."""
-        return self._entities
 
     def describe(self) -> str:
         """Return what happens to whom."""
@@ -72,46 +61,40 @@ class OnActionEventBase(BaseEventHandler):
         return f"{self.happens} of what {getattr(target, '__name__', target)} names"
 
 
-class OnProcessExit(OnActionEventBase):
-    """Reacts to the end of a process."""
+class OnMoment(OnActionEventBase):
+    """Reacts to a moment in the life of an action, as the argument says that has its name."""
 
-    happens = "exit"
+    argument = ""
+    event_cls: type[Event]
 
-    def __init__(self, *, target_action: Any = None, on_exit: Any, **options: Any) -> None:
+    def __init__(self, *, target_action: Any = None, **options: Any) -> None:
+        if self.argument not in options:
+            raise TypeError(f"{type(self).__name__} needs {self.argument}=")
+        reaction = options.pop(self.argument)
         super().__init__(
             action_matcher=target_action,
-            on_event=on_exit,
-            target_event_cls=ProcessExited,
+            on_event=reaction,
+            target_event_cls=self.event_cls,
             **options,
         )
 
 
-class OnProcessStart(OnActionEventBase):
-    """Reacts to the start of a process."""
+class OnProcessExit(OnMoment):
+    """Reacts to the end of a process, with ``on_exit=``."""
 
-    happens = "start"
-
-    def __init__(self, *, target_action: Any = None, on_start: Any, **options: Any) -> None:
-        super().__init__(
-            action_matcher=target_action,
-            on_event=on_start,
-            target_event_cls=ProcessStarted,
-            **options,
-        )
+    happens, argument, event_cls = "exit", "on_exit", ProcessExited
 
 
-class OnExecutionComplete(OnActionEventBase):
-    """Reacts to the end of an action."""
+class OnProcessStart(OnMoment):
+    """Reacts to the start of a process, with ``on_start=``."""
 
-    happens = "completion"
+    happens, argument, event_cls = "start", "on_start", ProcessStarted
 
-    def __init__(self, *, target_action: Any = None, on_completion: Any, **options: Any) -> None:
-        super().__init__(
-            action_matcher=target_action,
-            on_event=on_completion,
-            target_event_cls=ExecutionComplete,
-            **options,
-        )
+
+class OnExecutionComplete(OnMoment):
+    """Reacts to the end of an action, with ``on_completion=``."""
+
+    happens, argument, event_cls = "completion", "on_completion", ExecutionComplete
 
 
 class OnProcessIO(OnActionEventBase):
@@ -144,18 +127,9 @@ class OnShutdown(BaseEventHandler):
     """Reacts to the request to stop everything."""
 
     def __init__(self, *, on_shutdown: Any, **options: Any) -> None:
-        super().__init__(matcher=lambda event: isinstance(event, Shutdown), **options)
-        self._function = on_shutdown if callable(on_shutdown) else None
-        self._entities = None if callable(on_shutdown) else entities_of(on_shutdown)
-
-    def handle(self, event: Event, context: LaunchContext) -> Any:
-        """Return the entities, or what the function returns."""
-        super().handle(event, context)
-        return self._entities if self._function is None else self._function(event, context)
-
-    def known_entities(self) -> list[LaunchDescriptionEntity] | None:
-        """Return the entities; None if there is a function."""
-        return self._entities
+        super().__init__(
+            matcher=lambda event: isinstance(event, Shutdown), reaction=on_shutdown, **options
+        )
 
     def describe(self) -> str:
         """Return what happens."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Self, TypeAlias
 
 if TYPE_CHECKING:
     from aionode.launch._launch.launch_context import LaunchContext
@@ -15,6 +15,7 @@ __all__ = [
     "TextSubstitution",
     "normalize_to_list_of_substitutions",
     "perform_substitutions",
+    "text_of",
 ]
 
 
@@ -33,9 +34,14 @@ class Substitution:
         """Return what stands in the description."""
         return f"{type(self).__name__}()"
 
+    second_word: ClassVar[str] = ""
+    """Which argument the second word of ``$(name word word)`` is, if it is one with a name."""
+
     @classmethod
     def of_words(cls, *words: Any) -> Self:
         """Return the substitution that ``$(name word word)`` of a file stands for."""
+        if cls.second_word and len(words) == 2:
+            return cls(words[0], **{cls.second_word: words[1]})  # type: ignore[call-arg]  # the subclass has it
         return cls(*words)
 
 
@@ -76,3 +82,8 @@ def normalize_to_list_of_substitutions(subs: SomeSubstitutionsType) -> list[Subs
 def perform_substitutions(context: LaunchContext, subs: Sequence[Substitution]) -> str:
     """Return the texts of substitutions, joined."""
     return "".join(context.perform_substitution(sub) for sub in subs)
+
+
+def text_of(context: LaunchContext, subs: SomeSubstitutionsType) -> str:
+    """Return the text of a substitution, or of several joined."""
+    return perform_substitutions(context, normalize_to_list_of_substitutions(subs))

@@ -21,6 +21,7 @@ from aionode.launch._launch.substitution import (
     TextSubstitution,
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 from aionode.launch._launch.utilities.type_utils import coerce_to_type
 
@@ -54,11 +55,6 @@ __all__ = [
 ]
 
 
-def text_of(context: LaunchContext, subs: SomeSubstitutionsType) -> str:
-    """Return the text of a substitution, or of several joined."""
-    return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
-
-
 def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
     """Return the truth of a text."""
     text = text_of(context, sub)
@@ -70,6 +66,8 @@ def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
 
 class LaunchConfiguration(Substitution):
     """The value of a launch configuration, such as an argument."""
+
+    second_word = "default"
 
     def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.variable_name = normalize_to_list_of_substitutions(variable_name)
@@ -83,11 +81,6 @@ class LaunchConfiguration(Substitution):
             )
         else:
             self.default = normalize_to_list_of_substitutions(str(default))
-
-    @classmethod
-    def of_words(cls, *words: Any) -> Self:
-        """Return that of ``$(var name default)``."""
-        return cls(words[0], default=words[1] if len(words) > 1 else None)
 
     def describe(self) -> str:
         """Return the name."""
@@ -109,16 +102,13 @@ class LaunchConfiguration(Substitution):
 class EnvironmentVariable(Substitution):
     """The value of an environment variable."""
 
+    second_word = "default_value"
+
     def __init__(
         self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
     ) -> None:
         self.name = normalize_to_list_of_substitutions(name)
         self.default_value = default_value
-
-    @classmethod
-    def of_words(cls, *words: Any) -> Self:
-        """Return that of ``$(env NAME default)``."""
-        return cls(words[0], default_value=words[1] if len(words) > 1 else None)
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value, or the default."""
@@ -204,16 +194,13 @@ class LocalSubstitution(Substitution):
 class ForEachVar(Substitution):
     """A value of the set that a ``for_each`` of a file is at."""
 
+    second_word = "default_value"
+
     def __init__(
         self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
     ) -> None:
         self.name = normalize_to_list_of_substitutions(name)
         self.default_value = default_value
-
-    @classmethod
-    def of_words(cls, *words: Any) -> Self:
-        """Return that of ``$(for-var name default)``."""
-        return cls(words[0], default_value=words[1] if len(words) > 1 else None)
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
@@ -290,16 +277,13 @@ class FileContent(Substitution):
 class Command(Substitution):
     """What a command prints, such as xacro."""
 
+    second_word = "on_stderr"
+
     def __init__(
         self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail"
     ) -> None:
         self.command = normalize_to_list_of_substitutions(command)
         self.on_stderr = normalize_to_list_of_substitutions(on_stderr)
-
-    @classmethod
-    def of_words(cls, *words: Any) -> Self:
-        """Return that of ``$(command 'xacro robot.xacro' warn)``."""
-        return cls(words[0], on_stderr=words[1] if len(words) > 1 else "fail")
 
     def perform(self, context: LaunchContext) -> str:
         """Return the output."""

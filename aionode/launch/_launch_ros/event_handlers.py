@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from aionode.launch._launch.event import Event
-from aionode.launch._launch.event_handler import BaseEventHandler, entities_of
-from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.event_handler import BaseEventHandler
 from aionode.launch._launch_ros.events.lifecycle import StateTransition
 
 __all__ = ["OnStateTransition"]
@@ -34,19 +33,9 @@ class OnStateTransition(BaseEventHandler):
                 and goal_state in (None, event.goal_state)
             )
 
-        super().__init__(matcher=matcher, **options)
+        super().__init__(matcher=matcher, reaction=entities, **options)
         self.target_lifecycle_node = target_lifecycle_node
         self.goal_state = goal_state
-        self._entities = entities_of(entities)
-
-    def handle(self, event: Event, context: LaunchContext) -> Any:
-        """Return the entities."""
-        super().handle(event, context)
-        return self._entities
-
-    def known_entities(self) -> list[Any] | None:
-        """Return the entities."""
-        return self._entities
 
     def describe(self) -> str:
         """Return what happens to whom."""

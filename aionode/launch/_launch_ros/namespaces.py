@@ -5,8 +5,7 @@ from __future__ import annotations
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
+    text_of,
 )
 from aionode.names import validate_namespace
 
@@ -30,7 +29,7 @@ def text_or_none(context: LaunchContext, subs: SomeSubstitutionsType | None) -> 
     """Return the text of substitutions, if there are any."""
     if subs is None:
         return None
-    return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
+    return text_of(context, subs)
 
 
 def is_absolute(namespace: str) -> bool:

@@ -10,8 +10,7 @@ import yaml
 
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
-    normalize_to_list_of_substitutions,
-    perform_substitutions,
+    text_of,
 )
 from aionode.launch._launch_ros.parameter_descriptions import (
     Parameter,
@@ -29,10 +28,7 @@ def remap_pairs(context: LaunchContext, remappings: Iterable[Any]) -> list[tuple
     for rule in remappings:
         if isinstance(rule, str):
             raise TypeError(f"remapping {rule!r}: a pair such as ('from', 'to') fits")
-        source, target = (
-            perform_substitutions(context, normalize_to_list_of_substitutions(side))
-            for side in rule
-        )
+        source, target = (text_of(context, side) for side in rule)
         pairs.append((source, target))
     return pairs
 

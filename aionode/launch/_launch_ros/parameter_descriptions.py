@@ -13,6 +13,7 @@ from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 from aionode.launch._launch.utilities.type_utils import (
     coerce_to_type,
@@ -85,9 +86,7 @@ def evaluate_value(context: LaunchContext, value: Any) -> Any:
     if isinstance(value, ParameterValue):
         return value.evaluate(context)
     if is_substitution(value):
-        return value_of_text(
-            perform_substitutions(context, normalize_to_list_of_substitutions(value))
-        )
+        return value_of_text(text_of(context, value))
     if isinstance(value, str | bool | int | float | bytes):
         return value
     if isinstance(value, Sequence) and value:
@@ -103,7 +102,7 @@ def evaluate_value(context: LaunchContext, value: Any) -> Any:
 def item_of(context: LaunchContext, item: Any) -> Any:
     """Return an item of a list."""
     if isinstance(item, list | tuple):
-        text = perform_substitutions(context, normalize_to_list_of_substitutions(item))
+        text = text_of(context, item)
         return coerce_to_type(text)
     return evaluate_value(context, item)
 
@@ -128,7 +127,7 @@ def evaluate_values(
     """Return parameters by their full names; inner dictionaries have names with dots."""
     values: dict[str, Any] = {}
     for name, value in given.items():
-        full = prefix + perform_substitutions(context, normalize_to_list_of_substitutions(name))
+        full = prefix + text_of(context, name)
         if isinstance(value, Mapping):
             values.update(evaluate_values(context, value, f"{full}."))
         else:

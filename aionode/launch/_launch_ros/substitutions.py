@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import Any
 
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
@@ -12,6 +11,7 @@ from aionode.launch._launch.substitution import (
     SubstitutionFailure,
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 
 __all__ = [
@@ -94,16 +94,13 @@ class ExecutableInPackage(Substitution):
 class Parameter(Substitution):
     """The value of a parameter that `SetParameter` has set for all nodes."""
 
+    second_word = "default"
+
     def __init__(
         self, name: SomeSubstitutionsType, *, default: SomeSubstitutionsType | None = None
     ) -> None:
         self.name = normalize_to_list_of_substitutions(name)
         self.default = default
-
-    @classmethod
-    def of_words(cls, *words: Any) -> Parameter:
-        """Return that of ``$(param name default)``."""
-        return cls(words[0], default=words[1] if len(words) > 1 else None)
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value, or the default."""
@@ -113,4 +110,4 @@ class Parameter(Substitution):
                 return str(known[1])
         if self.default is None:
             raise SubstitutionFailure(f"parameter '{name}' is not set for all nodes")
-        return perform_substitutions(context, normalize_to_list_of_substitutions(self.default))
+        return text_of(context, self.default)

@@ -14,6 +14,7 @@ from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 from aionode.launch._plan import Log, Timer
 
@@ -120,6 +121,6 @@ class TimerAction(Action):
         """Begin to wait."""
         period = self.period
         if not isinstance(period, int | float):
-            period = perform_substitutions(context, normalize_to_list_of_substitutions(period))
+            period = text_of(context, period)
         later = context.fork()
         context.steps.append(Timer(self, float(period), self.actions, later))

@@ -15,8 +15,8 @@ from aionode.launch._launch.event_handlers import OnProcessExit
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
-    normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 from aionode.launch._launch.utilities.type_utils import perform_typed_substitution
 from aionode.launch._plan import Log, ParameterValues, Process
@@ -136,9 +136,6 @@ class ExecuteLocal(Action):
         given = context.launch_configurations.get("emulate_tty", self.emulate_tty)
         return bool(perform_typed_substitution(context, given, bool))
 
-    def _text(self, context: LaunchContext, subs: SomeSubstitutionsType) -> str:
-        return perform_substitutions(context, normalize_to_list_of_substitutions(subs))
-
     def _prefix(self, context: LaunchContext, program: str) -> list[str]:
         """Return the command that stands before the program, such as ``gdb --args``."""
         described = self.process_description
@@ -154,8 +151,7 @@ class ExecuteLocal(Action):
 
         def texts(pairs: Mapping[Any, Any]) -> dict[str, str]:
             return {
-                self._text(context, name): self._text(context, value)
-                for name, value in pairs.items()
+                text_of(context, name): text_of(context, value) for name, value in pairs.items()
             }
 
         base = context.environment if described.env is None else texts(described.env)
@@ -164,7 +160,7 @@ class ExecuteLocal(Action):
     def _output(self, context: LaunchContext) -> str:
         if isinstance(self.output, Mapping):
             return ",".join(f"{name}={value}" for name, value in self.output.items())
-        return self._text(context, self.output)
+        return text_of(context, self.output)
 
     def describe(self) -> str:
         """Return which program it starts, and where that is said."""

@@ -17,6 +17,7 @@ from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
     normalize_to_list_of_substitutions,
     perform_substitutions,
+    text_of,
 )
 from aionode.launch._plan import Call
 
@@ -133,9 +134,7 @@ class ResetLaunchConfigurations(Action):
     def execute(self, context: LaunchContext) -> None:
         """Remove the others."""
         kept = {
-            perform_substitutions(context, normalize_to_list_of_substitutions(name)): (
-                perform_substitutions(context, normalize_to_list_of_substitutions(value))
-            )
+            text_of(context, name): text_of(context, value)
             for name, value in self.launch_configurations.items()
         }
         context.launch_configurations.clear()

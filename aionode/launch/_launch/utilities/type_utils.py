@@ -10,7 +10,7 @@ from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     Substitution,
     normalize_to_list_of_substitutions,
-    perform_substitutions,
+    text_of,
 )
 
 __all__ = [
@@ -90,7 +90,7 @@ def perform_typed_substitution(context: LaunchContext, value: Any, data_type: An
         ValueError: It is of another type.
     """
     if is_substitution(value):
-        text = perform_substitutions(context, normalize_to_list_of_substitutions(value))
+        text = text_of(context, value)
         return coerce_to_type(text, data_type)
     if isinstance(value, str) and data_type not in (None, str):
         return coerce_to_type(value, data_type)
