@@ -4,6 +4,8 @@
 #   make test      the tests, in WORKERS processes: two more than there are processors
 #   make stress    variants that take long or differ little from what `make test` runs
 #   make replay    a hundred processes have to publish the same in a replay
+#   make bag-kills a recording is killed at fifty moments, and its power is cut: the rest is there
+#   make bag-reader  bags are read by @mcap/core: needs node and npm
 #   make check     style, types, layers and structure, the documentation and its code
 #   make coverage  how much of aionode is reached by tests that start no process, and by programs of rclpy
 #   make bench     the benchmarks; tables, JSON and pictures in benchmarks/results/
@@ -34,11 +36,11 @@ MOTION_TIMES ?= 20
 WORKERS ?= auto
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress replay check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
+.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
 	tf-differential system-stress soak quotes clean
 
 help:
-	@sed -n '3,23s/^# *//p' Makefile
+	@sed -n '3,25s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -51,6 +53,13 @@ stress: .venv/installed-dev
 
 replay: .venv/installed-dev
 	$(BIN)/python -m pytest -q -m stress tests/bag/test_robot.py
+
+bag-kills: .venv/installed-dev
+	$(BIN)/python -m pytest -q -m stress tests/bag/test_kills.py
+
+bag-reader: .venv/installed-dev
+	npm install --silent --no-save --prefix .mcap-core @mcap/core@2 fzstd lz4js
+	MCAP_CORE=.mcap-core $(BIN)/python -m pytest -q -rs tests/bag/test_mcap_core.py
 
 check: .venv/installed-dev
 	$(BIN)/ruff check
@@ -122,7 +131,7 @@ quotes: .venv/installed-dev
 	$(BIN)/python docs/quotes.py
 
 clean:
-	rm -rf .venv .fuzz site benchmarks/results .coverage htmlcov
+	rm -rf .venv .fuzz .mcap-core site benchmarks/results .coverage htmlcov
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .grimp_cache
 
 # Two steps, so that the first look at aionode does not wait for the tools of its developers.

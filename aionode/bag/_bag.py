@@ -6,7 +6,7 @@ import heapq
 from copy import copy
 from itertools import count, islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, Self
+from typing import TYPE_CHECKING, Any, Final, Self, TypeVar
 
 from aionode._concurrency import run_in_thread
 from aionode.bag._losses import LOSSES, losses_from
@@ -17,7 +17,7 @@ from aionode.clock import Duration, Time
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator, Iterable, Iterator
+    from collections.abc import AsyncIterator, Callable, Iterable, Iterator
     from collections.abc import Set as AbstractSet
     from os import PathLike
     from types import TracebackType
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from aionode.bag._source import Source
 
 __all__ = ["Bag", "Records", "in_order", "open"]
+
+T = TypeVar("T")
 
 BATCH: Final = 256
 """How many records an async iteration reads at once, in a thread."""
@@ -114,6 +116,16 @@ class Bag:
         """How long it is from the first message to the last."""
         return Duration(nanoseconds=self.end_ns - self.start_ns)
 
+    @property
+    def files(self) -> list[tuple[int, str]]:
+        """Its files in order of time, each after the time of its first message in nanoseconds."""
+        if len(self._sources) == 1 and self.metadata.get("files"):
+            return sorted(
+                (int(each["starting_time"]["nanoseconds_since_epoch"]), str(each["path"]))
+                for each in self.metadata["files"]
+            )
+        return sorted((each.start_ns, each.path.name) for each in self._sources)
+
     def read(
         self,
         topics: Iterable[str] | str | None = None,
@@ -184,18 +196,18 @@ class Records:
             BagError: a file is damaged.
         """
         records = iter(self)
-        while batch := await run_in_thread(next_batch, records):
+        while batch := await run_in_thread(next_batch, records, lambda record: len(record.raw)):
             for record in batch:
                 yield record
 
 
-def next_batch(records: Iterator[Record]) -> list[Record]:
-    """Return the next records, as many as one call should read."""
-    batch: list[Record] = []
+def next_batch(records: Iterator[T], size_of: Callable[[T], int]) -> list[T]:
+    """Return the next records, as many as one call should read, by their sizes in bytes."""
+    batch: list[T] = []
     size = 0
     for record in islice(records, BATCH):
         batch.append(record)
-        size += len(record.raw)
+        size += size_of(record)
         if size >= BATCH_BYTES:
             break
     return batch

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 from contextlib import AsyncExitStack, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -10,17 +11,19 @@ from typing import TYPE_CHECKING, Any, Final, Self
 from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.bag._bag import next_batch, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._copy import merged_records
+from aionode.bag._player_files import FilesInPlay, in_order_sent
+from aionode.bag._player_requests import SOURCES, RequestSender
 from aionode.bag._player_services import serve_player
 from aionode.bag._record import MOST_NS, time_of
 from aionode.bag._selection import Selection
 from aionode.clock import Duration
-from aionode.errors import DecodeError, InterfaceNotFoundError
+from aionode.errors import BagError, DecodeError, InterfaceNotFoundError
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMessage
 from aionode.node import Node
 from aionode.qos import QoSProfile
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
     from os import PathLike
     from types import TracebackType
 
@@ -56,15 +59,25 @@ class Player:
         remap: New names of topics, by the recorded ones.
         clock_hz: How often ``/clock`` is published, in Hz; 0 for never. That of the bag is left out
             then.
+        clock_topics: The topics with whose messages ``/clock`` is published; ``*`` for all.
         qos: Profiles of publishers by topic, in place of the recorded ones.
         start_paused: Whether it begins paused.
+        in_order_sent: Whether messages are played in the order and at the times at which they were
+            published, not received; within 1000 messages, as in rosbag2.
+        send_requests: Of which kinds recorded requests are sent as by a client, in place of
+            publishing their events: ``service``, ``action``.
+        requests_source: Whose events tell of them: ``service_introspection`` for those of the
+            servers, or ``client_introspection``.
+        wait_acked_sec: How many seconds the end of `play` waits at most until messages are handed
+            over, as reliable subscriptions demand; 0 for no limit, None for no wait.
 
     Attributes:
         node: Its node.
         bags: The bags.
+        played: How many messages it has published.
 
     Raises:
-        ValueError: the rate is not positive.
+        ValueError: the rate is not positive, or there is no such source of requests.
     """
 
     def __init__(
@@ -82,12 +95,20 @@ class Player:
         selection: Selection | None = None,
         remap: Mapping[str, str] | None = None,
         clock_hz: float = 0.0,
+        clock_topics: Collection[str] = (),
         qos: Mapping[str, QoSProfile] | None = None,
         start_paused: bool = False,
+        in_order_sent: bool = False,
+        send_requests: Collection[str] = (),
+        requests_source: str = "service_introspection",
+        wait_acked_sec: float | None = None,
     ) -> None:
         is_one = isinstance(path, str | Path) or hasattr(path, "__fspath__")
         self._paths: Any = [path] if is_one else list(path)  # type: ignore[arg-type]
         self.bags: list[Bag] = []
+        self.played = 0
+        if requests_source not in SOURCES:
+            raise ValueError(f"requests_source: {requests_source!r}; use {' or '.join(SOURCES)}")
         self._context = context
         self._node_name = node_name
         self._anchor: tuple[int, int] | None = None  # of both clocks, in nanoseconds
@@ -101,6 +122,10 @@ class Player:
         self._selection = selection
         self._remap = dict(remap or {})
         self._clock_hz = clock_hz
+        self._clock_topics = frozenset(clock_topics)
+        self._in_order_sent = in_order_sent
+        self._sent_kinds, self._requests_source = frozenset(send_requests), requests_source
+        self._wait_acked_sec = wait_acked_sec
         self._qos = dict(qos or {})
         self._is_paused = start_paused
         self._is_playing = False
@@ -127,12 +152,17 @@ class Player:
             self.node = Node(self._node_name, context=self._context)
             await stack.enter_async_context(self.node)
             self._time_base = self.node.context.time_base
+            self._requests = RequestSender(
+                self.node, self._sent_kinds, self._requests_source, self._remap, self._warn
+            )
             for bag in self.bags:
                 for topic in bag.connections:
                     self._publisher_of(topic)
+            self._files = FilesInPlay(self.node, self.bags)
             self._position_ns = self._start_ns
-            if self._clock_hz:
+            if self._tells_time:
                 self._clock = self.node.create_publisher(ClockMessage, CLOCK_TOPIC, 1)
+            if self._clock_hz:
                 self.node.create_timer(1 / self._clock_hz, self._tell_time)
             serve_player(self.node, self)
             self._stack = stack.pop_all()
@@ -216,11 +246,14 @@ class Player:
             while True:
                 await self._play_from(start_ns, end_ns)
                 if self._is_stopped or not self._loop:
-                    return True
+                    break
                 await checkpoint()
+            if not self._is_stopped:
+                await self._hand_over()
         finally:
             self._is_playing = False
             self._finish_steps()
+        return True
 
     def pause(self) -> None:
         """Stop the time of the recording until `resume`."""
@@ -324,6 +357,10 @@ class Player:
             if alarm is not None:
                 alarm.cancel()
 
+    @property
+    def _tells_time(self) -> bool:
+        return bool(self._clock_hz or self._clock_topics)
+
     def _tell_time(self) -> None:
         self._clock.publish(ClockMessage(clock=self.time.to_msg()))
 
@@ -335,35 +372,60 @@ class Player:
         self._set_anchor(start_ns)
         at_ns: int | None = start_ns
         while at_ns is not None and not self._is_stopped:
-            records = self._records(at_ns, end_ns)
-            at_ns = await self._play_records(records)
+            self._files.go_to(at_ns)
+            at_ns = await self._play_records(self._records(at_ns, end_ns))
             if at_ns is not None:
                 self._set_anchor(at_ns)
 
-    def _records(self, start_ns: int, end_ns: int) -> Iterator[Record]:
-        """Return the records that are played, in order."""
+    def _records(self, start_ns: int, end_ns: int) -> Iterator[tuple[int, Record]]:
+        """Return the records that are played, in order, each after its time."""
         start, end = time_of(start_ns), None if end_ns == MOST_NS else time_of(end_ns)
-        return merged_records(self.bags, self._selection, start, end)
+        records = merged_records(self.bags, self._selection, start, end)
+        if self._in_order_sent:
+            return in_order_sent(records)
+        return ((record.time_ns, record) for record in records)
 
-    async def _play_records(self, records: Iterator[Record]) -> int | None:
-        """Publish records at their times; return where to go on, or None at their end."""
+    async def _play_records(self, records: Iterator[tuple[int, Record]]) -> int | None:
+        """Publish records at their times; return where to go on, or None at their end.
+
+        Raises:
+            BagError: a file is damaged.
+        """
         async with asyncio.TaskGroup() as tasks:
-            reading = tasks.create_task(run_in_thread(next_batch, records))
+            reading = tasks.create_task(run_in_thread(batch_or_error, records))
             try:
-                while batch := await reading:
-                    reading = tasks.create_task(run_in_thread(next_batch, records))
-                    turn_ends_ns = self._steady_ns() + SLICE_NS
-                    for record in batch:
-                        if not await self._is_due(record.time_ns):
-                            seek_ns, self._seek_ns = self._seek_ns, None
-                            return seek_ns
-                        self._publish(record)
-                        if self._steady_ns() >= turn_ends_ns:
-                            await checkpoint()
-                            turn_ends_ns = self._steady_ns() + SLICE_NS
+                while isinstance(batch := await reading, list) and batch:
+                    reading = tasks.create_task(run_in_thread(batch_or_error, records))
+                    if not await self._publish_batch(batch):
+                        seek_ns, self._seek_ns = self._seek_ns, None
+                        return seek_ns
             finally:
                 reading.cancel()
+        if isinstance(batch, BagError):
+            raise batch  # here, where no group is made of it
         return None
+
+    async def _publish_batch(self, batch: list[tuple[int, Record]]) -> bool:
+        """Publish records at their times; return False if it was stopped or has to seek."""
+        turn_ends_ns = self._steady_ns() + SLICE_NS
+        for time_ns, record in batch:
+            if not await self._is_due(time_ns):
+                return False
+            self._publish(record)
+            if self._steady_ns() >= turn_ends_ns:
+                await checkpoint()
+                turn_ends_ns = self._steady_ns() + SLICE_NS
+        return True
+
+    async def _hand_over(self) -> None:
+        """Wait until what was published and asked has arrived, as far as that is wanted."""
+        await self._requests.drain()
+        if self._wait_acked_sec is not None:
+            publishers = [each for each in self._publishers.values() if each is not None]
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(self._wait_acked_sec or None):
+                    for publisher in publishers:
+                        await publisher.drain()
 
     async def _is_due(self, time_ns: int) -> bool:
         """Wait until a time of the recording; return False if it was stopped or has to seek."""
@@ -390,11 +452,17 @@ class Player:
             self._stepped.set_result(None)
 
     def _publish(self, record: Record) -> None:
-        publisher = self._publishers.get(record.info.key)
-        if publisher is None:
-            return
+        if record.time_ns >= self._files.next_ns:
+            self._files.pass_to(record.time_ns)
+        if record.topic in self._clock_topics or "*" in self._clock_topics:
+            self._clock.publish(ClockMessage(clock=record.time.to_msg()))
         try:
-            publisher.publish(record.raw)
+            publisher = self._publishers.get(record.info.key)
+            if publisher is not None:
+                publisher.publish(record.raw)
+                self.played += 1
+            elif self._sent_kinds:
+                self._requests.send(record)
         except DecodeError as error:
             self._publishers[record.info.key] = None
             self._warn(f"{record.topic} is no longer played: {error}")
@@ -403,7 +471,10 @@ class Player:
         """Create the publisher of a topic, if that is wanted and its type is known."""
         if self._selection is not None and not self._selection.wants(topic.name, topic.type):
             return
-        if (self._clock_hz and topic.name == CLOCK_TOPIC) or topic.key in self._publishers:
+        if (self._tells_time and topic.name == CLOCK_TOPIC) or topic.key in self._publishers:
+            return
+        if self._requests.takes(topic):
+            self._publishers[topic.key] = None
             return
         try:
             profile = self._qos.get(topic.name) or self._offered(topic)
@@ -426,3 +497,11 @@ class Player:
 
     def _warn(self, text: str) -> None:
         self.node.get_logger().warning(text)
+
+
+def batch_or_error(records: Iterator[tuple[int, Record]]) -> list[tuple[int, Record]] | BagError:
+    """Return the next records, or why they cannot be read."""
+    try:
+        return next_batch(records, lambda item: len(item[1].raw))
+    except BagError as error:
+        return error

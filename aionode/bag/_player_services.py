@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
-from aionode.bag._recorder_services import answered
+from aionode.bag._recorder_services import answered, offered
 from aionode.clock import Duration, Time
 from aionode.interfaces.rosbag2_interfaces import srv as bag_srv
 
@@ -136,5 +137,10 @@ def serve_player(node: Node, player: Playing) -> None:  # noqa: C901  # a handle
         "burst": (bag_srv.Burst, burst),
         "play": (bag_srv.Play, play),
     }
-    for name, (srv_type, handler) in handlers.items():
-        node.create_service(srv_type, f"~/{name}", handler, concurrent=True)
+    offered(
+        node,
+        [
+            partial(node.create_service, srv_type, f"~/{name}", handler, concurrent=True)
+            for name, (srv_type, handler) in handlers.items()
+        ],
+    )

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 from aionode.clock import Time
-from aionode.errors import AionodeError
+from aionode.errors import AionodeError, TransportError
 from aionode.interfaces.rosbag2_interfaces import msg as bag_msg
 from aionode.interfaces.rosbag2_interfaces import srv as bag_srv
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
     from aionode.node import Node
 
-__all__ = ["RecorderServices", "answered"]
+__all__ = ["RecorderServices", "answered", "offered"]
 
 NOT_RECORDING: Final = 1
 """The return code of ``~/split_bagfile`` while no bag is open, as of every failure of others."""
@@ -80,7 +81,6 @@ class RecorderServices:
     def __init__(self, recorder: Recording, report_hz: float) -> None:
         self._recorder = recorder
         self._node = node = recorder.node
-        self._splits = node.create_publisher(bag_msg.WriteSplitEvent, "events/write_split", 10)
         self._reported: dict[str, tuple[int, int]] = {}
         handlers: dict[str, tuple[Any, Callable[[Any, Any], Any]]] = {
             "pause": (bag_srv.Pause, doing(recorder.pause)),
@@ -94,15 +94,26 @@ class RecorderServices:
             "stop_discovery": (bag_srv.StopDiscovery, doing(recorder.stop_discovery)),
             "is_discovery_running": (bag_srv.IsDiscoveryRunning, self._tell_discovery),
         }
-        for name, (srv_type, handler) in handlers.items():
-            node.create_service(srv_type, f"~/{name}", handler)
-        if report_hz:
-            topic = "events/rosbag2_messages_lost"
-            self._losses = node.create_publisher(bag_msg.MessagesLostEvent, topic, 10)
+        losses, splits = "events/rosbag2_messages_lost", "events/write_split"
+        make = node.create_publisher
+        self._splits, self._losses, *_ = offered(
+            node,
+            [
+                partial(make, bag_msg.WriteSplitEvent, splits, 10),
+                partial(make, bag_msg.MessagesLostEvent, losses, 10),
+                *(
+                    partial(node.create_service, srv_type, f"~/{name}", handler)
+                    for name, (srv_type, handler) in handlers.items()
+                ),
+            ],
+        )
+        if report_hz and self._losses is not None:
             node.create_timer(1 / report_hz, self._tell_losses)
 
     def tell_split(self, closed: str, opened: str) -> None:
         """Publish that the recorder went on to its next file."""
+        if self._splits is None:
+            return
         self._splits.publish(
             bag_msg.WriteSplitEvent(
                 closed_file=closed,
@@ -127,7 +138,7 @@ class RecorderServices:
             for name, (transport, recorder) in now.items()
             if (transport, recorder) != before.get(name, (0, 0))
         ]
-        if lost:
+        if lost and self._losses is not None:
             self._losses.publish(
                 bag_msg.MessagesLostEvent(
                     node_name=self._node.get_fully_qualified_name(),
@@ -192,6 +203,24 @@ class RecorderServices:
         else:
             response.success = True
         return response
+
+
+def offered(node: Node, makes: Sequence[Callable[[], Any]]) -> list[Any]:
+    """Return what these calls create; None for types that the ROS in use does not have.
+
+    A recorder or player over an installed ROS 2 without rosbag2 works all the same.
+    """
+    made: list[Any] = []
+    missing: TransportError | None = None
+    for make in makes:
+        try:
+            made.append(make())
+        except TransportError as error:
+            missing = missing or error
+            made.append(None)
+    if missing is not None:
+        node.get_logger().warning(f"some services and topics of rosbag2 are not here: {missing}")
+    return made
 
 
 def when(request: Any, what: str) -> tuple[Time | None, int, str]:

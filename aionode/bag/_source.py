@@ -47,11 +47,13 @@ class Source(Protocol):
     """One file of a bag, or one bag that another library reads.
 
     Attributes:
+        path: Where it is.
         topics: Its topics, with counts.
         start_ns: The time of its first message; `MOST_NS` without one.
         end_ns: The time of its last message; 0 without one.
     """
 
+    path: Path
     topics: list[TopicInfo]
     start_ns: int
     end_ns: int
@@ -96,7 +98,7 @@ class McapSource:
         self._open = ExitStack()
         try:
             self._file = self._open.enter_context(plain_file(path, self._open))
-            self._reader = make_reader(self._file)
+            self._reader = make_reader(self._file, validate_crcs=True)
             summary = self._reader.get_summary()
             if summary is None or summary.statistics is None:
                 raise BagError(str(path), "the file has no summary", CHECK)  # noqa: TRY301  # closed below

@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import asyncio
 from pathlib import Path
+from typing import Any
 
 import pytest
+from mcap.reader import make_reader
 
 from aionode import bag
+from aionode.action import ActionServer, CancelResponse, ServerGoalHandle
 from aionode.bag._writer import topic_info
 from aionode.clock import ClockType, Duration, Time
+from aionode.endpoints.service_introspection import ServiceIntrospectionState
+from aionode.errors import BagError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.rosbag2_interfaces.msg import ReadSplitEvent
 from aionode.interfaces.rosbag2_interfaces.srv import Burst, GetRate, PlayNext, SetRate
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import String
@@ -209,3 +217,143 @@ async def test_a_rate_that_is_not_positive_is_refused(tmp_path: Path) -> None:
         assert not (await client.call(SetRate.Request(rate=-1.0))).success
         asked = node.create_client(GetRate, "/rosbag2_player/get_rate")
         assert (await asked.call(GetRate.Request())).rate == 1
+
+
+async def test_requests_are_sent_as_by_their_client(tmp_path: Path) -> None:
+    """A recording asks the services and actions of today what the robot's nodes once asked."""
+    contents = ServiceIntrospectionState.CONTENTS
+    sums: list[int] = []
+    orders: list[int] = []
+    cancels: list[int] = []
+    waiting = asyncio.Event()
+
+    def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
+        sums.append(request.a + request.b)
+        return response
+
+    async def count(goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+        orders.append(goal.request.order)
+        if goal.request.order == 9:
+            waiting.set()
+            await asyncio.Event().wait()  # until it is cancelled
+        goal.succeed()
+        return Fibonacci.Result()
+
+    def cancel(_: object) -> CancelResponse:
+        cancels.append(1)
+        return CancelResponse.ACCEPT
+
+    async with local_context() as context, Node("robot", context=context) as node:
+        service = node.create_service(AddTwoInts, "add", add)
+        server = ActionServer(node, Fibonacci, "count", count, cancel_callback=cancel)
+        for entity in (service, server):
+            entity.configure_introspection(node.get_clock(), 10, contents)
+        client = node.create_client(AddTwoInts, "add")
+        action = node.create_action_client(Fibonacci, "count")
+        wanted = bag.Selection(every=("service", "action"))
+        async with bag.Recorder(tmp_path / "run", selection=wanted, context=context):
+            await client.call(AddTwoInts.Request(a=2, b=3))
+            await (await action.send_goal(Fibonacci.Goal(order=4))).result()
+            goal = await action.send_goal(Fibonacci.Goal(order=9))
+            await waiting.wait()
+            await goal.cancel()
+            await settle()
+        assert (sums, orders, cancels) == ([5], [4, 9], [1])
+        events: list[object] = []
+        node.create_subscription(AddTwoInts.Event, "/add/_service_event", events.append, 10)
+        async with bag.Player(
+            tmp_path / "run", context=context, send_requests=("service", "action"), rate=100
+        ) as player:
+            assert await player.play()
+        await settle()
+        assert (sums, orders, cancels) == ([5, 5], [4, 9, 4, 9], [1, 1])
+        assert len(events) == 2, "those of the server itself"
+
+
+async def test_a_request_that_nobody_serves_is_named(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It is not kept for a server that comes later, as its time is over then."""
+    event = AddTwoInts.Event(request=[AddTwoInts.Request(a=2)])
+    event.info.event_type = 1
+    with bag.BagWriter(tmp_path / "run") as out:
+        out.write_message("/add/_service_event", event, Time(seconds=1))
+    async with (
+        local_context() as context,
+        bag.Player(tmp_path / "run", context=context, send_requests=("service",)) as player,
+    ):
+        assert await player.play()
+    assert [each.message for each in caplog.records if "nobody serves it" in each.message]
+
+
+async def test_messages_are_played_in_the_order_in_which_they_were_sent(tmp_path: Path) -> None:
+    """Over a slow network, messages arrive in another order."""
+    with bag.BagWriter(tmp_path / "run") as out:
+        number = out.add_topic(topic_info("/words", String))
+        for text, received_s, sent_s in (("b", 10, 7), ("a", 11, 5), ("c", 12, 8)):
+            raw = cdr.encode(String(data=text))
+            out.write(number, received_s * 10**9, raw, publish_time_ns=sent_s * 10**9)
+    clock = ManualClock()
+    async with local_context(clock=clock) as context, Node("ear", context=context) as node:
+        ear = Listener(node, clock)
+        async with (
+            bag.Player(tmp_path / "run", context=context, in_order_sent=True) as player,
+            asyncio.TaskGroup() as tasks,
+        ):
+            playing = tasks.create_task(player.play())
+            await reading()
+            await clock.advance(1)
+            assert await playing
+        assert ear.texts == ["a", "b", "c"]
+        assert player.played == 3
+
+
+async def test_the_next_file_is_told(tmp_path: Path) -> None:
+    """On rosbag2's topic; after seeking, too."""
+    with bag.BagWriter(tmp_path / "run", max_messages=1) as out:
+        for second in (1, 2, 3):
+            out.write_message("/words", String(data=str(second)), at(second))
+    async with local_context() as context, Node("ear", context=context) as node:
+        told: list[ReadSplitEvent] = []
+        node.create_subscription(ReadSplitEvent, "/events/read_split", told.append, 10)
+        async with bag.Player(tmp_path / "run", context=context, rate=1000) as player:
+            assert await player.play()
+            await settle()
+            assert [(event.closed_file, event.opened_file) for event in told] == [
+                ("run_0.mcap", "run_1.mcap"),
+                ("run_1.mcap", "run_2.mcap"),
+            ]
+            assert await player.play(Duration(seconds=1))
+            await settle()
+            assert len(told) == 3
+
+
+async def test_the_clock_is_published_with_the_messages_of_a_topic(tmp_path: Path) -> None:
+    """Nodes in simulated time then see no time between the messages."""
+    record(tmp_path / "run", "a", "b")
+    async with local_context() as context, Node("ear", context=context) as node:
+        times: list[int] = []
+        node.create_subscription(Clock, "/clock", lambda msg: times.append(msg.clock.sec), 10)
+        async with bag.Player(
+            tmp_path / "run", context=context, clock_topics=["/words"], rate=100, wait_acked_sec=5
+        ) as player:
+            assert await player.play()
+        await settle()
+        assert times == [100, 101]
+
+
+async def test_a_damaged_file_ends_playing_with_its_error(tmp_path: Path) -> None:
+    """It is the error of `open` and `read`, and no group of errors."""
+    record(tmp_path / "run", "a", "b")
+    file = tmp_path / "run" / "run_0.mcap"
+    data = bytearray(file.read_bytes())
+    with file.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    chunk = summary.chunk_indexes[0]
+    end = chunk.chunk_start_offset + chunk.chunk_length
+    data[end - 20 : end] = bytes(20)
+    file.write_bytes(data)
+    async with local_context() as context, bag.Player(tmp_path / "run", context=context) as player:
+        with pytest.raises(BagError, match="aionode bag check"):
+            await player.play()

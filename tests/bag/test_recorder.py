@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
+import os
 import resource
+import shlex
 import signal
 import subprocess
 import sys
@@ -230,8 +233,29 @@ def test_a_limit_of_files_without_a_limit_of_one_file_is_refused() -> None:
         bag.Recorder("run", max_files=2, context=Context(transport="local"))
 
 
-def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(tmp_path: Path) -> None:
-    """The file may grow to 300 kB; what does not fit is counted as lost, and one line says so."""
+def mount_in(folder: Path) -> list[str]:
+    """Return how to run a command with a small disk, which is full after 300 kB, as a folder."""
+    folder.mkdir()
+    mount = f"mount -t tmpfs -o size=300k tmpfs {shlex.quote(str(folder))}"
+    tried = subprocess.run(
+        ["unshare", "--mount", "sh", "-c", mount], capture_output=True, check=False
+    )
+    if tried.returncode:
+        pytest.skip(f"no disk can be mounted here: {tried.stderr.decode()}")
+    return ["unshare", "--mount", "sh", "-c", f'{mount} && exec "$0" "$@"']
+
+
+def limit_files() -> None:
+    """Let the files of this process be no larger than 300 kB."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+
+
+@pytest.mark.parametrize("disk", ["a limit", "a disk"])
+def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(
+    disk: str, tmp_path: Path
+) -> None:
+    """What does not fit into 300 kB is counted as lost, and one line says so."""
     program = textwrap.dedent("""
         import asyncio, os, sys
         from aionode import bag
@@ -250,29 +274,62 @@ def test_a_full_disk_leaves_a_bag_with_its_summary_and_exact_counts(tmp_path: Pa
                             recorder.write("/x", String(data=text), time=Time(nanoseconds=at + 1))
                             await asyncio.sleep(0.0001)
                 except BagWriteError:
-                    print("stats", *recorder.stats["/x"])
+                    _, _, lost = recorder.stats["/x"]
+                    with bag.open(sys.argv[1]) as run:
+                        there = len(list(run.read()))
+                        assert run.message_count == there == recorder.stats["/x"].recorded
+                        assert run.losses["/x"].in_recorder == lost
+                    print("stats", there, lost)
 
         asyncio.run(main())
     """)
-
-    def limit() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, 300_000))
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-
+    folder = tmp_path / "disk"
+    before = mount_in(folder) if disk == "a disk" else []
     done = subprocess.run(
-        [sys.executable, "-c", program, str(tmp_path / "run")],
-        preexec_fn=limit,  # no threads here
+        [*before, sys.executable, "-c", program, str(folder / "run")],
+        preexec_fn=None if before else limit_files,  # no threads here
         capture_output=True,
         text=True,
         timeout=50,
         check=True,
     )
-    word, recorded, _, lost = done.stdout.split()[-4:]
+    word, recorded, lost = done.stdout.split()[-3:]
     assert word == "stats"
+    assert int(recorded) > 0
     assert int(recorded) + int(lost) == 2000
-    with bag.open(tmp_path / "run") as run:
-        assert run.message_count == len(list(run.read())) == int(recorded) > 0
     assert done.stderr.count("cannot be written any further") == 1
+
+
+async def test_a_power_cut_takes_only_what_came_after_the_last_sync(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file is as long then as when the disk last confirmed it, or goes on with zeros."""
+    synced = asyncio.Event()
+    loop = asyncio.get_running_loop()
+    sizes: list[int] = []
+
+    def sync(fd: int) -> None:
+        sizes.append(os.fstat(fd).st_size)
+        loop.call_soon_threadsafe(synced.set)
+
+    monkeypatch.setattr(os, "fdatasync", sync)
+    monkeypatch.setattr("aionode.bag._writer_thread.SYNC_NS", 0)
+    async with (
+        local_context() as context,
+        bag.Recorder(tmp_path / "run", topics=[], context=context) as recorder,
+    ):
+        for text in "abc":
+            recorder.write("/words", String(data=text))
+        await synced.wait()
+        size = sizes[0]
+        recorder.write("/words", String(data="late"))
+    data = (tmp_path / "run" / "run_0.mcap").read_bytes()
+    for tail in (b"", bytes(len(data) - size)):
+        (tmp_path / "run" / "run_0.mcap").write_bytes(data[:size] + tail)
+        (found,) = bag.check(tmp_path / "run")
+        assert found.repaired
+        assert found.messages > 0
+        assert texts(tmp_path / "run") == list("abc")[: found.messages]
 
 
 def test_a_recorder_that_is_killed_loses_only_what_is_not_on_the_disk_yet(tmp_path: Path) -> None:

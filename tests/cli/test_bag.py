@@ -133,3 +133,14 @@ def test_a_missing_extra_is_one_line_that_says_how_to_install_it(
     assert main(["bag", "info", run]) == 1
     text = capsys.readouterr().err
     assert text == "aionode.bag: mcap is not installed; pip install 'aionode[bag]'\n"
+
+
+def test_a_folder_that_cannot_be_written_is_one_clear_line(
+    tmp_path: Path, capsys: Captured
+) -> None:
+    """Before anything is recorded. Below a file, not even root can make a folder."""
+    (tmp_path / "file").touch()
+    assert main(["bag", "record", "--all", "-o", str(tmp_path / "file" / "run")]) == 1
+    text = capsys.readouterr().err
+    assert text.count("\n") == 1
+    assert f"{tmp_path / 'file' / 'run'}: cannot be written" in text
