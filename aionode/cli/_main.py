@@ -31,6 +31,7 @@ NOUNS = {
     "bag": "Record, play, inspect, repair and compare bags.",
     "completion": "Print the completion script of a shell.",
     "doctor": "Find out why endpoints do not communicate.",
+    "gateway": "Serve the robot to browsers, programs and apps.",
     "interface": "Show message, service and action types.",
     "launch": "Start processes and nodes as a launch file says.",
     "lifecycle": "Show and change the states of managed nodes.",

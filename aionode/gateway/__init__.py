@@ -13,11 +13,25 @@ them may do is said in one file; see `Policy`.
 
 from __future__ import annotations
 
-from aionode.gateway._clients import GatewayStats
-from aionode.gateway._gateway import Gateway
-from aionode.gateway._identity import Credentials, Identity
-from aionode.gateway._policy import Decision, FieldLimit, LeaseRule, Limits, Policy, Rule, Verb, Who
-from aionode.gateway._session import Session
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, Final
+
+if TYPE_CHECKING:
+    from aionode.gateway._clients import GatewayStats
+    from aionode.gateway._gateway import Gateway
+    from aionode.gateway._identity import Credentials, Identity
+    from aionode.gateway._policy import (
+        Decision,
+        FieldLimit,
+        LeaseRule,
+        Limits,
+        Policy,
+        Rule,
+        Tls,
+        Verb,
+        Who,
+    )
+    from aionode.gateway._session import Session
 
 __all__ = [
     "Credentials",
@@ -31,6 +45,39 @@ __all__ = [
     "Policy",
     "Rule",
     "Session",
+    "Tls",
     "Verb",
     "Who",
 ]
+
+PLACES: Final = {
+    "Credentials": "_identity",
+    "Gateway": "_gateway",
+    "GatewayStats": "_clients",
+    "Identity": "_identity",
+    "Session": "_session",
+}
+"""The module of each public name that is not in that of the policy."""
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name on first use: a policy needs no web server.
+
+    Raises:
+        AttributeError: there is no such name.
+        ImportError: the extra ``gateway`` is not installed.
+    """
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    try:
+        value = getattr(import_module(f"{__name__}.{PLACES.get(name, '_policy')}"), name)
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith("aionode"):
+            raise
+        missing = (error.name or "a module").partition(".")[0]
+        raise ModuleNotFoundError(
+            f"aionode.gateway: {missing} is not installed; pip install 'aionode[gateway]'",
+            name=error.name,
+        ) from error
+    globals()[name] = value
+    return value

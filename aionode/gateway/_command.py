@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import S_TO_NS
 from aionode.errors import AionodeError, LeaseExpiredError, RefusedError
@@ -20,6 +20,13 @@ if TYPE_CHECKING:
 __all__ = ["Commands", "Holder", "check_age"]
 
 
+class Owner(Protocol):
+    """What commands a topic: a session."""
+
+    def doubt(self) -> None:
+        """Take that the client was silent for the time to live."""
+
+
 class Holder:
     """A client that commands a topic, from its first command until its lease ends.
 
@@ -29,7 +36,7 @@ class Holder:
         rule: How it publishes.
     """
 
-    def __init__(self, owner: object, identity: Identity, rule: LeaseRule) -> None:
+    def __init__(self, owner: Owner, identity: Identity, rule: LeaseRule) -> None:
         self.owner = owner
         self.identity = identity
         self.rule = rule
@@ -75,7 +82,7 @@ class Commands:
     async def publish(
         self,
         publisher: Publisher[Any],
-        owner: object,
+        owner: Owner,
         identity: Identity,
         rule: LeaseRule,
         message: Any,
@@ -121,7 +128,7 @@ class Commands:
                     holder.entered.set_result(None)
                 await holder.leaving.wait()
         except LeaseExpiredError:
-            pass  # the holder was silent: the stop was sent
+            holder.owner.doubt()  # it was silent: the stop was sent
         except AionodeError as error:
             if not holder.entered.done():
                 holder.entered.set_exception(error)

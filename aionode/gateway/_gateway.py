@@ -21,7 +21,7 @@ from aionode.gateway._clients import Clients
 from aionode.gateway._guard import Guard
 from aionode.gateway._identity import parsed_address
 from aionode.gateway._policy import Policy
-from aionode.gateway._robot import Robot
+from aionode.gateway._robot import Bucket, Robot
 from aionode.gateway._server import Server, server_config
 
 if TYPE_CHECKING:
@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from starlette.routing import BaseRoute
     from starlette.websockets import WebSocket
 
+    from aionode.clock import Clock
     from aionode.gateway._robot import Ask
+    from aionode.gateway._session import Session
     from aionode.node import Node
 
 __all__ = ["Gateway"]
@@ -146,7 +148,22 @@ class Gateway(Clients):
             "rosbridge", _rosbridge.serve
         )  # fmt: skip
         async with self.session_of(websocket.scope, kind) as session:
-            await until(session.ended, serve(websocket, session))
+            session.connection = websocket.scope["state"]["aionode_connection"]
+            bucket = Bucket(self._policy.limits.frames_per_sec, self.robot.time_base.steady_ns)
+            websocket._receive = paced(websocket._receive, bucket, self.robot.clock)
+            lost = self._watch(session)
+            await until(session.ended, serve(websocket, session), lost)
+
+    async def _watch(self, session: Session) -> None:
+        """End the session of a client that has goals, and gives no sign any more."""
+        while True:
+            limit = self._policy.limits.client_lost_sec
+            await self.robot.clock.sleep(limit / 3)
+            if session.has_goals and session.connection is not None:
+                session.connection.ping()
+                if session.connection.silent_sec() > limit:
+                    session.ended.set()
+                    session.connection.abort()
 
     # The policy file
 
@@ -174,8 +191,32 @@ async def page(_request: Request) -> Response:
     return PlainTextResponse("aionode gateway\n")
 
 
-async def until(event: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
-    """Run work until it ends, or an event cancels it; its exception is raised as it is."""
+def paced(receive: Any, bucket: Bucket, clock: Clock) -> Any:
+    """Return a `receive` of WebSockets that takes no more frames than a rate allows.
+
+    A client that sends faster is not read meanwhile, and so has to wait.
+    """
+
+    async def receive_paced() -> Any:
+        message = await receive()
+        if message["type"] == "websocket.receive":
+            while wait_sec := bucket.wait_sec():
+                await clock.sleep(wait_sec)
+        return message
+
+    return receive_paced
+
+
+async def until(
+    event: asyncio.Event, work: Coroutine[Any, Any, None], *others: Coroutine[Any, Any, None]
+) -> None:
+    """Run work until it ends, or an event cancels it; its exception is raised as it is.
+
+    Args:
+        event: Cancels it.
+        work: What is run.
+        others: What runs beside it, until it ends.
+    """
     error: Exception | None = None
 
     async def run() -> None:
@@ -188,9 +229,10 @@ async def until(event: asyncio.Event, work: Coroutine[Any, Any, None]) -> None:
     async with asyncio.TaskGroup() as tasks:
         running = tasks.create_task(run())
         waiting = tasks.create_task(event.wait())
+        beside = [tasks.create_task(other) for other in others]
         await asyncio.wait([running, waiting], return_when=asyncio.FIRST_COMPLETED)
-        running.cancel()
-        waiting.cancel()
+        for task in (running, waiting, *beside):
+            task.cancel()
     if error is not None:
         raise error
 

@@ -541,6 +541,10 @@ def is_within(number: Any, limit: FieldLimit, path: str) -> bool:
 
 def clamped(value: Any, limit: FieldLimit) -> Any:
     """Return a number or an array with each number within its limits."""
+    if hasattr(value, "dtype") and isinstance(value, Iterable):
+        array: Any = value.copy()  # type: ignore[attr-defined]  # an array of numpy
+        array[:] = [clamped(number, limit) for number in array.tolist()]
+        return array
     if isinstance(value, Iterable):
         return [clamped(number, limit) for number in value]
     if limit.min <= value <= limit.max:

@@ -72,13 +72,11 @@ class HttpConnection(H11Protocol):
 
 
 class WebSocketConnection(WebSocketsSansIOProtocol):
-    """A WebSocket that knows when the last bytes of its client arrived.
+    """A WebSocket that says how long its client is silent, and whether it answers now."""
 
-    Attributes:
-        heard_s: That time, in seconds of the loop's clock.
-    """
-
-    heard_s: float = 0.0
+    _heard_s: float = 0.0
+    _pings: int = 0
+    _on_pong: tuple[bytes, Callable[[], None]] | None = None
 
     def handle_connect(self, event: Any) -> None:
         """Have the application find this connection."""
@@ -87,8 +85,33 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
 
     def data_received(self, data: bytes) -> None:
         """Note the time."""
-        self.heard_s = self.loop.time()
+        self._heard_s = self.loop.time()
         super().data_received(data)
+
+    def silent_sec(self) -> float:
+        """Return how long nothing has arrived, in seconds."""
+        return self.loop.time() - self._heard_s
+
+    def ping(self, answered: Callable[[], None] = lambda: None) -> None:
+        """Ask the client for a sign, and call `answered` with it: what comes then is no older."""
+        self._pings += 1
+        payload = b"aionode%d" % self._pings
+        self._on_pong = (payload, answered)
+        if not (self.close_sent or self.transport.is_closing()):
+            self.conn.send_ping(payload)
+            self.transport.write(b"".join(self.conn.data_to_send()))
+
+    def abort(self) -> None:
+        """Close the connection without a word, which nobody would read."""
+        self.transport.abort()
+
+    def handle_pong(self, event: Any) -> None:
+        """Take the answer to a ping."""
+        if self._on_pong is not None and bytes(event.data) == self._on_pong[0]:
+            answered, self._on_pong = self._on_pong[1], None
+            answered()
+        else:
+            super().handle_pong(event)
 
 
 def common_name(transport: asyncio.Transport) -> str:

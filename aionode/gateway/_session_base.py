@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from aionode.errors import InterfaceNotFoundError, RefusedError
 from aionode.gateway._outbox import Outbox
+from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
 from aionode.message import Message, from_builtins
 from aionode.names import is_hidden
 from aionode.parameter import Parameter
@@ -18,6 +19,19 @@ if TYPE_CHECKING:
     from aionode.gateway._robot import Robot
 
 __all__ = ["SessionBase", "as_message"]
+
+
+class Connection(Protocol):
+    """What a session knows of the connection of its client."""
+
+    def silent_sec(self) -> float:
+        """Return how long nothing has arrived, in seconds."""
+
+    def ping(self, answered: Callable[[], None] = ...) -> None:
+        """Ask the client for a sign, and call `answered` with it."""
+
+    def abort(self) -> None:
+        """Close the connection at once."""
 
 
 class SessionBase:
@@ -35,6 +49,8 @@ class SessionBase:
         self.outbox = Outbox(self._limits.queued_bytes)
         self._busy = 0
         self.refused = 0
+        self.connection: Connection | None = None
+        self._is_doubtful = False
 
     # The policy
 
@@ -123,6 +139,18 @@ class SessionBase:
             if (hidden or not is_hidden(name)) and self._sees(name, types)
         }
 
+    def doubt(self) -> None:
+        """Have commands refused until the client has answered a ping: it was silent for too long.
+
+        What a link that was cut delivers later was sent before that answer.
+        """
+        if self.connection is not None:
+            self._is_doubtful = True
+            self.connection.ping(self._trust)
+
+    def _trust(self) -> None:
+        self._is_doubtful = False
+
     # Types and names
 
     async def message_class(self, type_name: str) -> Any:
@@ -164,13 +192,23 @@ class SessionBase:
             raise RefusedError(name, f"the gateway's node remaps {full} once more")
         return full
 
-    def _known_type(self, name: str, kinds: Any, given: str | None, suffix: str = "") -> str:
-        """Return the type that is given, or that the graph knows of a name."""
-        if given:
-            return given
-        for endpoint in self._robot.node.graph.endpoints(*kinds, name=name):
+    def type_of(self, name: str, kind: Literal["topic", "service", "action"]) -> str:
+        """Return the type that the graph shows of a full name.
+
+        Raises:
+            InterfaceNotFoundError: no node has it.
+        """
+        place, suffix = name, ""
+        if kind == "action":
+            place, suffix = f"{name}/_action/feedback", "_FeedbackMessage"
+        kinds = SERVICE_KINDS if kind == "service" else TOPIC_KINDS
+        for endpoint in self._robot.node.graph.endpoints(*kinds, name=place):
             return endpoint.type_name.removesuffix(suffix)
-        raise InterfaceNotFoundError(name, problem="no node has it, so its type is not known")
+        raise InterfaceNotFoundError(name, problem=f"no node has this {kind}; give its type")
+
+    def steady_ns(self) -> int:
+        """Return the time of the steady clock in nanoseconds, for `arrived_ns` of `publish`."""
+        return self._robot.time_base.steady_ns()
 
 
 class Busy:

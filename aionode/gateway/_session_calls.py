@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import AionodeError, ServiceError
 from aionode.gateway._session_base import SessionBase, as_message
-from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
 from aionode.message import Message
 from aionode.parameter import Parameter
 
@@ -60,7 +59,7 @@ class SessionCalls(SessionBase):
         """
         service = self.service_name(service)
         self._decide_call(service, "")
-        cls = await self.service_class(self._known_type(service, SERVICE_KINDS, type_name))
+        cls = await self.service_class(type_name or self.type_of(service, "service"))
         request = as_message(cls.Request, values)
         verb, name = self._decide_call(service, cls.__ros_type__, request)
         decision = await self._allow(verb, name, cls.__ros_type__, request)
@@ -113,6 +112,11 @@ class SessionCalls(SessionBase):
 
     # Actions
 
+    @property
+    def has_goals(self) -> bool:
+        """Whether goals of the client have not ended."""
+        return bool(self._goals)
+
     @asynccontextmanager
     async def goal(
         self,
@@ -140,9 +144,7 @@ class SessionCalls(SessionBase):
         """
         action = self.topic_name(action)
         self.decide("goal", action, "")
-        feedback = f"{action}/_action/feedback"
-        found = self._known_type(feedback, TOPIC_KINDS, type_name, "_FeedbackMessage")
-        cls = await self.action_class(found)
+        cls = await self.action_class(type_name or self.type_of(action, "action"))
         goal = as_message(cls.Goal, values)
         decision = await self._allow("goal", action, cls.__ros_type__, goal)
         self._check_size("goal", action, decision, goal)

@@ -10,7 +10,6 @@ from aionode.clock import S_TO_NS, Duration
 from aionode.errors import AionodeError
 from aionode.gateway._command import check_age
 from aionode.gateway._session_base import SessionBase, as_message
-from aionode.graph import TOPIC_KINDS
 from aionode.message import Message
 from aionode.qos import DurabilityPolicy, QoSProfile
 
@@ -123,7 +122,7 @@ class SessionTopics(SessionBase):
         topic = self.topic_name(topic)
         self._count_one("subscriptions", len(self._subscribed), self._limits.subscriptions)
         self.decide("subscribe", topic, "")  # before anybody is asked for a type
-        message_class = await self.message_class(self._known_type(topic, TOPIC_KINDS, type_name))
+        message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
         self.decide("subscribe", topic, message_class.__ros_type__)
         subscribed = Subscribed(self, topic, message_class, frame, key, depth, min_period_sec)
         self._subscribed[subscribed] = None
@@ -145,7 +144,7 @@ class SessionTopics(SessionBase):
         if topic in self._published:
             return
         self._count_one("topics", len(self._published), self._limits.advertised)
-        message_class = await self.message_class(self._known_type(topic, TOPIC_KINDS, type_name))
+        message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
         decision = self.decide("publish", topic, message_class.__ros_type__)
         profile = COMMANDS if decision.lease is not None else qos or PUBLISHED
         node = self._robot.node
@@ -195,6 +194,10 @@ class SessionTopics(SessionBase):
             self._robot.commands.refuse_if_held(topic, self)
             publisher.publish(decision.message)
         else:
+            if self._is_doubtful:
+                raise self._refused(
+                    "publish", topic, "it may be from before the silence of the client", "too_old"
+                )
             now_ns = self._robot.node.get_clock().now().nanoseconds
             check_age(topic, message, lease, now_ns=now_ns, arrived_ns=arrived_ns,
                       time_base=self._robot.time_base)  # fmt: skip

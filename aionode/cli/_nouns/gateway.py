@@ -1,0 +1,86 @@
+"""``aionode gateway``: the robot for browsers, programs and apps."""
+
+from __future__ import annotations
+
+from contextlib import AsyncExitStack
+from typing import TYPE_CHECKING
+
+import click
+
+from aionode.cli._support.session import run_verb
+from aionode.errors import CommandError
+
+if TYPE_CHECKING:
+    from collections.abc import Awaitable, Callable
+
+    from aionode.cli._support.output import Output
+    from aionode.node import Node
+
+__all__ = ["gateway_command"]
+
+PORT = 9090
+"""The port of rosbridge, which its clients try first."""
+
+
+@click.group("gateway", invoke_without_command=True)
+@click.option(
+    "--host", default="127.0.0.1", show_default=True, metavar="ADDRESS",
+    help="Where to listen; other machines need a policy with tokens or certificates.",
+)  # fmt: skip
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=PORT, show_default=True,
+    help="Which port; 0 for a free one.",
+)  # fmt: skip
+@click.option(
+    "--policy", "path", metavar="FILE",
+    help="Who may do what, as TOML; it is read again when it changes.",
+)  # fmt: skip
+@click.option(
+    "--allow-write", is_flag=True,
+    help="Without a policy: this host may also publish, call, send goals and set parameters.",
+)  # fmt: skip
+@click.pass_context
+def gateway_command(
+    ctx: click.Context, host: str, port: int, path: str | None, allow_write: bool
+) -> None:
+    """Serve the robot to browsers, programs and apps.
+
+    Clients of rosbridge and Foxglove, HTTP and a page of its own share one port. Without --policy,
+    this host may read everything and write nothing.
+    """
+    if ctx.invoked_subcommand is not None:
+        return
+    if path is not None and allow_write:
+        raise click.UsageError("--allow-write is for a gateway without --policy: say it there", ctx)
+    run_verb(serving(path, allow_write, host, port), node_name="gateway", endless=True, busy=True,
+             asks=False)  # fmt: skip
+
+
+def serving(
+    path: str | None, allow_write: bool, host: str, port: int
+) -> Callable[[Node, Output], Awaitable[int | None]]:
+    """Return what serves the robot until it is cancelled.
+
+    Raises:
+        PolicyFileError: the policy file cannot be read, or is not a policy.
+        ImportError: the extra ``gateway`` is not installed.
+    """
+    from aionode.gateway import Gateway, Policy
+
+    policy = Policy.default(allow_write=allow_write) if path is None else Policy.load(path)
+
+    async def serve(node: Node, output: Output) -> int | None:
+        gateway = Gateway(node, policy, host=host, port=port)
+        async with AsyncExitStack() as stack:
+            try:
+                await stack.enter_async_context(gateway)
+            except OSError as error:
+                raise CommandError(
+                    f"gateway: cannot listen on port {port} of {host}: {error.strerror}; choose "
+                    "another --port or --host"
+                ) from error
+            output.text(f"Gateway is listening on {host}:{gateway.port}")
+            await node.until_destroyed()
+        return None
+
+    return serve
