@@ -36,7 +36,7 @@ def serve(
     """Offer a service whose requests `answer` answers; at most so many at once."""
 
     async def handle(request: Any) -> Any:
-        return as_message(cls.Response, await answer(request))
+        return as_message(cls.Response, await answer(request), node.get_clock())
 
     # The caller is told of an error; it is the client's, and nothing for the log of the robot.
     made = node.create_service(cls, service, handle, concurrent=most, on_error=ignore)
@@ -51,7 +51,7 @@ def serve_action(
 
     async def run(goal: Any) -> Any:
         try:
-            return as_message(cls.Result, await execute(goal))
+            return as_message(cls.Result, await execute(goal), node.get_clock())
         except asyncio.CancelledError:
             raise
         except Exception as error:  # noqa: BLE001  # of the client: the goal's client is told

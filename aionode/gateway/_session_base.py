@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from aionode.errors import InterfaceNotFoundError, RefusedError
 from aionode.gateway._outbox import Outbox
+from aionode.gateway._rosbridge_values import from_json
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
-from aionode.message import Message, from_builtins
+from aionode.message import Message
 from aionode.names import is_hidden
 from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
+    from aionode.clock import Clock
     from aionode.gateway._identity import Credentials, Identity
     from aionode.gateway._policy import Decision, Verb
     from aionode.gateway._robot import Robot
@@ -169,6 +171,10 @@ class SessionBase:
         """Return the class of an action type; see `message_class`."""
         return await self._robot.find_type(type_name, "action")
 
+    def now_ns(self) -> int:
+        """Return the time of the node's clock, which may be simulated, in nanoseconds."""
+        return self._robot.node.get_clock().now().nanoseconds
+
     def topic_name(self, name: str) -> str:
         """Return the full name of a topic or action, as the node resolves it.
 
@@ -224,8 +230,15 @@ class Busy:
         self._session._busy -= 1
 
 
-def as_message(cls: Any, values: Message | Mapping[str, Any] | list[Any] | bytes) -> Any:
-    """Return a message of a class: as it is, or of its values, by name or in order, or bytes.
+def as_message(
+    cls: Any, values: Message | Mapping[str, Any] | list[Any] | bytes, clock: Clock
+) -> Any:
+    """Return a message of a class: as it is, or of its values as clients write them, or bytes.
+
+    Args:
+        cls: The class.
+        values: The message, its values by name or in order (see `from_json`), or its CDR bytes.
+        clock: Gives the time of stamps that the client leaves to the robot.
 
     Raises:
         MessageError: a value does not fit its field.
@@ -237,7 +250,4 @@ def as_message(cls: Any, values: Message | Mapping[str, Any] | list[Any] | bytes
         from aionode.wire import cdr  # few clients send bytes
 
         return cdr.decode(cls, values)
-    if isinstance(values, list):
-        names = [field.name for field in cls.__ros_fields__]
-        values = dict(zip(names, values, strict=False))
-    return from_builtins(cls, values)
+    return from_json(cls, values, clock.now().nanoseconds)

@@ -60,7 +60,7 @@ class SessionCalls(SessionBase):
         service = self.service_name(service)
         self._decide_call(service, "")
         cls = await self.service_class(type_name or self.type_of(service, "service"))
-        request = as_message(cls.Request, values)
+        request = as_message(cls.Request, values, self._robot.node.get_clock())
         verb, name = self._decide_call(service, cls.__ros_type__, request)
         decision = await self._allow(verb, name, cls.__ros_type__, request)
         self._check_size(verb, name, decision, request)
@@ -145,7 +145,7 @@ class SessionCalls(SessionBase):
         action = self.topic_name(action)
         self.decide("goal", action, "")
         cls = await self.action_class(type_name or self.type_of(action, "action"))
-        goal = as_message(cls.Goal, values)
+        goal = as_message(cls.Goal, values, self._robot.node.get_clock())
         decision = await self._allow("goal", action, cls.__ros_type__, goal)
         self._check_size("goal", action, decision, goal)
         client, give_back = self._robot.shared.take(

@@ -161,7 +161,7 @@ class SessionTopics(SessionBase):
     async def publish(
         self,
         topic: str,
-        values: Message | Mapping[str, Any] | bytes,
+        values: Message | Mapping[str, Any] | list[Any] | bytes,
         type_name: str | None = None,
         *,
         arrived_ns: int | None = None,
@@ -186,7 +186,7 @@ class SessionTopics(SessionBase):
         if topic not in self._published:
             await self.advertise(topic, type_name)
         publisher = self._published[topic][0]
-        message = as_message(publisher.msg_type, values)
+        message = as_message(publisher.msg_type, values, self._robot.node.get_clock())
         decision = await self._allow("publish", topic, message.__ros_type__, message)
         self._check_size("publish", topic, decision, message)
         lease = decision.lease

@@ -1,0 +1,86 @@
+"""Descriptions of message classes as rosapi gives them."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+from aionode.message import Field, FieldType, Message, constants, fields, type_name
+
+__all__ = ["full_text", "type_definitions"]
+
+WORDS: Final = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet"}
+"""The names that rosapi has for types of fields, which are those of IDL; others are the same."""
+
+
+def short_name(cls: type[Message]) -> str:
+    """Return the name of a message type without its kind, such as ``std_msgs/String``."""
+    package, _, name = type_name(cls).split("/")
+    return f"{package}/{name}"
+
+
+def type_definitions(cls: type[Message]) -> list[dict[str, Any]]:
+    """Return a ``rosapi_msgs/msg/TypeDef`` for a message class, and for each that it contains."""
+    return [type_definition(each) for each in with_nested(cls)]
+
+
+def with_nested(cls: type[Message]) -> list[type[Message]]:
+    """Return a message class and those of its fields, at any depth, each once."""
+    found = {type_name(cls): cls}
+
+    def visit(inner: type[Message]) -> None:
+        for field in fields(inner):
+            nested = field.type.nested
+            if nested is not None and type_name(nested) not in found:
+                found[type_name(nested)] = nested
+                visit(nested)
+
+    visit(cls)
+    return list(found.values())
+
+
+def type_definition(cls: type[Message]) -> dict[str, Any]:
+    """Return the description of one message class."""
+    return {
+        "type": short_name(cls),
+        "fieldnames": [field.name for field in fields(cls)],
+        "fieldtypes": [field_type(field.type) for field in fields(cls)],
+        "fieldarraylen": [array_length(field.type) for field in fields(cls)],
+        "examples": [example(field) for field in fields(cls)],
+        "constnames": [constant.name for constant in constants(cls)],
+        "constvalues": [str(constant.value) for constant in constants(cls)],
+    }
+
+
+def field_type(type_: FieldType) -> str:
+    """Return the name of a field's type, without marks of arrays and bounds."""
+    if type_.nested is not None:
+        return short_name(type_.nested)
+    return "uint8" if type_.kind == "char" else WORDS.get(type_.kind, type_.kind)
+
+
+def array_length(type_: FieldType) -> int:
+    """Return the length of an array, 0 for that of a sequence, and -1 for a single value."""
+    if type_.container == "single":
+        return -1
+    return type_.size if type_.container == "array" else 0
+
+
+def example(field: Field) -> str:
+    """Return the default of a field, as text."""
+    if field.type.container != "single":
+        return "[]"
+    if field.type.nested is not None:
+        return "{}"
+    zero = {"bool": False, "string": "", "wstring": "", "byte": b"\0"}
+    if field.default is not None:
+        return str(field.default)
+    return str(zero.get(field.type.kind, 0.0 if field.type.kind.startswith("float") else 0))
+
+
+def full_text(cls: type[Message]) -> str:
+    """Return the definition of a message type, and of those that it needs, in one text."""
+    from aionode.idl import definition_text  # of all clients, Foxglove's asks for texts
+
+    root, *needed = with_nested(cls)
+    parts = [f"{'=' * 80}\nMSG: {short_name(each)}\n{definition_text(each)}" for each in needed]
+    return "\n".join([definition_text(root), *parts])

@@ -1,0 +1,156 @@
+"""The protocol of rosbridge 2, for one client: frames in, calls of its session, frames out.
+
+It knows no socket. Ops are those of rosbridge 4; where that one fails in silence, the client is
+told, by a ``status`` if it has asked for those with ``set_level``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from collections.abc import AsyncIterable, Awaitable, Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import AionodeError, MessageError
+from aionode.gateway._rosbridge_calls import Calls
+from aionode.gateway._rosbridge_link import Lanes, Link
+from aionode.gateway._rosbridge_offers import Offers
+from aionode.gateway._rosbridge_request import FragmentStore, op_of, text
+from aionode.gateway._rosbridge_topics import Topics
+
+if TYPE_CHECKING:
+    from aionode.gateway._session import Session
+
+__all__ = ["serve_frames"]
+
+Op = dict[str, Any]
+Handler = Callable[[Op], Awaitable[None]]
+
+logger = logging.getLogger("aionode.gateway")
+
+MOST_MALFORMED: Final = 100
+"""How many frames that are no ops a client may send before it is disconnected."""
+
+
+async def serve_frames(
+    session: Session, frames: AsyncIterable[str | bytes], limit_bytes: int = 1 << 20
+) -> None:
+    """Serve a client until its frames end, or it has sent too many that are no ops.
+
+    Answers and messages go to the session's outbox. Cancelling it ends what the client has begun,
+    as its leaving does.
+
+    Args:
+        session: The session of the client, which its owner closes.
+        frames: What the client sends, each text or bytes with one JSON object.
+        limit_bytes: The longest message that the client may send in fragments, in characters.
+    """
+    async with asyncio.TaskGroup() as tasks:
+        client = Client(session, Lanes(tasks), limit_bytes)
+        try:
+            async for frame in frames:
+                await client.take(frame)
+                if client.malformed > MOST_MALFORMED:
+                    break
+        finally:
+            await client.close()
+
+
+class Client:
+    """One client of rosbridge.
+
+    Args:
+        session: Its session.
+        lanes: Its tasks.
+        limit_bytes: See `serve_frames`.
+
+    Attributes:
+        malformed: How many frames were no ops.
+    """
+
+    def __init__(self, session: Session, lanes: Lanes, limit_bytes: int) -> None:
+        self._link = link = Link(session)
+        self._lanes = lanes
+        self._fragments = FragmentStore(limit_bytes)
+        self._offers = offers = Offers(link)
+        topics, calls = Topics(link), Calls(link, lanes)
+        self.malformed = 0
+        self._at_once: dict[str, Handler] = {
+            "action_feedback": offers.action_feedback,
+            "action_result": offers.action_result,
+            "auth": self._auth,
+            "call_service": calls.call_service,
+            "fragment": self._fragment,
+            "send_action_goal": calls.send_action_goal,
+            "service_response": offers.service_response,
+            "set_level": self._set_level,
+        }
+        # In order for each name, but one name does not wait for another.
+        self._in_order: dict[str, tuple[str, str, Handler]] = {
+            "advertise": ("publish", "topic", topics.advertise),
+            "advertise_action": ("serve", "action", offers.advertise_action),
+            "advertise_service": ("serve", "service", offers.advertise_service),
+            "cancel_action_goal": ("cancel", "action", calls.cancel_action_goal),
+            "publish": ("publish", "topic", topics.publish),
+            "subscribe": ("subscribe", "topic", topics.subscribe),
+            "unadvertise": ("publish", "topic", topics.unadvertise),
+            "unadvertise_action": ("serve", "action", offers.unadvertise_action),
+            "unadvertise_service": ("serve", "service", offers.unadvertise_service),
+            "unsubscribe": ("subscribe", "topic", topics.unsubscribe),
+        }
+
+    async def take(self, frame: str | bytes) -> None:
+        """Begin what a frame asks for."""
+        try:
+            op = op_of(frame)
+        except MessageError as error:
+            self.malformed += 1
+            self._link.status("error", str(error))
+        else:
+            await self._begin(op)
+
+    async def close(self) -> None:
+        """End what the client has begun."""
+        self._lanes.cancel()
+        await self._offers.close()
+
+    async def _begin(self, op: Op) -> None:
+        name = op["op"]
+        if name in self._at_once:
+            await self._attempt(op, self._at_once[name])
+        elif name in self._in_order:
+            await self._attempt(op, self._put)
+        else:
+            known = ", ".join(sorted([*self._at_once, *self._in_order]))
+            self._link.status("error", f"op: {name[:60]!r} is unknown; there are {known}", op)
+
+    async def _put(self, op: Op) -> None:
+        kind, field, handler = self._in_order[op["op"]]
+        await self._lanes.put((kind, text(op, field)), partial(self._attempt, op, handler))
+
+    async def _attempt(self, op: Op, handler: Handler) -> None:
+        """Tell the client if an op fails."""
+        try:
+            await handler(op)
+        except (AionodeError, TimeoutError) as error:
+            self._link.status("error", f"{op['op']}: {error}", op)
+
+    async def _set_level(self, op: Op) -> None:
+        self._link.set_level(text(op, "level"))
+
+    async def _auth(self, op: Op) -> None:
+        """Ignore the authentication of ROS 1, whose server is gone."""
+        logger.info(
+            "%s sends the op auth of ROS 1, which has no effect", self._link.session.identity.name
+        )
+        self._link.status("warning", "auth: has no effect; connect with a token instead", op)
+
+    async def _fragment(self, op: Op) -> None:
+        whole = self._fragments.add(op)
+        if whole is None:
+            return
+        inner = op_of(whole)
+        if inner["op"] == "fragment":
+            raise MessageError("fragment.data", "has fragments in it")
+        await self._begin(inner)

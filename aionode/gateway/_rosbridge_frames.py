@@ -1,0 +1,122 @@
+"""Frames of rosbridge: one message in JSON, CBOR, as it is (cbor-raw) or as a picture (png)."""
+
+from __future__ import annotations
+
+import base64
+import math
+import struct
+import zlib
+from typing import Any, Final
+
+import cbor2
+import msgspec
+
+from aionode.gateway._rosbridge_values import cbor_values, json_of
+from aionode.message import Message
+
+__all__ = [
+    "Fragmented",
+    "cbor_frame",
+    "cbor_raw_frame",
+    "fragments",
+    "json_frame",
+    "op_frame",
+    "png_frame",
+]
+
+PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
+
+LONG: Final = 0x5A
+"""The first byte of a CBOR byte string whose length follows in four bytes."""
+
+
+def op_frame(op: dict[str, Any]) -> str:
+    """Return an op as JSON."""
+    return msgspec.json.encode(op).decode()
+
+
+def json_frame(topic: str, message: Message) -> str:
+    """Return a message of a topic as JSON."""
+    return op_frame({"op": "publish", "topic": topic, "msg": msgspec.Raw(json_of(message))})
+
+
+def cbor_frame(topic: str, message: Message) -> bytes:
+    """Return a message of a topic as CBOR, with typed arrays."""
+    return cbor2.dumps({"op": "publish", "topic": topic, "msg": cbor_values(message)})
+
+
+def cbor_raw_frame(topic: str, data: bytes | memoryview, time_ns: int) -> bytes:
+    """Return an encoded message of a topic in a frame of CBOR, without decoding it.
+
+    Args:
+        topic: The name of the topic.
+        data: The message in CDR with its header; copied once.
+        time_ns: When it was received, in nanoseconds.
+    """
+    secs, nsecs = divmod(time_ns, 10**9)
+    msg = {"secs": secs, "nsecs": nsecs, "bytes": b""}
+    head = cbor2.dumps({"op": "publish", "topic": topic, "msg": msg})
+    # The bytes are the last value of the frame: all but the empty string is its head.
+    return b"".join((head[:-1], struct.pack(">BI", LONG, len(data)), data))
+
+
+def png_frame(text: str) -> str:
+    """Return a frame of JSON as a PNG of three bytes in each pixel, compressed, in base64."""
+    data = text.encode()
+    width = max(math.isqrt(-(-len(data) // 3)), 1)
+    stride = 3 * width
+    height = -(-len(data) // stride)
+    data = data.ljust(height * stride, b"\n")
+    rows = b"".join(b"\0" + data[at : at + stride] for at in range(0, len(data), stride))
+    picture = b"".join(
+        (
+            PNG_SIGNATURE,
+            png_chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
+            png_chunk(b"IDAT", zlib.compress(rows)),
+            png_chunk(b"IEND", b""),
+        )
+    )
+    return op_frame({"op": "png", "data": base64.b64encode(picture).decode()})
+
+
+def png_chunk(kind: bytes, data: bytes) -> bytes:
+    """Return one part of a PNG file."""
+    body = kind + data
+    return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
+
+
+class Fragmented(str):
+    """A frame that leaves in fragments, as its client has asked for; it waits as one.
+
+    Attributes:
+        size: The longest fragment, in characters.
+        message_id: The id of the fragments.
+    """
+
+    __slots__ = ("message_id", "size")
+    size: int
+    message_id: str
+
+    @classmethod
+    def of(cls, frame: str, size: int, message_id: str) -> Fragmented:
+        """Return a frame that leaves in fragments of a size."""
+        made = cls(frame)
+        made.size, made.message_id = size, message_id
+        return made
+
+    def parts(self) -> list[str]:
+        """Return what leaves."""
+        return fragments(self, self.size, self.message_id)
+
+
+def fragments(frame: str, size: int, message_id: str) -> list[str]:
+    """Return a frame in parts of `size` characters, if it is longer."""
+    if len(frame) <= size:
+        return [frame]
+    parts = [frame[at : at + size] for at in range(0, len(frame), size)]
+    return [
+        op_frame(
+            {"op": "fragment", "id": message_id, "data": part, "num": num, "total": len(parts)}
+        )
+        for num, part in enumerate(parts)
+    ]

@@ -1,0 +1,240 @@
+"""The ops of rosbridge for topics."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.clock import Duration
+from aionode.errors import AionodeError, MessageError
+from aionode.gateway._rosbridge_frames import (
+    Fragmented,
+    cbor_frame,
+    cbor_raw_frame,
+    json_frame,
+    png_frame,
+)
+from aionode.gateway._rosbridge_request import (
+    number,
+    optional_text,
+    profile,
+    text,
+    type_text,
+    values,
+)
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
+
+if TYPE_CHECKING:
+    from aionode.gateway._feed import Received
+    from aionode.gateway._outbox import Frame
+    from aionode.gateway._rosbridge_link import Link
+    from aionode.gateway._session_topics import Subscribed
+
+__all__ = ["Topics"]
+
+Op = dict[str, Any]
+
+COMPRESSIONS: Final = ("none", "png", "cbor", "cbor-raw")
+"""From the weakest: one subscription of a client has the strongest that any of its ids asks for."""
+
+DEFAULT_DEPTH: Final = 100
+"""How many messages wait for a client that names no ``queue_length``, per topic."""
+
+PUBLISHER_DEPTH: Final = 100
+
+LATCH_SEC: Final = 1.0
+"""How long a message is kept for subscriptions that appear after it, unless it is latched: a client
+that advertises and publishes at once reaches the subscriptions that are just being matched."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """How a client wants the messages of a topic, for one id of its subscriptions.
+
+    Attributes:
+        type_name: The type, or None for that of the topic.
+        period_sec: The shortest time between messages, in seconds.
+        depth: How many messages wait at most.
+        fragment_size: The longest frame, in characters; 0 for any.
+        compression: One of `COMPRESSIONS`.
+        qos: The profile, or None for one that fits the publishers.
+    """
+
+    type_name: str | None
+    period_sec: float
+    depth: int
+    fragment_size: float
+    compression: str
+    qos: QoSProfile | None
+
+
+def wish_of(op: Op) -> Wish:
+    """Return what an op ``subscribe`` asks for.
+
+    Raises:
+        MessageError: a field is invalid.
+    """
+    compression = text(op, "compression", "none")
+    if compression not in COMPRESSIONS:
+        fitting = ", ".join(COMPRESSIONS)
+        raise MessageError("subscribe.compression", f"{compression!r}, needs one of {fitting}")
+    return Wish(
+        type_text(text(op, "type", ""), "msg") or None,
+        number(op, "throttle_rate") / 1000,
+        int(number(op, "queue_length")) or DEFAULT_DEPTH,
+        number(op, "fragment_size"),
+        compression,
+        profile(op, QoSProfile(depth=10)),
+    )
+
+
+def combined(wishes: list[Wish]) -> Wish:
+    """Return what fits all ids of one client: the fastest, the longest queue, the newest QoS."""
+    return Wish(
+        next((wish.type_name for wish in wishes if wish.type_name is not None), None),
+        min(wish.period_sec for wish in wishes),
+        max(wish.depth for wish in wishes),
+        min((wish.fragment_size for wish in wishes if wish.fragment_size), default=0),
+        max((wish.compression for wish in wishes), key=COMPRESSIONS.index),
+        next((wish.qos for wish in reversed(wishes) if wish.qos is not None), None),
+    )
+
+
+@dataclass
+class View:
+    """The messages of one topic, as one client gets them."""
+
+    wish: Wish
+    subscribed: Subscribed
+    queue: int
+
+
+class Topics:
+    """The subscriptions and publishers of one client.
+
+    Args:
+        link: The way to the client.
+    """
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._session = link.session
+        self._wishes: dict[str, dict[str | None, Wish]] = {}
+        self._views: dict[str, View] = {}
+        self._advertised: dict[str, set[str | None]] = {}
+        self._fragmented = 0
+
+    async def advertise(self, op: Op) -> None:
+        """Make a publisher for the client."""
+        topic = self._session.topic_name(text(op, "topic"))
+        type_name = type_text(text(op, "type"), "msg")
+        await self._session.advertise(topic, type_name, publisher_profile(op))
+        self._advertised.setdefault(topic, set()).add(optional_text(op, "id"))
+
+    async def unadvertise(self, op: Op) -> None:
+        """Take back what was advertised with one id, or with all."""
+        topic, message_id = self._session.topic_name(text(op, "topic")), optional_text(op, "id")
+        ids = self._advertised.get(topic)
+        if ids is None or (message_id is not None and message_id not in ids):
+            raise MessageError("unadvertise.topic", f"{topic} is not advertised with this id")
+        ids.discard(message_id)
+        if message_id is None or not ids:
+            del self._advertised[topic]
+            await self._session.unadvertise(topic)
+
+    async def publish(self, op: Op) -> None:
+        """Publish a message; a topic that is not advertised is advertised now, with its type."""
+        topic = self._session.topic_name(text(op, "topic"))
+        type_name = type_text(text(op, "type", ""), "msg") or None
+        if topic not in self._advertised:
+            await self._session.advertise(topic, type_name, publisher_profile(op))
+            self._advertised[topic] = {None}
+        await self._session.publish(topic, values(op, "msg"), type_name)
+
+    async def subscribe(self, op: Op) -> None:
+        """Send the client the messages of a topic.
+
+        Each op opens the subscription anew, so that a second one of a client gets the messages
+        that publishers keep for late ones, as the first did.
+        """
+        topic, message_id = text(op, "topic"), optional_text(op, "id")
+        wishes = self._wishes.get(topic, {}) | {message_id: wish_of(op)}
+        await self._open(topic, combined(list(wishes.values())))
+        self._wishes[topic] = wishes
+
+    async def unsubscribe(self, op: Op) -> None:
+        """End one id of a subscription, or all of a topic."""
+        topic, message_id = text(op, "topic"), optional_text(op, "id")
+        wishes = self._wishes.get(topic)
+        if wishes is None or (message_id is not None and message_id not in wishes):
+            raise MessageError("unsubscribe.topic", f"{topic} is not subscribed with this id")
+        left = {key: wish for key, wish in wishes.items() if message_id not in {None, key}}
+        if not left:
+            del self._wishes[topic]
+            self._views.pop(topic).subscribed.close()
+            return
+        self._wishes[topic] = left
+        wish = combined(list(left.values()))
+        if wish != self._views[topic].wish:
+            await self._open(topic, wish)
+
+    async def _open(self, topic: str, wish: Wish) -> None:
+        """Subscribe to a topic; the earlier subscription of the client then ends."""
+        earlier = self._views.get(topic)
+        # The end of the earlier one empties its queue, which is therefore another one.
+        queue = 0 if earlier is None else 1 - earlier.queue
+        subscribed = await self._session.subscribe(
+            topic,
+            wish.type_name,
+            frame=partial(self._frame, topic, wish),
+            key=("rosbridge", topic, queue),
+            depth=wish.depth,
+            qos=wish.qos,
+            min_period_sec=wish.period_sec,
+        )
+        self._views[topic] = View(wish, subscribed, queue)
+        if earlier is not None:
+            earlier.subscribed.close()
+
+    def _frame(self, topic: str, wish: Wish, received: Received) -> Frame | None:
+        """Return the frame of a message, made once for all clients that want the same."""
+        kind = ("rosbridge", wish.compression, topic)
+        try:
+            frame = received.once(kind, partial(frame_of, wish.compression, topic))
+        except AionodeError as error:  # a peer sent what is no message of the type
+            self._link.status("error", f"subscribe: {error}")
+            return None
+        if not wish.fragment_size or isinstance(frame, bytes):
+            return frame
+        self._fragmented += 1
+        return Fragmented.of(frame, max(int(wish.fragment_size), 1), str(self._fragmented))
+
+
+def frame_of(compression: str, topic: str, received: Received) -> str | bytes:
+    """Return the frame of a message, for a topic by the name that the client uses."""
+    if compression == "cbor-raw":
+        return cbor_raw_frame(topic, received.raw, received.time_ns)
+    if compression == "cbor":
+        return cbor_frame(topic, received.message)
+    frame = received.once(("rosbridge", "json", topic), partial(plain_frame, topic))
+    return png_frame(frame) if compression == "png" else frame
+
+
+def plain_frame(topic: str, received: Received) -> str:
+    """Return a message as JSON."""
+    return json_frame(topic, received.message)
+
+
+def publisher_profile(op: Op) -> QoSProfile:
+    """Return the QoS of a publisher that a client asks for."""
+    depth = int(number(op, "queue_size")) or PUBLISHER_DEPTH
+    is_latched = bool(op.get("latch"))
+    start = QoSProfile(
+        history=HistoryPolicy.KEEP_LAST,
+        depth=1 if is_latched else min(depth, 10_000),
+        reliability=ReliabilityPolicy.RELIABLE,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        lifespan=Duration() if is_latched else Duration(seconds=LATCH_SEC),
+    )
+    return profile(op, start) or start

@@ -1,0 +1,39 @@
+"""A robot without network, and clients of its gateway without sockets."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator, Callable
+
+import pytest
+
+from aionode.gateway._robot import Robot
+from aionode.node import Node
+from aionode.testing import settle
+from tests.support.rosbridge import RosbridgeClient, robot_of, rosbridge_client
+
+Make = Callable[..., Node]
+
+
+@pytest.fixture
+async def node(node_factory: Make) -> Node:
+    """Return a node of the robot, which is running."""
+    node = node_factory("robot_node")
+    await settle()
+    return node
+
+
+@pytest.fixture
+async def robot(node: Node, node_factory: Make) -> AsyncIterator[Robot]:
+    """Yield what the sessions of a gateway share."""
+    gateway = node_factory("aionode_gateway")
+    await settle()
+    async with robot_of(gateway) as robot:
+        yield robot
+
+
+@pytest.fixture
+async def client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
+    """Yield a client that has asked to be told of errors."""
+    async with rosbridge_client(robot) as client:
+        client.send("set_level", level="error")
+        yield client

@@ -1,0 +1,291 @@
+"""Topics by rosbridge: a client in the process of the gateway, in a context without network."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import json
+
+import pytest
+
+from aionode.gateway._robot import Robot
+from aionode.interfaces.geometry_msgs.msg import Vector3
+from aionode.interfaces.sensor_msgs.msg import Image
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.message import to_builtins
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, QoSProfile
+from aionode.testing import settle
+from aionode.wire import cdr
+from tests.support.rosbridge import RosbridgeClient, rosbridge_client
+
+# Subscriptions
+
+
+async def test_a_subscriber_gets_messages_as_json(client: RosbridgeClient, node: Node) -> None:
+    """By the name that it has used, with or without a slash."""
+    publisher = node.create_publisher(String, "/words", 10)
+    client.send("subscribe", topic="words", type="std_msgs/String")
+    await settle()
+
+    publisher.publish(String(data="hi"))
+
+    assert await client.receive() == {"op": "publish", "topic": "words", "msg": {"data": "hi"}}
+
+
+async def test_the_type_of_a_topic_need_not_be_given(client: RosbridgeClient, node: Node) -> None:
+    """The graph knows it; of an unknown topic the client is told, which rosbridge does not do."""
+    publisher = node.create_publisher(String, "/words", 10)
+    client.send("subscribe", topic="/words")
+    await settle()
+    publisher.publish(String(data="hi"))
+    assert (await client.receive())["msg"] == {"data": "hi"}
+
+    client.send("subscribe", topic="/nothing", id="s1")
+
+    status = await client.receive()
+    assert (status["op"], status["level"], status["id"]) == ("status", "error", "s1")
+    assert "/nothing" in status["msg"]
+
+
+async def test_each_compression_has_its_form(robot: Robot, node: Node) -> None:
+    """Clients of one topic may ask for different ones: the first does not decide for all."""
+    publisher = node.create_publisher(Image, "/image", 10)
+    image = Image(data=b"\x01\x02", width=2)
+    got = {}
+    for compression in ("none", "cbor", "cbor-raw", "png"):
+        async with rosbridge_client(robot) as client:
+            client.send("subscribe", topic="/image", compression=compression)
+            await settle()
+            publisher.publish(image)
+            got[compression] = await client.receive()
+
+    assert got["none"]["msg"]["data"] == base64.b64encode(b"\x01\x02").decode()
+    assert got["cbor"]["msg"]["data"] == b"\x01\x02"
+    assert cdr.decode(Image, got["cbor-raw"]["msg"]["bytes"]) == image
+    assert got["png"]["op"] == "png"
+
+
+async def test_ids_of_one_client_share_a_subscription(client: RosbridgeClient, node: Node) -> None:
+    """A client gets each message once, as long as one of its ids is subscribed."""
+    publisher = node.create_publisher(Int32, "/count", 10)
+    client.send("subscribe", topic="/count", id="a")
+    client.send("subscribe", topic="/count", id="b")
+    client.send("unsubscribe", topic="/count", id="a")
+    await settle()
+    publisher.publish(Int32(data=1))
+    client.send("unsubscribe", topic="/count", id="b")
+    assert (await client.receive())["msg"] == {"data": 1}
+    await settle()
+    publisher.publish(Int32(data=2))
+    client.send("unsubscribe", topic="/count")
+
+    status = await client.receive()
+    assert "not subscribed" in status["msg"]
+
+
+async def test_the_strongest_compression_of_a_client_counts(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """As with rosbridge: a page has one decoder for each topic."""
+    publisher = node.create_publisher(Int32, "/count", 10)
+    client.send("subscribe", topic="/count", id="a", compression="cbor")
+    client.send("subscribe", topic="/count", id="b")
+    await settle()
+    publisher.publish(Int32(data=1))
+    assert isinstance(await client.frame(), bytes)
+
+    client.send("unsubscribe", topic="/count", id="a")
+    await settle()
+    publisher.publish(Int32(data=1))
+    assert isinstance(await client.frame(), str)
+
+
+async def test_a_late_subscription_gets_what_is_latched(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """Also the second one of a client, and whenever the publisher came: maps, descriptions."""
+    client.send("subscribe", topic="/map", type="std_msgs/String", id="early")
+    await settle()
+    profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    node.create_publisher(String, "/map", profile).publish(String(data="m"))
+    assert (await client.receive())["msg"] == {"data": "m"}
+
+    client.send("subscribe", topic="/map", type="std_msgs/String", id="late")
+
+    assert (await client.receive())["msg"] == {"data": "m"}
+
+
+async def test_the_queue_of_a_client_keeps_the_newest(client: RosbridgeClient, node: Node) -> None:
+    """A slow client gets what is true now, after a delay that does not grow."""
+    publisher = node.create_publisher(Int32, "/count", 100)
+    client.send("subscribe", topic="/count", queue_length=2)
+    await settle()
+    for number in range(50):
+        publisher.publish(Int32(data=number))
+    await settle()
+
+    assert [(await client.receive())["msg"]["data"] for _ in range(2)] == [48, 49]
+
+
+async def test_a_message_is_in_fragments_only_if_the_client_asks(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """Many clients cannot read them; rosbridge sends them unasked."""
+    publisher = node.create_publisher(String, "/words", 10)
+    client.send("subscribe", topic="/words", fragment_size=30)
+    await settle()
+    publisher.publish(String(data="x" * 50))
+
+    parts = await client.receive()
+
+    whole = json.loads("".join(part["data"] for part in parts))
+    assert whole["msg"] == {"data": "x" * 50}
+    assert {len(part["data"]) for part in parts[:-1]} == {30}
+
+
+async def test_a_message_is_encoded_once_for_all_clients(robot: Robot, node: Node) -> None:
+    """Each kind of frame is made by the first client that needs it."""
+    publisher = node.create_publisher(String, "/words", 10)
+    async with rosbridge_client(robot) as first, rosbridge_client(robot) as second:
+        for client in (first, second):
+            client.send("subscribe", topic="/words")
+        await settle()
+        publisher.publish(String(data="hi"))
+
+        assert await first.frame() is await second.frame()
+
+
+# Publishers
+
+
+async def test_a_message_of_a_client_reaches_the_robot(client: RosbridgeClient, node: Node) -> None:
+    """Advertised or not: then the type is that of the message, or of the topic."""
+    reader = node.create_subscription(Vector3, "/cmd", qos_profile=10)
+    client.send("advertise", topic="/cmd", type="geometry_msgs/Vector3", queue_size=9, latch=False)
+    client.send("publish", topic="/cmd", msg={"x": 1}, latch=False)
+    client.send("unadvertise", topic="/cmd")
+    client.send("publish", topic="/cmd", msg={"x": 2})
+
+    assert [(await reader.receive()).x for _ in range(2)] == [1.0, 2.0]
+
+
+async def test_a_page_that_publishes_at_once_reaches_the_subscriptions(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """And a latched message reaches also those that come later."""
+    client.send("advertise", topic="/a", type="std_msgs/String", latch=True, id="a")
+    client.send("publish", topic="/a", msg={"data": "1"})
+    await settle()
+    profile = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+    reader = node.create_subscription(String, "/a", qos_profile=profile)
+
+    assert (await reader.receive()).data == "1"
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"topic": "/t", "type": "std_msgs/String", "msg": {"dat": "x"}}, "did you mean 'data'"),
+        (
+            {"topic": "/t", "type": "std_msgs/String", "msg": {"data": 5}},
+            "std_msgs/msg/String.data",
+        ),
+        ({"topic": "/t", "type": "std_msgs/Strin", "msg": {}}, "std_msgs/msg/Strin"),
+        ({"topic": "/t", "msg": {}}, "/t"),
+        ({"topic": 5, "msg": {}}, "publish.topic: 5 (int), needs text"),
+        ({"msg": {}}, "publish.topic: missing"),
+        ({"topic": "a b", "type": "std_msgs/String"}, "a b"),
+        ({"topic": "/t", "type": "std_msgs/String", "msg": "text"}, "publish.msg"),
+    ],
+)
+async def test_a_mistake_is_told(
+    client: RosbridgeClient, fields: dict[str, object], told: str
+) -> None:
+    """Rosbridge writes it into its own log only, where the author of a page never looks."""
+    client.send("publish", id="p1", **fields)
+
+    status = await client.receive()
+
+    assert (status["op"], status["level"], status["id"]) == ("status", "error", "p1")
+    assert told in status["msg"]
+
+
+async def test_no_status_is_sent_to_those_who_have_not_asked(robot: Robot) -> None:
+    """Many clients do not know the op; a call after the mistake is the next that they get."""
+    async with rosbridge_client(robot) as client:
+        client.send("publish", topic="/t", msg={})
+        client.send("nonsense")
+        client.send_frame("{")
+
+        assert (await client.call("/rosapi/get_ros_version"))["values"]["version"] == 2
+
+
+async def test_a_client_that_sends_no_ops_is_disconnected(robot: Robot) -> None:
+    """After a hundred frames of garbage; rosbridge searches each for brackets, for ever."""
+    async with rosbridge_client(robot) as client:
+        for _ in range(150):
+            client.send_frame("}")
+        client.send("subscribe", topic="/words", type="std_msgs/String")
+        await settle()
+
+        assert not robot.node.get_subscriptions_info_by_topic("/words")
+
+
+async def test_a_frame_may_be_bytes_of_json(client: RosbridgeClient) -> None:
+    """Some clients send text so, and rosbridge takes it."""
+    client.send_frame(b'{"op": "call_service", "service": "rosapi/get_ros_version"}')
+
+    assert (await client.receive())["values"]["version"] == 2
+
+
+async def test_fragments_of_a_client_are_put_together(client: RosbridgeClient) -> None:
+    """For each client apart: with rosbridge, two clients with one id mix their messages."""
+    whole = json.dumps({"op": "call_service", "service": "/rosapi/get_ros_version", "id": "c"})
+    for num, data in enumerate((whole[:20], whole[20:])):
+        client.send("fragment", id="1", data=data, num=num, total=2)
+
+    assert (await client.receive())["id"] == "c"
+
+
+async def test_what_a_client_holds_ends_with_it(robot: Robot, node: Node) -> None:
+    """Its subscriptions and, a while later, its publishers."""
+    async with rosbridge_client(robot) as client:
+        client.send("subscribe", topic="/a", type="std_msgs/String")
+        await settle()
+        assert node.count_subscribers("/a") == 1
+
+    await settle()
+    assert node.count_subscribers("/a") == 0
+
+
+async def test_one_op_that_waits_does_not_hold_up_another(
+    client: RosbridgeClient, node: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The description of an unknown type may take seconds; a command does not wait for it."""
+    never = asyncio.Event()
+
+    async def wait(*_: object, **__: object) -> None:
+        await never.wait()
+
+    monkeypatch.setattr(client.session, "subscribe", wait)
+    reader = node.create_subscription(String, "/words", qos_profile=10)
+    client.send("subscribe", topic="/slow")
+    client.send("publish", topic="/words", type="std_msgs/String", msg={"data": "now"})
+
+    assert (await reader.receive()).data == "now"
+
+
+async def test_a_burst_of_messages_is_published_whole_and_in_order(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """A frame is not refused because its predecessors had no turn yet."""
+    reader = node.create_subscription(Int32, "/count", qos_profile=1000)
+    client.send("advertise", topic="/count", type="std_msgs/Int32")
+    for number in range(500):
+        client.send("publish", topic="/count", msg={"data": number})
+
+    got = [to_builtins(await reader.receive())["data"] for _ in range(500)]
+
+    assert got == list(range(500))

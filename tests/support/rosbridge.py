@@ -1,0 +1,96 @@
+"""A client of rosbridge in the process of its gateway, without a socket."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import cbor2
+
+from aionode.gateway._audit import Audit
+from aionode.gateway._identity import Identity
+from aionode.gateway._policy import Policy
+from aionode.gateway._robot import Robot
+from aionode.gateway._rosbridge_client import serve_frames
+from aionode.gateway._rosbridge_frames import Fragmented
+from aionode.gateway._session import Session
+from aionode.node import Node
+
+__all__ = ["RosbridgeClient", "robot_of", "rosbridge_client"]
+
+
+class RosbridgeClient:
+    """What a page or program sends to rosbridge, and what it gets.
+
+    Attributes:
+        session: Its session in the gateway.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self.session = session
+        self._frames: asyncio.Queue[str | bytes | None] = asyncio.Queue()
+        self._received = session.outbox.__aiter__()
+
+    def send(self, op: str, **fields: Any) -> None:
+        """Send an op."""
+        self.send_frame(json.dumps({"op": op, **fields}))
+
+    def send_frame(self, frame: str | bytes) -> None:
+        """Send any frame."""
+        self._frames.put_nowait(frame)
+
+    def leave(self) -> None:
+        """Close the connection."""
+        self._frames.put_nowait(None)
+
+    async def frames(self) -> AsyncIterator[str | bytes]:
+        """Yield what was sent."""
+        while (frame := await self._frames.get()) is not None:
+            yield frame
+
+    async def frame(self) -> str | bytes:
+        """Return the next frame that the client gets."""
+        return await anext(self._received)
+
+    async def receive(self) -> Any:
+        """Return the next op that the client gets, decoded."""
+        frame = await self.frame()
+        if isinstance(frame, Fragmented):
+            return [json.loads(part) for part in frame.parts()]
+        return json.loads(frame) if isinstance(frame, str) else cbor2.loads(frame)
+
+    async def call(self, name: str, /, **args: Any) -> Any:
+        """Return the response of a service."""
+        self.send("call_service", service=name, id="call", args=args)
+        return await self.receive()
+
+
+@asynccontextmanager
+async def robot_of(node: Node, policy: Policy | None = None) -> AsyncIterator[Robot]:
+    """Yield what the sessions of a gateway share; by default everything is allowed."""
+    audit = Audit(node, "")
+    async with asyncio.TaskGroup() as tasks:
+        robot = Robot(node, policy or Policy.default(allow_write=True), audit, tasks)
+        try:
+            yield robot
+        finally:
+            robot.close()
+            audit.close()
+
+
+@asynccontextmanager
+async def rosbridge_client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
+    """Yield a client that is connected until the block ends."""
+    async with asyncio.TaskGroup() as tasks:
+        identity = Identity("tester", address="127.0.0.1")
+        async with Session(robot, identity, "rosbridge") as session:
+            client = RosbridgeClient(session)
+            serving = tasks.create_task(serve_frames(session, client.frames(), 1000))
+            try:
+                yield client
+            finally:
+                client.leave()
+                await serving
