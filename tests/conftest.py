@@ -59,6 +59,7 @@ PROCESSES = (
     "tests/processes/",
     "tests/faults/",
     "tests/attacks/",
+    "tests/gateway/test_page.py",
     "tests/system/",
     "tests/launch/test_running.py",
     "tests/cli/test_terminal.py",

@@ -1,20 +1,29 @@
-"""Foxglove over WebSocket: this module is replaced by the whole protocol."""
+"""Foxglove over WebSocket: what the Foxglove app and PlotJuggler speak."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from functools import partial
+from typing import TYPE_CHECKING
+
+from aionode.gateway._foxglove_client import serve_frames
+from aionode.gateway._foxglove_frames import SUBPROTOCOL
+from aionode.gateway._websocket import exchange
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
+    from aionode.bag import Player
     from aionode.gateway._session import Session
 
 __all__ = ["SUBPROTOCOL", "serve"]
 
-SUBPROTOCOL: Final = "foxglove.sdk.v1"
 
+async def serve(websocket: WebSocket, session: Session, player: Player | None = None) -> None:
+    """Serve a client of Foxglove's protocol until it leaves.
 
-async def serve(websocket: WebSocket, session: Session) -> None:  # noqa: ARG001  # a stand-in
-    """Close the connection."""
-    await websocket.accept(SUBPROTOCOL)
-    await websocket.close()
+    Args:
+        websocket: The WebSocket of the client.
+        session: The session of the client.
+        player: What the client's timeline controls.
+    """
+    await exchange(websocket, session, partial(serve_frames, player=player), SUBPROTOCOL)

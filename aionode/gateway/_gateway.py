@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from starlette.applications import Starlette
-from starlette.responses import PlainTextResponse
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import WebSocketRoute
 
 from aionode._concurrency import to_the_end
 from aionode.errors import ConfigurationError, PolicyFileError
-from aionode.gateway import _foxglove, _http, _rosbridge
+from aionode.gateway import _foxglove, _http, _page_files, _rosbridge
 from aionode.gateway._audit import Audit
 from aionode.gateway._clients import Clients
 from aionode.gateway._guard import Guard
@@ -27,11 +26,10 @@ from aionode.gateway._server import Server, server_config
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from starlette.requests import Request
-    from starlette.responses import Response
     from starlette.routing import BaseRoute
     from starlette.websockets import WebSocket
 
+    from aionode.bag import Player
     from aionode.clock import Clock
     from aionode.gateway._robot import Ask
     from aionode.gateway._session import Session
@@ -53,6 +51,8 @@ class Gateway(Clients):
         port: The port; 0 for a free one.
         ask: Asks a person whether a client may do something, where the policy says ``ask``; called
             with the identity, the verb, the name and the message. Without it that is refused.
+        player: A bag's player, which Foxglove's timeline controls, as far as the policy allows to
+            call the services of the player's node.
 
     Raises:
         ConfigurationError: another interface than loopback is to be served, and the policy knows
@@ -71,8 +71,10 @@ class Gateway(Clients):
         host: str = "127.0.0.1",
         port: int = 9090,
         ask: Ask | None = None,
+        player: Player | None = None,
     ) -> None:
         super().__init__(node, Policy.default() if policy is None else policy)
+        self._player = player
         self.host = host
         self.port = port
         self._ask = ask
@@ -137,22 +139,23 @@ class Gateway(Clients):
             WebSocketRoute("/", self._websocket),
             WebSocketRoute("/ws", self._websocket),
             *_http.routes(self),
-            Route("/", page),
+            *_page_files.routes(),
         ]
         return Starlette(routes=routes)
 
     async def _websocket(self, websocket: WebSocket) -> None:
         """Serve a WebSocket by the protocol that its client asks for."""
         is_foxglove = _foxglove.SUBPROTOCOL in websocket.scope["subprotocols"]
-        kind, serve = ("foxglove", _foxglove.serve) if is_foxglove else (
-            "rosbridge", _rosbridge.serve
-        )  # fmt: skip
+        kind = "foxglove" if is_foxglove else "rosbridge"
         async with self.session_of(websocket.scope, kind) as session:
             session.connection = websocket.scope["state"]["aionode_connection"]
             bucket = Bucket(self._policy.limits.frames_per_sec, self.robot.time_base.steady_ns)
             websocket._receive = paced(websocket._receive, bucket, self.robot.clock)
-            lost = self._watch(session)
-            await until(session.ended, serve(websocket, session), lost)
+            if is_foxglove:
+                serving = _foxglove.serve(websocket, session, self._player)
+            else:
+                serving = _rosbridge.serve(websocket, session)
+            await until(session.ended, serving, self._watch(session))
 
     async def _watch(self, session: Session) -> None:
         """End the session of a client that has goals, and gives no sign any more."""
@@ -184,11 +187,6 @@ class Gateway(Clients):
                 self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
             else:
                 self.use_policy(policy)
-
-
-async def page(_request: Request) -> Response:
-    """Answer where a page will be."""
-    return PlainTextResponse("aionode gateway\n")
 
 
 def paced(receive: Any, bucket: Bucket, clock: Clock) -> Any:

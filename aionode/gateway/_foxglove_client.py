@@ -1,0 +1,313 @@
+"""Foxglove's protocol, ``foxglove.sdk.v1``: what one client asks for, through its session."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import AsyncIterator, Awaitable, Callable, Hashable
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+from uuid import uuid4
+
+import msgspec
+
+from aionode.errors import AionodeError, EntityDestroyedError, MessageError
+from aionode.gateway import _foxglove_frames as frames
+from aionode.gateway._foxglove_channels import Channels
+from aionode.gateway._foxglove_parameters import Parameters
+from aionode.gateway._foxglove_playback import Playback
+from aionode.gateway._rosbridge_link import Lanes
+from aionode.gateway._rosbridge_values import json_of
+from aionode.wire import cdr
+
+if TYPE_CHECKING:
+    from aionode.bag import Player
+    from aionode.gateway._outbox import Frame
+    from aionode.gateway._session import Session
+
+__all__ = ["serve_frames"]
+
+CAPABILITIES: Final = (
+    "clientPublish",
+    "services",
+    "parameters",
+    "parametersSubscribe",
+    "connectionGraph",
+    "time",
+)
+ENCODINGS: Final = ("cdr", "json")
+CALL_SEC: Final = 30.0
+"""How long a service may take: the protocol has no time limit."""
+
+SETTLING_SEC: Final = 0.1
+"""How long a change of the graph waits for further ones: a robot that starts has hundreds."""
+
+MOST_MALFORMED: Final = 100
+"""How many frames that are no ops a client may send before it is disconnected."""
+
+ERROR: Final = 2
+"""The level of a status, of which 0 is an information and 1 a warning."""
+
+
+async def serve_frames(
+    session: Session, incoming: AsyncIterator[Frame], player: Player | None = None
+) -> None:
+    """Speak with one client until its frames end.
+
+    Cancelling ends what the client has asked for.
+
+    Args:
+        session: The session of the client; its outbox is sent by the caller.
+        incoming: The frames of the client.
+        player: What Foxglove's timeline controls, through the services of its node.
+    """
+    async with asyncio.TaskGroup() as tasks:
+        lanes = Lanes(tasks)
+        client = Client(session, lanes, player)
+        client.greet()
+        watching = tasks.create_task(client.watch())
+        playing = tasks.create_task(client.playback.watch())
+        try:
+            async for frame in incoming:
+                await client.take(frame)
+                if client.malformed > MOST_MALFORMED:
+                    break
+        finally:
+            watching.cancel()
+            playing.cancel()
+            lanes.cancel()
+
+
+class Client:
+    """One client.
+
+    Attributes:
+        malformed: How many of its frames were no ops.
+        playback: What it controls.
+    """
+
+    def __init__(self, session: Session, lanes: Lanes, player: Player | None) -> None:
+        self._session = session
+        self._lanes = lanes
+        self._published: dict[int, frames.ClientChannel] = {}
+        self._graph: Connections | None = None
+        self.malformed = 0
+        self.playback = Playback(session, player)
+        self._channels = Channels(session, self.playback.time_ns)
+        self._parameters = Parameters(session)
+
+    def greet(self) -> None:
+        """Say what this server can do."""
+        info = {
+            "name": "aionode",
+            "capabilities": [*CAPABILITIES, *self.playback.capabilities],
+            "supportedEncodings": ENCODINGS,
+            "metadata": {"ROS_DISTRO": os.environ.get("ROS_DISTRO", "jazzy")},
+            "sessionId": str(uuid4()),
+            **self.playback.range,
+        }
+        self._session.outbox.send(frames.op_frame("serverInfo", info))
+
+    async def watch(self) -> None:
+        """Announce topics and services, and do it again whenever the graph has changed."""
+        robot = self._session._robot
+        with suppress(EntityDestroyedError):  # the context has closed
+            while True:
+                changed = robot.node.graph.changed()
+                await self._channels.announce()
+                if self._graph is not None:
+                    self._graph.tell()
+                await changed
+                await robot.clock.sleep(SETTLING_SEC)
+
+    async def take(self, frame: Frame) -> None:
+        """Begin what a frame asks for; what fails, the client is told as a status."""
+        try:
+            asked = frames.op_of(frame) if isinstance(frame, str) else frames.binary_of(frame)
+        except MessageError as error:
+            self.malformed += 1
+            self._refuse(error)
+            return
+        try:
+            await self._begin(asked)
+        except MessageError as error:  # too much is under way
+            self._refuse(error)
+
+    async def _begin(self, asked: frames.Asked) -> None:
+        """Do what a frame asks for, after what it has to wait for."""
+        match asked:
+            case frames.Advertise():
+                for channel in asked.channels:
+                    await self._put(("publish", channel.id), self._advertise, channel)
+            case frames.Unadvertise():
+                for channel_id in asked.channel_ids:
+                    await self._put(("publish", channel_id), self._unadvertise, channel_id)
+            case frames.ClientMessage():
+                await self._put(("publish", asked.channel_id), self._publish, asked)
+            case frames.ServiceCall():
+                self._start(self._call, asked)
+            case frames.PlaybackRequest():
+                await self._put("playback", self.playback.control, self._start, asked)
+            case frames.Subscribe():
+                for wish in asked.subscriptions:
+                    await self._put("channels", self._channels.subscribe, wish.id, wish.channel_id)
+            case _:
+                await self._put(type(asked).__name__.removeprefix("Un"), self._do, asked)
+
+    async def _put(
+        self, lane: Hashable, work: Callable[..., Awaitable[None]], *arguments: Any
+    ) -> None:
+        await self._lanes.put(lane, partial(self._attempt, work, *arguments))
+
+    def _start(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
+        self._lanes.start(partial(self._attempt, work, *arguments))
+
+    async def _attempt(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
+        """Await work, and tell the client if it fails."""
+        try:
+            await work(*arguments)
+        except (AionodeError, TimeoutError) as error:
+            self._refuse(error)
+
+    def _refuse(self, error: Exception) -> None:
+        status = {"level": ERROR, "message": str(error) or "no answer in time"}
+        self._session.outbox.send(frames.op_frame("status", status))
+
+    async def _do(self, op: frames.Op) -> None:
+        """Do what the client asks for of channels, parameters or the graph."""
+        match op:
+            case frames.Unsubscribe():
+                self._channels.unsubscribe(op.subscription_ids)
+            case frames.GetParameters():
+                await self._parameters.get(op.parameter_names, op.id)
+            case frames.SetParameters():
+                await self._parameters.set(op.parameters, op.id)
+            case frames.SubscribeParameterUpdates():
+                await self._parameters.follow(op.parameter_names)
+            case frames.UnsubscribeParameterUpdates():
+                self._parameters.unfollow(op.parameter_names)
+            case frames.SubscribeConnectionGraph():
+                self._graph = Connections(self._session)
+                self._graph.tell()
+            case frames.UnsubscribeConnectionGraph():
+                self._graph = None
+
+    # What the client publishes, and calls
+
+    async def _advertise(self, channel: frames.ClientChannel) -> None:
+        if channel.encoding not in ENCODINGS:
+            problem = f"{channel.encoding!r}; use one of {', '.join(ENCODINGS)}"
+            raise MessageError(f"advertise {channel.topic}: encoding", problem)
+        await self._session.advertise(channel.topic, channel.schema_name)
+        self._published[channel.id] = channel
+
+    async def _unadvertise(self, channel_id: int) -> None:
+        channel = self._published.pop(channel_id, None)
+        if channel is None:
+            raise MessageError("unadvertise", f"there is no channel {channel_id} of this client")
+        await self._session.unadvertise(channel.topic)
+
+    async def _publish(self, given: frames.ClientMessage) -> None:
+        channel = self._published.get(given.channel_id)
+        if channel is None:
+            problem = f"there is no channel {given.channel_id} of this client; advertise it first"
+            raise MessageError("message", problem)
+        values = values_of(channel.encoding, given.data)
+        await self._session.publish(channel.topic, values, channel.schema_name)
+
+    async def _call(self, call: frames.ServiceCall) -> None:
+        try:
+            if call.encoding not in ENCODINGS:
+                raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
+            name, type_name = self._channels.service(call.service_id)
+            values = values_of(call.encoding, call.data)
+            response = await self._session.call(
+                name, values, type_name=type_name, timeout_sec=CALL_SEC
+            )
+        except (AionodeError, TimeoutError) as error:
+            failure = {
+                "serviceId": call.service_id,
+                "callId": call.call_id,
+                "message": str(error) or f"no answer within {CALL_SEC:g} s",
+            }
+            self._session.outbox.send(frames.op_frame("serviceCallFailure", failure))
+            return
+        data = json_of(response) if call.encoding == "json" else bytes(cdr.encode(response))
+        self._session.outbox.send(frames.response_frame(call, data))
+
+
+def values_of(encoding: str, data: memoryview) -> Any:
+    """Return what a session publishes or calls with: CDR as it is, JSON as values.
+
+    Raises:
+        MessageError: the bytes are no JSON.
+    """
+    if encoding == "cdr":
+        return bytes(data)
+    try:
+        return msgspec.json.decode(data)
+    except (msgspec.DecodeError, RecursionError) as error:
+        raise MessageError("message", f"no JSON: {error}") from None
+
+
+class Connections:
+    """The connection graph, as one client has it.
+
+    Args:
+        session: Its session, which leaves out what the policy hides.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._known: list[dict[str, list[str]]] = [{}, {}, {}]
+
+    def tell(self) -> None:
+        """Send what has changed since the last time, if anything has."""
+        now = self._connections()
+        changed = [
+            {name: nodes for name, nodes in new.items() if old.get(name) != nodes}
+            for old, new in zip(self._known, now, strict=True)
+        ]
+        gone = [
+            [name for name in old if name not in new]
+            for old, new in zip(self._known, now, strict=True)
+        ]
+        self._known = now
+        if not any(changed) and not any(gone):
+            return
+        published, subscribed, served = changed
+        topics = {*gone[0], *gone[1]}
+        # A topic that has lost its publishers only is one without publishers, and not removed.
+        left = {name for name in topics if name in now[0] or name in now[1]}
+        for name in left:
+            published.update({} if name in now[0] else {name: []})
+            subscribed.update({} if name in now[1] else {name: []})
+        self._session.outbox.send(
+            frames.op_frame(
+                "connectionGraphUpdate",
+                {
+                    "publishedTopics": listed(published, "publisherIds"),
+                    "subscribedTopics": listed(subscribed, "subscriberIds"),
+                    "advertisedServices": listed(served, "providerIds"),
+                    "removedTopics": sorted(topics - left),
+                    "removedServices": gone[2],
+                },
+            )
+        )
+
+    def _connections(self) -> list[dict[str, list[str]]]:
+        """Return the nodes by what they publish, subscribe and serve."""
+        found: list[dict[str, list[str]]] = [{}, {}, {}]
+        for node in sorted(self._session.nodes()):
+            details = self._session.node_details(node)
+            kinds = (details.publishers, details.subscriptions, details.services)
+            for names, nodes in zip(kinds, found, strict=True):
+                for name in names:
+                    nodes.setdefault(name, []).append(node)
+        return found
+
+
+def listed(nodes: dict[str, list[str]], ids: str) -> list[dict[str, Any]]:
+    """Return the names with their nodes in the form of the protocol."""
+    return [{"name": name, ids: nodes[name]} for name in sorted(nodes)]

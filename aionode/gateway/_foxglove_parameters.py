@@ -1,0 +1,154 @@
+"""Parameters of nodes, for a client of Foxglove's protocol."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import AionodeError, MessageError
+from aionode.gateway import _foxglove_frames as frames
+from aionode.parameter import Parameter
+
+if TYPE_CHECKING:
+    from aionode.gateway._feed import Received
+    from aionode.gateway._session import Session
+    from aionode.gateway._session_topics import Subscribed
+
+__all__ = ["Parameters"]
+
+EVENTS: Final = "/parameter_events"
+EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
+
+
+class Parameters:
+    """The parameters that one client reads, sets and follows.
+
+    A client names a parameter by its node, a dot and its own name: names of nodes have no dots.
+
+    Args:
+        session: The session of the client.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._followed: set[str] = set()
+        self._follows_all = False
+        self._events: Subscribed | None = None
+
+    async def get(self, names: Sequence[str], request_id: str | None) -> None:
+        """Send parameters; without names those of all nodes.
+
+        Raises:
+            MessageError: a name is not that of a node, a dot, and a parameter.
+            RefusedError: the policy hides a node.
+        """
+        wanted = by_node(names) if names else await self._all()
+        shown: list[dict[str, Any]] = []
+        for node, own in wanted.items():
+            found = await self._session.get_parameters(node, own)
+            shown += [
+                frames.shown_parameter(f"{node}.{name}", Parameter(name, value=value))
+                for name, value in found.items()
+            ]
+        self._send(shown, request_id)
+
+    async def set(
+        self, parameters: Sequence[frames.FoxgloveParameter], request_id: str | None
+    ) -> None:
+        """Set parameters, and send their values if the client has asked for them.
+
+        Raises:
+            MessageError: a value is none that parameters have, or its node refuses it.
+            RefusedError: the policy refuses it.
+        """
+        given = {each.name: each for each in parameters}
+        for node, own in by_node(given).items():
+            now = await self._session.get_parameters(node, own)
+            changed = {
+                name: frames.parameter_of(
+                    name, given[f"{node}.{name}"], Parameter(name, value=now.get(name)).type_
+                ).value
+                for name in own
+            }
+            results = await self._session.set_parameters(node, changed)
+            for name, result in zip(changed, results, strict=True):
+                if not result.successful:
+                    raise MessageError(f"{node}.{name}", result.reason)
+        if request_id is not None:
+            await self.get(list(given), request_id)
+
+    async def _all(self) -> dict[str, list[str]]:
+        """Return the names of all parameters by their nodes, of nodes that answer."""
+        found: dict[str, list[str]] = {}
+
+        async def ask(node: str) -> None:
+            with suppress(AionodeError, TimeoutError):  # a node without parameters, or that ends
+                found[node] = await self._session.parameter_names(node)
+
+        async with asyncio.TaskGroup() as tasks:
+            for node in self._session.nodes():
+                tasks.create_task(ask(node))
+        return dict(sorted(found.items()))
+
+    async def follow(self, names: Sequence[str]) -> None:
+        """Send parameters whenever they change; without names all of them.
+
+        Raises:
+            RefusedError: the policy refuses to subscribe to the events of parameters.
+        """
+        self._follows_all = self._follows_all or not names
+        self._followed.update(names)
+        if self._events is None:
+            self._events = await self._session.subscribe(
+                EVENTS, EVENT_TYPE, frame=self._frame, key="parameterValues", depth=100
+            )
+
+    def unfollow(self, names: Iterable[str]) -> None:
+        """Send these no more; without names none."""
+        wanted = set(names)
+        self._followed -= wanted or set(self._followed)
+        self._follows_all = self._follows_all and bool(wanted)
+        if self._events is not None and not self._followed and not self._follows_all:
+            self._events.close()
+            self._events = None
+
+    def _frame(self, received: Received) -> str | None:
+        """Return the frame for an event, if the client follows one of its parameters."""
+        event = received.message
+        shown = [
+            frames.shown_parameter(f"{event.node}.{each.name}", Parameter.from_parameter_msg(each))
+            for each in (*event.new_parameters, *event.changed_parameters)
+        ]
+        shown += [{"name": f"{event.node}.{each.name}"} for each in event.deleted_parameters]
+        wanted = [each for each in shown if self._is_wanted(event.node, each["name"])]
+        return frames.op_frame("parameterValues", {"parameters": wanted}) if wanted else None
+
+    def _is_wanted(self, node: str, name: str) -> bool:
+        """Return whether the client follows a parameter that it may see."""
+        own = name.removeprefix(f"{node}.")
+        is_followed = self._follows_all or name in self._followed
+        return is_followed and self._session._sees(f"{node}:{own}", [])
+
+    def _send(self, shown: list[dict[str, Any]], request_id: str | None) -> None:
+        fields: dict[str, Any] = {"parameters": shown}
+        if request_id is not None:
+            fields["id"] = request_id
+        self._session.outbox.send(frames.op_frame("parameterValues", fields))
+
+
+def by_node(names: Iterable[str]) -> dict[str, list[str]]:
+    """Return the names of parameters by their nodes.
+
+    Raises:
+        MessageError: a name has no dot.
+    """
+    found: dict[str, list[str]] = defaultdict(list)
+    for name in names:
+        node, dot, own = name.partition(".")
+        if not dot or not own:
+            raise MessageError("parameters", f"{name!r} is not of the form /node.parameter")
+        found[node].append(own)
+    return found

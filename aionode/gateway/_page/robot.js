@@ -1,0 +1,170 @@
+// The connection with the gateway, in the protocol of rosbridge.
+
+import { decode } from "./cbor.js";
+
+const FIRST_WAIT_MS = 500;
+const LONGEST_WAIT_MS = 5000;
+const CHECK_MS = 2000;
+const SILENT_MS = 6000;
+
+/**
+ * Topics and services of a robot. It connects again by itself, with the same subscriptions.
+ *
+ * Events: "state" when the connection opens or closes, "status" with what the gateway refuses.
+ */
+export class Robot extends EventTarget {
+  constructor(url) {
+    super();
+    this.url = url;
+    this.token = "";
+    this.isOpen = false;
+    this.delayMs = null;
+    this.topics = new Map();
+    this.calls = new Map();
+    this.nextId = 1;
+    this.waitMs = FIRST_WAIT_MS;
+    setInterval(() => this.check(), CHECK_MS);
+  }
+
+  connect() {
+    clearTimeout(this.retry);
+    const url = new URL(this.url);
+    if (this.token) url.searchParams.set("token", this.token);
+    const socket = new WebSocket(url);
+    socket.binaryType = "arraybuffer";
+    socket.onopen = () => this.onOpen();
+    socket.onmessage = (event) => this.onFrame(event.data);
+    socket.onclose = (event) => socket === this.socket && this.onClose(event);
+    this.socket = socket;
+  }
+
+  onOpen() {
+    this.isOpen = true;
+    this.waitMs = FIRST_WAIT_MS;
+    this.heardMs = performance.now();
+    this.send({ op: "set_level", level: "warning" });
+    for (const [name, topic] of this.topics) this.subscribeTopic(name, topic);
+    this.check();
+    this.tell("state");
+  }
+
+  onClose(event) {
+    const wasOpen = this.isOpen;
+    this.isOpen = false;
+    this.delayMs = null;
+    for (const call of this.calls.values()) call.reject(new Error("the connection was lost"));
+    this.calls.clear();
+    this.retry = setTimeout(() => this.connect(), this.waitMs);
+    this.waitMs = Math.min(2 * this.waitMs, LONGEST_WAIT_MS);
+    this.tell("state", { refused: !wasOpen, reason: event.reason });
+  }
+
+  /** Ask for the time, and give the connection up if nothing has arrived for long. */
+  async check() {
+    if (!this.isOpen) return;
+    if (performance.now() - this.heardMs > SILENT_MS) {
+      const socket = this.socket;
+      this.socket = null; // its end may take minutes, and is of no interest any more
+      socket.close();
+      this.onClose({ reason: `nothing has arrived for ${SILENT_MS / 1000} s` });
+      return;
+    }
+    const startMs = performance.now();
+    await this.call("/rosapi/get_time").catch(() => null);
+    if (!this.isOpen) return;
+    this.delayMs = performance.now() - startMs;
+    this.tell("delay");
+  }
+
+  onFrame(data) {
+    this.heardMs = performance.now();
+    const isText = typeof data === "string";
+    const frame = isText ? JSON.parse(data) : decode(data);
+    if (frame.op === "publish") {
+      const raw = frame.msg?.bytes instanceof Uint8Array && "secs" in frame.msg;
+      const size = isText ? data.length : raw ? frame.msg.bytes.length : data.byteLength;
+      this.topics.get(frame.topic)?.readers.forEach((reader) => reader.read(raw ? null : frame.msg, size));
+    } else if (frame.op === "service_response") {
+      const call = this.calls.get(frame.id);
+      this.calls.delete(frame.id);
+      if (frame.result) call?.resolve(frame.values);
+      else call?.reject(new Error(String(frame.values)));
+    } else if (frame.op === "status") {
+      this.tell("status", { level: frame.level, text: frame.msg });
+    }
+  }
+
+  tell(name, detail) {
+    this.dispatchEvent(new CustomEvent(name, { detail }));
+  }
+
+  send(frame) {
+    if (this.isOpen && this.socket.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(frame));
+  }
+
+  /** How many bytes wait for the network: commands behind many of them would come too late. */
+  get waitingBytes() {
+    return this.isOpen ? this.socket.bufferedAmount : 0;
+  }
+
+  // Topics
+
+  /**
+   * Call read(message, size) for each message, and return a function that ends it.
+   *
+   * A reader without values gets null for the message: then nobody decodes it.
+   */
+  subscribe(name, read, { values = true, everyMs = 0 } = {}) {
+    const topic = this.topics.get(name) ?? { readers: new Set(), id: null };
+    const reader = { read, values, everyMs };
+    topic.readers.add(reader);
+    this.topics.set(name, topic);
+    this.subscribeTopic(name, topic);
+    return () => {
+      if (!topic.readers.delete(reader)) return;
+      if (topic.readers.size === 0) {
+        this.topics.delete(name);
+        this.send({ op: "unsubscribe", id: topic.id, topic: name });
+      } else this.subscribeTopic(name, topic);
+    };
+  }
+
+  // The gateway has one setting for each topic of a client, so all readers share one subscription.
+  subscribeTopic(name, topic) {
+    const readers = [...topic.readers];
+    const compression = readers.some((reader) => reader.values) ? "cbor" : "cbor-raw";
+    const throttle_rate = Math.min(...readers.map((reader) => reader.everyMs));
+    const settings = `${compression} ${throttle_rate}`;
+    if (topic.settings === settings && topic.socket === this.socket) return;
+    const before = topic.socket === this.socket ? topic.id : null;
+    topic.settings = settings;
+    topic.socket = this.socket;
+    topic.id = `subscribe:${name}:${this.nextId++}`;
+    this.send({ op: "subscribe", id: topic.id, topic: name, compression, throttle_rate });
+    if (before) this.send({ op: "unsubscribe", id: before, topic: name });
+  }
+
+  advertise(topic, type) {
+    this.send({ op: "advertise", id: `advertise:${topic}`, topic, type });
+  }
+
+  unadvertise(topic) {
+    this.send({ op: "unadvertise", id: `advertise:${topic}`, topic });
+  }
+
+  publish(topic, msg) {
+    this.send({ op: "publish", topic, msg });
+  }
+
+  // Services
+
+  /** Return a promise of the response; it fails with what the gateway says. */
+  call(service, args = {}, timeout = 5) {
+    if (!this.isOpen) return Promise.reject(new Error("not connected"));
+    const id = `call_service:${service}:${this.nextId++}`;
+    return new Promise((resolve, reject) => {
+      this.calls.set(id, { resolve, reject });
+      this.send({ op: "call_service", id, service, args, timeout });
+    });
+  }
+}

@@ -1,0 +1,197 @@
+"""The page in a browser: what it shows, what it changes, and that driving ends with it."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import asynccontextmanager
+from typing import TYPE_CHECKING, NamedTuple
+
+import pytest
+
+from aionode.gateway import Gateway, Policy
+from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.node import Node
+from examples.web_page_robot import POLICY, Robot
+from tests.support.chromium import CHROMIUM, chromium
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Callable
+
+    from aionode.context import Context
+    from tests.support.chromium import Page
+
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed"),
+    pytest.mark.one_loop,
+]
+
+
+class Scene(NamedTuple):
+    """The page in a browser, and the robot behind it."""
+
+    page: Page
+    robot: Robot
+    gateway: Gateway
+    commands: list[Twist]
+
+    @property
+    def speeds(self) -> list[float]:
+        """What the robot was told to drive, in m/s."""
+        return [command.linear.x for command in self.commands]
+
+
+@asynccontextmanager
+async def scene(
+    context: Context, policy: Policy = POLICY, fragment: str = ""
+) -> AsyncIterator[Scene]:
+    """Run a robot, its gateway and a browser that has opened the page."""
+    commands: list[Twist] = []
+    async with (
+        Robot(context) as robot,
+        Node("wheels", context=context) as wheels,
+        Gateway(robot, policy=policy, port=0) as gateway,
+        chromium() as browser,
+    ):
+        wheels.create_subscription(Twist, "/cmd_vel", commands.append, 100)
+        page = await browser.open(f"http://127.0.0.1:{gateway.port}/{fragment}")
+        yield Scene(page, robot, gateway, commands)
+
+
+async def connected(page: Page) -> None:
+    """Wait until the page has the list of topics."""
+    await page.until("document.querySelector('#state').textContent === 'connected'")
+    await page.until("document.querySelectorAll('#topics tbody tr').length > 3")
+
+
+async def hold(page: Page) -> None:
+    """Tick "drive", and hold the pad a bit above its middle."""
+    await page.click("#teleop .armed")
+    x, y = await page.place("#teleop .pad")
+    await page.mouse("mousePressed", x, y - 40)
+
+
+async def until(node: Node, condition: Callable[[], bool]) -> None:
+    """Look again and again whether something has happened, for 20 s at most."""
+    async with asyncio.timeout(20):
+        while not condition():
+            await node.get_clock().sleep(0.02)
+
+
+async def test_the_page_shows_what_the_robot_does(context: Context) -> None:
+    """Rates, values, plots, pictures and the log, from this gateway alone."""
+    async with scene(context) as (page, robot, _, _):
+        await connected(page)
+        await page.click("#topics tr[data-topic='/odom']")
+        await page.until("document.querySelectorAll('#message td.number').length > 5")
+        await page.click("#message td.number")
+        await page.choose("#camera select", "/camera/image")
+        robot.get_logger().error("<b>low battery</b>")
+
+        rate = "#topics tr[data-topic='/odom'] .rate"
+        await page.until(f'Number(document.querySelector("{rate}").textContent) > 5')
+        await page.until("document.querySelector('#camera .caption').textContent")
+        await page.until("document.querySelector('#log .level-40')")
+        assert (await page.text("#plot .legend button")).startswith("/odom header.stamp.sec")
+        assert "rgb8" in await page.text("#camera .caption")
+        assert "robot: <b>low battery</b>" in await page.text("#log .level-40")
+        origins = "performance.getEntriesByType('resource').map(each => new URL(each.name).origin)"
+        assert set(await page.value(origins)) == {await page.value("location.origin")}
+
+
+async def test_the_page_sets_parameters_and_calls_services(context: Context) -> None:
+    """What the node refuses is shown with its reason."""
+    async with scene(context) as (page, robot, _, _):
+        await connected(page)
+        robot.x = 5.0
+        await page.choose("#parameters select", "/robot")
+        await page.until("document.querySelectorAll('#parameters input').length > 1")
+        field = "#parameters tr:nth-child(2) input"
+        assert await page.text("#parameters tr:nth-child(2) td") == "floor"
+        await page.write(field, "1.5")
+        await page.until(f"document.querySelector('{field}').className === 'taken'")
+        await page.write(field, "9.5")
+        await page.until(f"document.querySelector('{field}').className === 'refused'")
+        notice = await page.text("#notice")
+        await page.choose("#services select", "/robot/reset")
+        await page.until("document.querySelector('#services .type').textContent")
+        await page.click("#services .call")
+        await page.until("document.querySelector('#services pre').textContent.includes('back')")
+
+        assert robot.settings.floor == 1.5
+        assert "/robot:floor" in notice
+        assert robot.x < 5.0
+
+
+async def test_letting_go_stops(context: Context) -> None:
+    """The page sends while the pad is held, within the limits of the policy."""
+    async with scene(context) as (page, robot, _, commands):
+        await connected(page)
+        await page.write("#teleop .speed", "5")
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 5)
+        x, y = await page.place("#teleop .pad")
+        await page.mouse("mouseReleased", x, y)
+        await until(robot, lambda: not commands[-1].linear.x)
+
+        assert {each.linear.x for each in commands} == {0.5, 0.0}
+
+
+async def test_the_stop_button_ends_driving(context: Context) -> None:
+    """Also while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
+    async with scene(context) as (page, robot, _, commands):
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        await page.value("document.querySelector('#stop').click(); 1")
+        await until(robot, lambda: not commands[-1].linear.x)
+        count = len(commands)
+        x, y = await page.place("#teleop .pad")
+        await page.mouse("mousePressed", x, y)
+        await page.value("new Promise(done => setTimeout(done, 200))")
+
+        assert not await page.value("document.querySelector('#teleop .armed').checked")
+        assert not any(each.linear.x for each in commands[count:])
+
+
+async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
+    """Nobody lets the pad go: the gateway ends the lease of a client that has left."""
+    async with scene(context) as (page, robot, gateway, commands):
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        await page.close()
+        await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
+
+        assert commands[-1] == Twist()
+
+
+async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
+    """A script that never ends sends nothing: the gateway sends the stop after the time to live."""
+    async with scene(context) as (page, robot, gateway, commands):
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        await page.value("setTimeout(() => { for (;;); }, 0); 1")
+        await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
+
+        assert commands[-1] == Twist()
+
+
+async def test_the_page_asks_for_a_token(context: Context) -> None:
+    """A token after the number sign of its address is enough; that of a user is typed in."""
+    policy = Policy.parse("""
+        [[who]]
+        name = "operator"
+        token = "correct horse battery staple"
+
+        [[allow]]
+        see = "/**"
+        subscribe = "/**"
+    """)
+    async with scene(context, policy, "#token=wrong") as (page, _, _, _):
+        await page.until("!document.querySelector('#sign-in').hidden")
+        await page.value("document.querySelector('#token').value = 'correct horse battery staple'")
+        await page.click("#sign-in button")
+        await connected(page)
+
+        assert "token" not in await page.value("location.href")

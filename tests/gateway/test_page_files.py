@@ -1,0 +1,62 @@
+"""The files of the page, as a browser asks for them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+import httpx
+import pytest
+
+from aionode.gateway import Gateway
+from aionode.gateway._page_files import FOLDER
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from aionode.node import Node
+
+ADDRESS = re.compile(r"""(?:src|href|from)\s*=?\s*["']([^"']+)["']""")
+
+
+@pytest.fixture
+async def web(node: Node) -> AsyncIterator[httpx.AsyncClient]:
+    """An HTTP client of a gateway."""
+    async with (
+        Gateway(node, port=0) as gateway,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}") as client,
+    ):
+        yield client
+
+
+async def test_the_page_and_all_that_it_needs_come_from_the_gateway(
+    web: httpx.AsyncClient,
+) -> None:
+    """It works where there is no Internet."""
+    places, seen = [httpx.URL("/")], set()
+    while places:
+        place = places.pop()
+        seen.add(place.path.rpartition("/")[2])
+        answer = await web.get(place)
+        assert answer.status_code == 200, place
+        found = [each for each in ADDRESS.findall(answer.text) if not each.startswith("data:")]
+        places += [place.join(each) for each in found if place.join(each).path not in seen]
+
+    names = {path.name for path in FOLDER.iterdir()} - {"index.html"}
+    assert names <= seen
+
+
+async def test_a_browser_runs_nothing_else_on_the_page(web: httpx.AsyncClient) -> None:
+    """A text of the robot, or a page around this one, can drive nothing."""
+    answer = await web.get("/")
+
+    policy = answer.headers["content-security-policy"]
+    assert "default-src 'none'; script-src 'self'" in policy
+    assert "frame-ancestors 'none'" in policy
+    assert answer.headers["content-type"] == "text/html; charset=utf-8"
+
+
+@pytest.mark.parametrize("name", ["nothing.js", "..%2f__init__.py", "%2fetc%2fpasswd"])
+async def test_other_files_are_not_served(web: httpx.AsyncClient, name: str) -> None:
+    """A name is looked up among the files of the page, and never opened."""
+    assert (await web.get(f"/page/{name}")).status_code == 404

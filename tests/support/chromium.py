@@ -1,0 +1,221 @@
+"""Chromium without a window, driven through its DevTools protocol."""
+
+from __future__ import annotations
+
+import asyncio
+import base64
+import json
+import os
+import shutil
+import tempfile
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+from websockets.asyncio.client import connect
+from websockets.exceptions import ConnectionClosed
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator
+
+    from websockets.asyncio.client import ClientConnection
+
+CHROMIUM: Final = next(
+    (
+        path
+        for name in ("chromium", "chromium-browser", "google-chrome")
+        if (path := shutil.which(name))
+    ),
+    None,
+)
+OPTIONS: Final = (
+    "--headless=new",
+    "--no-sandbox",  # which does not work for root
+    "--disable-gpu",
+    "--disable-dev-shm-usage",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-extensions",
+    "--disable-sync",
+    "--no-first-run",
+    "--remote-debugging-port=0",
+)
+
+
+class Page:
+    """One tab."""
+
+    def __init__(self, browser: Browser, target: str, session: str) -> None:
+        self._browser = browser
+        self._target = target
+        self._session = session
+
+    async def do(self, method: str, **parameters: Any) -> Any:
+        """Call a method of the DevTools protocol, and return its result."""
+        return await self._browser.do(method, session=self._session, **parameters)
+
+    async def value(self, expression: str) -> Any:
+        """Return the value of an expression of JavaScript; a promise is awaited."""
+        answer = await self.do(
+            "Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True
+        )
+        if "exceptionDetails" in answer:
+            raise AssertionError(f"{expression}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
+
+    async def until(self, expression: str) -> Any:
+        """Wait until an expression is true, and return its value."""
+        looking = (
+            "new Promise(done => { const look = () => { let found;"
+            f"try {{ found = {expression}; }} catch {{}}"
+            "found ? done(found) : setTimeout(look, 20); }; look(); })"
+        )
+        try:
+            async with asyncio.timeout(20):
+                return await self.value(looking)
+        except TimeoutError:
+            text = await self.value("document.body?.innerText")
+            raise AssertionError(f"not true for 20 s: {expression}\n{text}") from None
+
+    async def text(self, selector: str) -> str:
+        """Return the text of an element."""
+        return str(await self.value(f"document.querySelector({selector!r}).textContent"))
+
+    async def place(self, selector: str) -> tuple[float, float]:
+        """Return where the middle of an element is, scrolled into view."""
+        box = await self.until(
+            f"(() => {{ const e = document.querySelector({selector!r});"
+            "e.scrollIntoView({block: 'center'}); const b = e.getBoundingClientRect();"
+            "return [b.x + b.width / 2, b.y + b.height / 2]; })()"
+        )
+        return box[0], box[1]
+
+    async def mouse(self, kind: str, x: float, y: float) -> None:
+        """Do with the left button what `kind` says: mousePressed, mouseMoved or mouseReleased."""
+        await self.do(
+            "Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1, buttons=1
+        )
+
+    async def click(self, selector: str) -> None:
+        """Click on the middle of an element."""
+        x, y = await self.place(selector)
+        await self.mouse("mousePressed", x, y)
+        await self.mouse("mouseReleased", x, y)
+
+    async def choose(self, selector: str, value: str) -> None:
+        """Choose a value of a select that has it, or soon will."""
+        found = f"document.querySelector({selector!r})"
+        await self.until(f"[...{found}.options].some(option => option.value === {value!r})")
+        await self.value(
+            f"{found}.value = {value!r}; {found}.dispatchEvent(new Event('change')); 1"
+        )
+
+    async def write(self, selector: str, text: str) -> None:
+        """Replace the text of a field."""
+        found = f"document.querySelector({selector!r})"
+        await self.value(f"{found}.value = {text!r}; {found}.dispatchEvent(new Event('change')); 1")
+
+    async def screenshot(self, path: Path, selector: str | None = None) -> None:
+        """Write a picture of what is shown, or of one element."""
+        clip: dict[str, Any] = {}
+        if selector:
+            box = await self.value(
+                f"(b => ({{x: b.x + scrollX, y: b.y + scrollY, width: b.width, height: b.height}}))"
+                f"(document.querySelector({selector!r}).getBoundingClientRect())"
+            )
+            clip = {"clip": {**box, "scale": 1}, "captureBeyondViewport": True}
+        answer = await self.do("Page.captureScreenshot", format="png", **clip)
+        path.write_bytes(base64.b64decode(answer["data"]))
+
+    async def close(self) -> None:
+        """Close the tab, as a user does."""
+        await self._browser.do("Target.closeTarget", targetId=self._target)
+
+
+class Browser:
+    """A running Chromium."""
+
+    def __init__(self, connection: ClientConnection) -> None:
+        self._connection = connection
+        self._answers: dict[int, asyncio.Future[Any]] = {}
+        self._last_id = 0
+
+    async def do(self, method: str, session: str | None = None, **parameters: Any) -> Any:
+        """Call a method of the DevTools protocol, and return its result."""
+        self._last_id += 1
+        answer = self._answers[self._last_id] = asyncio.get_running_loop().create_future()
+        call = {"id": self._last_id, "method": method, "params": parameters}
+        await self._connection.send(json.dumps(call | ({"sessionId": session} if session else {})))
+        return await answer
+
+    async def read(self) -> None:
+        """Give answers to those who wait for them, until the connection ends."""
+        with suppress(ConnectionClosed):
+            async for text in self._connection:
+                message = json.loads(text)
+                answer = self._answers.pop(message.get("id", 0), None)
+                if answer is None or answer.done():
+                    continue
+                if "error" in message:
+                    answer.set_exception(AssertionError(message["error"]["message"]))
+                else:
+                    answer.set_result(message["result"])
+
+    async def open(self, url: str, *, width: int = 1280, height: int = 900) -> Page:
+        """Open a page in a new tab."""
+        target = (await self.do("Target.createTarget", url="about:blank"))["targetId"]
+        attached = await self.do("Target.attachToTarget", targetId=target, flatten=True)
+        page = Page(self, target, attached["sessionId"])
+        await page.do(
+            "Emulation.setDeviceMetricsOverride",
+            width=width,
+            height=height,
+            deviceScaleFactor=1,
+            mobile=False,
+        )
+        await page.do("Page.navigate", url=url)
+        return page
+
+
+@asynccontextmanager
+async def chromium() -> AsyncIterator[Browser]:
+    """Run Chromium, with a profile of its own, until the block ends."""
+    assert CHROMIUM is not None
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
+        process = await asyncio.create_subprocess_exec(
+            CHROMIUM,
+            *OPTIONS,
+            f"--user-data-dir={profile}",
+            stdin=asyncio.subprocess.DEVNULL,
+            stdout=asyncio.subprocess.DEVNULL,
+            stderr=asyncio.subprocess.PIPE,
+            env=os.environ | {"HOME": profile},
+            start_new_session=True,
+        )
+        assert process.stderr is not None
+        try:
+            address = ""
+            while not address.startswith("DevTools listening on "):
+                line = await process.stderr.readline()
+                assert line, "Chromium has ended"
+                address = line.decode().strip()
+            async with (
+                connect(address.split()[-1], max_size=None, proxy=None) as connection,
+                asyncio.TaskGroup() as tasks,
+            ):
+                browser = Browser(connection)
+                tasks.create_task(browser.read())
+                tasks.create_task(drain(process.stderr))
+                yield browser
+                await browser.do("Browser.close")
+                await process.wait()
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, 9)
+            await process.wait()
+
+
+async def drain(stream: asyncio.StreamReader) -> None:
+    """Read what Chromium prints, so that its pipe never fills."""
+    while await stream.read(65536):
+        pass
