@@ -44,6 +44,7 @@ SHARED = {
     "aionode.message._memory_size": "queues add up what their messages take",
     "aionode.message._message": "definitions become message classes",
     "aionode.message._validation": "the codec checks values by the same rules",
+    "aionode.rclpy._missing": "launch files import packages of ROS that aionode lacks, too",
     "aionode.tf._apply": "the command line prints rotations as matrices and angles",
     "aionode.tf._buffer_core": "buffers of rclpy's programs take the same times and defaults",
     "aionode.tf._texts": "the command line shows the rates of frames",

@@ -11,13 +11,20 @@ import os
 from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aionode._packages import Packages, workspace_of
-from aionode.launch._evaluation import arguments_of, evaluate, load_file, new_context
+from aionode.launch._evaluation import (
+    arguments_of,
+    check_later_steps,
+    evaluate,
+    load_file,
+    new_context,
+)
 from aionode.launch._launch.launch_service import LaunchService
-from aionode.launch._plan import Step
+from aionode.launch._plan import Log, Step
 from aionode.launch._preview import records, text_of
 from aionode.launch._running import RunningLaunch, first_of, run_service
 from aionode.launch._watch import restart_changed
@@ -110,8 +117,21 @@ class Plan:
         if self._steps is None:
             context = new_context(self.path, self._arguments)
             context.packages = self._packages
-            self._steps = evaluate([self.description], context)
+            steps = evaluate([self.description], context)
+            check_later_steps(steps, set())
+            self._steps = [*self._misspelt(context.declared), *steps]
         return self._steps
+
+    def _misspelt(self, declared: set[str]) -> Iterator[Step]:
+        """Yield a warning for each argument that is hardly the one that was meant.
+
+        Others that are not declared may be read all the same.
+        """
+        for name in self._arguments:
+            close = get_close_matches(name, declared - set(self._arguments))
+            if name not in declared and close:
+                problem = f"argument '{name}' is not one of the file; is it '{close[0]}'?"
+                yield Log(problem, "WARN")
 
     def records(self) -> Iterator[dict[str, Any]]:
         """Yield what is started, as plain values that can be written as JSON."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib.machinery
 import importlib.util
 import inspect
@@ -16,13 +17,14 @@ from aionode.errors import AionodeError, LaunchFileError
 from aionode.launch._frontend import description_of
 from aionode.launch._launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from aionode.launch._launch.event_handler import entities_of
-from aionode.launch._launch.launch_context import LaunchContext
+from aionode.launch._launch.launch_context import KnownLater, LaunchContext
 from aionode.launch._launch.launch_description import LaunchDescription
 from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
 from aionode.launch._markup import read_xml, read_yaml
-from aionode.launch._plan import Step
+from aionode.launch._plan import Opaque, Step, Timer, Watch
+from aionode.rclpy._missing import advice
 
-__all__ = ["arguments_of", "evaluate", "load_file", "new_context"]
+__all__ = ["arguments_of", "check_later_steps", "evaluate", "load_file", "new_context"]
 
 FUNCTION = "generate_launch_description"
 
@@ -157,8 +159,54 @@ def is_machinery(filename: str) -> bool:
     return filename.startswith((str(Path(__file__).parents[1]), "<frozen"))
 
 
+OWN_PACKAGES = frozenset(
+    {"ament_index_python", "launch", "launch_ros", "launch_xml", "launch_yaml"}
+)
+"""The packages of ROS that aionode has for launch files."""
+
+UNKNOWN = re.compile(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(\w+)'")
+
+
+def unknown_option(error: Exception) -> str | None:
+    """Return which class has no such option, and what fits; None if that is not the problem.
+
+    The text of the error names the class that was asked last, which may be a base of the one that
+    stands in the file.
+    """
+    match = UNKNOWN.match(str(error))
+    if match is None:
+        return None
+    name, option = match.groups()
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+    users = [at for at, one in enumerate(frames) if not is_machinery(one.f_code.co_filename)]
+    inner = frames[users[-1] + 1 :] if users else []
+    kind = frames[users[-1]].f_globals.get(name) if users else None
+    kind = type(inner[0].f_locals["self"]) if inner and "self" in inner[0].f_locals else kind
+    if not isinstance(kind, type):
+        return None
+    known = options_of(kind)
+    close = difflib.get_close_matches(option, known)
+    fits = f"is it '{close[0]}'?" if close else f"it has: {', '.join(known)}"
+    return f"{kind.__name__} has no '{option}'; {fits}"
+
+
+def options_of(kind: type) -> list[str]:
+    """Return the names of the arguments of a class and of its bases, as far as it takes those."""
+    found: set[str] = set()
+    for cls in kind.__mro__:
+        if "__init__" in vars(cls):
+            _, *parameters = inspect.signature(vars(cls)["__init__"]).parameters.values()
+            variable = {inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL}
+            found |= {one.name for one in parameters if one.kind not in variable}
+            if all(one.kind is not inspect.Parameter.VAR_KEYWORD for one in parameters):
+                break
+    return sorted(found)
+
+
 def problem_of(error: Exception) -> str:
     """Return what went wrong, and for a missing name what there is instead."""
+    if (problem := unknown_option(error)) is not None:
+        return problem
     if isinstance(error, ImportError) and error.name is not None:
         match = re.match(r"cannot import name '(\w+)'", str(error))  # before Python 3.12
         missing = None if match is None else match.group(1)
@@ -169,7 +217,7 @@ def problem_of(error: Exception) -> str:
                 f"{package} has no {missing}; it has: {known}. "
                 "--real runs the file with ROS 2's own launch, where that is installed"
             )
-        return f"no module {package}"
+        return advice(error.name, OWN_PACKAGES) or f"no module {package}"
     text = str(error) or type(error).__name__
     if isinstance(error, KeyError) and error.args:
         text = str(error.args[0])
@@ -185,15 +233,44 @@ def is_own(module: str) -> bool:
 
 
 def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:
-    """Return what entities do, in order.
+    """Return what entities do, in order; up to what is known only later, if it is done later.
 
     Raises:
         LaunchFileError: An entity cannot be evaluated, with its file and line.
     """
-    for entity in entities:
-        visit(entity, context, 0)
+    try:
+        for entity in entities:
+            visit(entity, context, 0)
+    except KnownLater as later:
+        context.steps.append(Opaque(str(later)))
     steps, context.steps = context.steps, []
     return steps
+
+
+def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
+    """Evaluate what timers and event handlers do, as far as nothing has to run for that.
+
+    So what is wrong with them is known before anything starts.
+
+    Args:
+        steps: The steps.
+        checked: The ids of lists of entities that were checked: an event handler may register
+            itself.
+
+    Raises:
+        LaunchFileError: An entity cannot be evaluated, with its file and line.
+    """
+    for step in steps:
+        if isinstance(step, Timer):
+            entities = step.entities
+        elif isinstance(step, Watch) and not step.ends:
+            entities = step.handler.known_entities() or []
+        else:
+            continue
+        if id(entities) in checked:
+            continue
+        checked.add(id(entities))
+        check_later_steps(evaluate(entities, step.context.fork(ahead=True)), checked)
 
 
 def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -> None:
@@ -204,6 +281,8 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
         raise LaunchFileError(path, problem, line=int(line))
     try:
         inner = entities_of(entity.visit(context))
+    except KnownLater:
+        raise
     except LaunchFileError as error:
         if error.line is None and isinstance(entity, IncludeLaunchDescription):
             path, _, line = entity.where.rpartition(":")

@@ -13,6 +13,7 @@ __all__ = [
     "Emit",
     "LoadNodes",
     "Log",
+    "Opaque",
     "ParameterValues",
     "Process",
     "Step",
@@ -55,6 +56,8 @@ class Process(Step):
     kill_after_sec: float = 5.0
     """How long after SIGTERM it gets SIGKILL."""
     emulate_tty: bool = False
+    autostart: bool = False
+    """Whether its managed node is configured and activated."""
 
     def changes(self, before: Mapping[str, str]) -> dict[str, str | None]:
         """Return which variables differ from those before; None for what is not there any more."""
@@ -108,6 +111,11 @@ class Call(Step):
     action: Any
     context: Any
 
+    @property
+    def text(self) -> str:
+        """What is called."""
+        return str(self.action.describe())
+
 
 @dataclass(frozen=True)
 class Completed(Step):
@@ -130,6 +138,13 @@ class Emit(Step):
     """An event for the handlers."""
 
     event: Any
+
+
+@dataclass(frozen=True)
+class Opaque(Step):
+    """What is done later, and is not known before: the rest may depend on it."""
+
+    text: str
 
 
 @dataclass(frozen=True)

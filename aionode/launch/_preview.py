@@ -15,6 +15,7 @@ from aionode.launch._plan import (
     Emit,
     LoadNodes,
     Log,
+    Opaque,
     ParameterValues,
     Process,
     Step,
@@ -30,7 +31,7 @@ def records(
 ) -> Iterator[dict[str, Any]]:
     """Yield what steps start, in order; timers and event handlers are followed.
 
-    Functions of event handlers are named only: they are called when something happens.
+    Functions of event handlers and timers are named only: they are called when something happens.
 
     Args:
         steps: The steps.
@@ -45,31 +46,18 @@ def records(
                 for component in step.components:
                     yield of_component(step, component, when)
             case Timer():
-                later = evaluate(step.entities, step.context.fork())
+                later = evaluate(step.entities, step.context.fork(ahead=True))
                 yield from records(later, before, (*when, f"after {step.period_sec:g} s"))
             case Watch(ends=False):
                 yield from of_handler(step, before, when)
-            case Call():
-                yield {"when": list(when), "calls": step.action.describe()}
+            case Call() | Opaque():
+                yield {"when": list(when), "calls": step.text}
             case Log():
                 yield {"when": list(when), "log": step.text}
             case Emit():
                 yield {"when": list(when), "event": step.event.name}
             case _:
                 pass
-
-
-class Unknown:
-    """Stands for what is known only when it happens: an event, and what belongs to it."""
-
-    def __init__(self, name: str) -> None:
-        self._name = name
-
-    def __getattr__(self, name: str) -> Unknown:
-        return Unknown(f"{self._name}.{name}")
-
-    def __str__(self) -> str:
-        return f"<{self._name}>"
 
 
 def of_handler(
@@ -81,9 +69,8 @@ def of_handler(
     if entities is None:
         yield {"when": [*when, condition], "calls": "a function"}
     else:
-        context = step.context.fork()
-        context.extend_locals({"event": Unknown("event")})
-        yield from records(evaluate(entities, context), before, (*when, condition))
+        later = evaluate(entities, step.context.fork(ahead=True))
+        yield from records(later, before, (*when, condition))
 
 
 def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) -> dict[str, Any]:

@@ -16,7 +16,7 @@ import yaml
 from aionode.clock import SteadyClock
 from aionode.errors import LaunchFileError
 from aionode.interfaces.composition_interfaces.srv import LoadNode
-from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
+from aionode.interfaces.lifecycle_msgs.msg import Transition, TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState
 from aionode.launch._evaluation import evaluate, failure_of, load_description
 from aionode.launch._launch.event import Event
@@ -198,6 +198,8 @@ class RunningLaunch:
         self.members[step.action] = member
         if isinstance(step.action, LifecycleNode):
             self._spawn(self._follow_states(step.action))
+            if step.autostart:
+                self._spawn(self._activate(step.action.node_name))
         self._spawn(self._follow(member, events), step.action)
 
     def _listener(
@@ -314,6 +316,11 @@ class RunningLaunch:
             client.destroy()
         if not response.success:
             self.system.log.note(f"{node_name} has not made transition {transition_id}")
+
+    async def _activate(self, node_name: str) -> None:
+        """Configure and activate a managed node, once it answers."""
+        await self._change_state(node_name, Transition.TRANSITION_CONFIGURE)
+        await self._change_state(node_name, Transition.TRANSITION_ACTIVATE)
 
     async def _follow_states(self, action: LifecycleNode) -> None:
         """Tell the event handlers of each transition of a managed node, while it runs."""

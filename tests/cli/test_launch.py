@@ -34,6 +34,14 @@ def test_it_prints_what_it_would_start(file: str, capsys: pytest.CaptureFixture[
     assert capsys.readouterr().out == "echo-1: echo 0.8\n    COLOR=red\n"
 
 
+def test_an_argument_without_its_colon_is_no_file_of_a_package(
+    file: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The first word is a file that is there, so the second one is an argument."""
+    assert main(["launch", file, "speed=0.8"]) == 1
+    assert "'speed=0.8': expected NAME:=VALUE" in capsys.readouterr().err
+
+
 def test_it_prints_records(file: str, capsys: pytest.CaptureFixture[str]) -> None:
     """For programs."""
     assert main(["launch", "--print", "--json", file]) == 0

@@ -11,6 +11,8 @@ import pytest
 
 from aionode.errors import LaunchFileError
 from aionode.launch import Plan
+from aionode.launch._plan import Process, Watch
+from tests.launch.conftest import BODY, HEAD
 
 if TYPE_CHECKING:
     from tests.launch.conftest import Files
@@ -313,6 +315,7 @@ def test_the_arguments_of_a_file_can_be_listed(files: Files) -> None:
 BAD = {
     "from launch.actions import Nonsense": (1, "launch.actions has no Nonsense; it has: Action"),
     "import not_there_at_all": (1, "no module not_there_at_all"),
+    "import launch.frontend": (1, "launch is from aionode here, which does not have launch.fronte"),
     "def generate_launch_description(:": (1, "not valid Python"),
     "x = 1": (None, "has neither generate_launch_description() nor"),
     "def generate_launch_description():\n    return 5": (None, "a LaunchDescription fits"),
@@ -343,6 +346,13 @@ BAD_ENTITIES = {
     "Node(executable='n', parameters=[{'a': []}])": "parameter 'a'",
     "Node(executable='n', name='no/name')": "no/name",
     "IncludeLaunchDescription('missing.launch.py')": "missing.launch.py",
+    "ExecuteProcess(cmd=['a'], respwan=1)": "ExecuteProcess has no 'respwan'; is it 'respawn'",
+    "Node(executable='a', nonsense=True)": "Node has no 'nonsense'; it has: ",
+    "LaunchConfiguration('a', defualt='b')": "LaunchConfiguration has no 'defualt'; is it",
+    "RegisterEventHandler(OnProcessExit(on_exti=[]))": "OnProcessExit needs on_exit=",
+    "RegisterEventHandler(OnProcessExit(on_exit=[Node(package='nope', executable='')]))": "nope",
+    "TimerAction(period=1.0, actions=[LogInfo(msg=LaunchConfiguration('nope'))])": "'nope' does",
+    "ExecuteProcess(cmd=['a'], sigterm_timeout='x')": "sigterm_timeout: 'x' is not a float",
     "ForLoop('x', function=print)": "length is 'x'; a whole number fits",
     "ForEach('[a]', function=print)": "'[a]' is no set of values",
     "OpaqueCoroutine(coroutine=print)": "an async function fits",
@@ -361,6 +371,65 @@ def test_a_bad_entity_is_one_error_with_its_line(files: Files, entity: str) -> N
     if entity != "5":
         assert caught.value.path.endswith(("a.launch.py", "missing.launch.py"))
         assert caught.value.line is not None
+
+
+def test_what_is_done_later_is_checked_and_printed_without_doing_it(files: Files) -> None:
+    """A function is called, and a command run, when its time has come; names keep their numbers."""
+    plan = Plan(
+        files.write(
+            "a.launch.py",
+            HEAD
+            + BODY.format(
+                entities="""
+        TimerAction(period=1.0, actions=[ExecuteProcess(cmd=['later']), handler := (
+            RegisterEventHandler(OnProcessStart(on_start=[
+                LogInfo(msg=Command('false')), LogInfo(msg=LaunchConfiguration('nope'))])))]),
+        TimerAction(period=1.0, actions=[OpaqueFunction(function=lambda context: 1 / 0)]),
+        ExecuteProcess(cmd=['now']),
+        """
+            ),
+        )
+    )
+
+    assert [step.name for step in plan.steps if isinstance(step, Process)] == ["now-1"]
+    assert [record["calls"] for record in plan.records() if "calls" in record] == [
+        "Command()",
+        "OpaqueFunction(<lambda>)",
+    ]
+
+
+def test_an_event_handler_that_registers_itself_is_checked_once(files: Files) -> None:
+    """Whatever it does, it does again at the next event."""
+    plan = Plan(
+        files.write(
+            "a.launch.py",
+            HEAD
+            + """
+again = RegisterEventHandler(EventHandler(matcher=bool))
+again.event_handler = OnProcessExit(on_exit=[again], handle_once=True)
+"""
+            + BODY.format(entities="again"),
+        )
+    )
+
+    assert any(isinstance(step, Watch) for step in plan.steps)
+
+
+def test_an_argument_that_is_misspelt_is_noted(files: Files) -> None:
+    """Others may be read though nobody has declared them, as in ROS's launch."""
+    records = files.python(
+        """
+        DeclareLaunchArgument('speed', default_value='1'),
+        LogInfo(msg=LaunchConfiguration('other')),
+        """,
+        sped="2",
+        other="3",
+    )
+
+    assert [record["log"] for record in records] == [
+        "argument 'sped' is not one of the file; is it 'speed'?",
+        "3",
+    ]
 
 
 def test_a_file_that_includes_itself_is_an_error(files: Files) -> None:

@@ -17,6 +17,7 @@ import pytest
 from aionode import Context
 from aionode.errors import LaunchFileError
 from aionode.launch import Plan, run_plan
+from aionode.lifecycle import LifecycleNode
 from aionode.system import System, SystemLog
 from tests.launch.conftest import BODY, HEAD
 from tests.support.waiting import until
@@ -150,6 +151,21 @@ async def test_components_that_are_aionode_classes_run_as_tasks(robot: Robot) ->
         running.cancel()
 
     assert {("talker", "/"), ("ear", "/robot")} <= names
+
+
+async def test_a_managed_node_may_be_activated_as_it_starts(robot: Robot) -> None:
+    """With `autostart`, once it answers."""
+    plan = robot.plan(
+        """
+        LifecycleNode(executable='sleep', arguments=['1000'], name='arm', namespace='/',
+                      autostart=True),
+        """
+    )
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(plan, system))
+        async with LifecycleNode("arm", context=system.context) as arm:  # in the program's place
+            await until(lambda: arm.lifecycle_state.label == "active")
+        running.cancel()
 
 
 async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:

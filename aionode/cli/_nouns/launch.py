@@ -96,7 +96,7 @@ def file_and_values(
         CommandError: An argument is not NAME:=VALUE, or the package has no such file.
     """
     words = list(arguments)
-    if words and ":=" not in words[0]:
+    if words and ":=" not in words[0] and not Path(file).is_file():
         file = file_of_package(file, words.pop(0), workspace)
     values = {}
     for word in words:

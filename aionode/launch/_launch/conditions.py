@@ -38,6 +38,7 @@ def evaluate_condition_expression(
     try:
         return known[text.strip().lower()]
     except KeyError:
+        context.need_present("a condition")  # which may be about an event
         raise InvalidConditionExpressionError(
             f"condition is {text!r}; true, 1, false and 0 fit"
         ) from None

@@ -11,12 +11,29 @@ from typing import Any, Self
 from aionode._packages import Packages
 from aionode.launch._plan import Emit, Step, Watch
 
-__all__ = ["LaunchContext"]
+__all__ = ["KnownLater", "LaunchContext"]
+
+
+class KnownLater(Exception):  # noqa: N818  # no error
+    """A value is known only when the entity is really done: something may have changed by then."""
 
 
 def cannot_load(path: str, kind: str) -> Any:
     """Refuse to load a file: only an evaluation can."""
     raise NotImplementedError(f"{path}: this context does not read launch files")
+
+
+class Unknown:
+    """Stands for what is known only when it happens: an event, and what belongs to it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Unknown:
+        return Unknown(f"{self._name}.{name}")
+
+    def __str__(self) -> str:
+        return f"<{self._name}>"
 
 
 class LaunchContext:
@@ -38,21 +55,34 @@ class LaunchContext:
         """Returns the description in a file of this path and kind: python, xml, yaml or any."""
         self.packages = Packages()
         """The packages in which executables and files are looked up."""
+        self.declared: set[str] = set()
+        """The arguments that have been declared."""
+        self.ahead = False
+        """Whether what is evaluated is done later."""
         self.names: dict[str, int] = {}
         """How many processes had a name so far."""
         self._configurations: list[dict[str, Any]] = []
         self._environments: list[dict[str, str]] = []
         self._locals: list[dict[str, Any]] = []
 
-    def fork(self) -> Self:
-        """Return a context with the same state and no steps, for what is done later."""
+    def fork(self, *, ahead: bool = False) -> Self:
+        """Return a context with the same state and no steps, for what is done later.
+
+        Args:
+            ahead: Whether that is evaluated before its time, to find what is wrong with it.
+        """
         later = type(self)(argv=self.argv, noninteractive=self.noninteractive)
         later.launch_configurations = dict(self.launch_configurations)
         later.environment = dict(self.environment)
         later.locals = SimpleNamespace(**vars(self.locals))
         later.load_file = self.load_file
         later.packages = self.packages
-        later.names = self.names  # one count for the whole description
+        # One count for the whole description.
+        later.names = dict(self.names) if ahead else self.names
+        later.declared = self.declared
+        later.ahead = ahead or self.ahead
+        if ahead:
+            later.locals.event = Unknown("event")
         return later
 
     @property
@@ -71,6 +101,15 @@ class LaunchContext:
     def extend_locals(self, extensions: Mapping[str, Any]) -> None:
         """Add values that the following entities find in `locals`."""
         vars(self.locals).update(extensions)
+
+    def need_present(self, what: str) -> None:
+        """Give up if this is evaluated before its time.
+
+        Raises:
+            KnownLater: It is.
+        """
+        if self.ahead:
+            raise KnownLater(what)
 
     def get_locals_as_dict(self) -> dict[str, Any]:
         """Return the values in `locals`."""

@@ -188,7 +188,11 @@ class LocalSubstitution(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value of an expression such as ``event.returncode``."""
-        return str(eval("context.locals." + self.expression, {}, {"context": context}))  # noqa: S307  # the launch file is the user's own program
+        try:
+            return str(eval("context.locals." + self.expression, {}, {"context": context}))  # noqa: S307  # the launch file is the user's own program
+        except Exception:
+            context.need_present(self.describe())
+            raise
 
 
 class ForEachVar(Substitution):
@@ -267,6 +271,7 @@ class FileContent(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text."""
+        context.need_present(self.describe())
         path = Path(perform_substitutions(context, self.path))
         try:
             return path.read_text(encoding="utf-8")
@@ -287,6 +292,7 @@ class Command(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the output."""
+        context.need_present(self.describe())
         line = perform_substitutions(context, self.command)
         on_stderr = perform_substitutions(context, self.on_stderr)
         if on_stderr not in ("fail", "ignore", "warn", "capture"):
@@ -348,6 +354,7 @@ class PythonExpression(Substitution):
         try:
             return str(eval(expression, {}, known))  # noqa: S307  # the launch file is the user's own program
         except Exception as error:
+            context.need_present(self.describe())  # it may be about an event
             raise SubstitutionFailure(
                 f"expression {expression!r} fails: {type(error).__name__}: {error}"
             ) from error

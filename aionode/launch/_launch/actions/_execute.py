@@ -84,6 +84,10 @@ class ExecuteLocal(Action):
         """Return the full name of the node that the process is, if that is known."""
         return None
 
+    def autostarts(self, context: LaunchContext) -> bool:
+        """Return whether it is a managed node that is configured and activated."""
+        return False
+
     def execute(self, context: LaunchContext) -> None:
         """Note what is to be started."""
         described = self.process_description
@@ -118,6 +122,7 @@ class ExecuteLocal(Action):
                 output=self._output(context),
                 **self._limits(context),
                 emulate_tty=self._emulates_tty(context),
+                autostart=self.autostarts(context),
             )
         )
 
@@ -129,8 +134,14 @@ class ExecuteLocal(Action):
             given = getattr(self, f"{name}_timeout")
             given = configured if given is None else given
             if given is not None:
-                found[option] = float(perform_typed_substitution(context, given, float))
+                found[option] = self._number(context, f"{name}_timeout", given)
         return found
+
+    def _number(self, context: LaunchContext, name: str, given: Any) -> float:
+        try:
+            return float(perform_typed_substitution(context, given, float))
+        except ValueError as error:
+            raise ValueError(f"{name}: {error}; a number of seconds fits") from None
 
     def _emulates_tty(self, context: LaunchContext) -> bool:
         given = context.launch_configurations.get("emulate_tty", self.emulate_tty)

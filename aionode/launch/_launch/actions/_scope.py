@@ -64,6 +64,7 @@ class DeclareLaunchArgument(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Give it its default, unless it has a value."""
+        context.declared.add(self.name)
         if self.name not in context.launch_configurations:
             if self.default_value is None:
                 described = f" ({self.description})" if self.description else ""
@@ -194,6 +195,7 @@ class OpaqueFunction(Action):
 
     def execute(self, context: LaunchContext) -> Any:
         """Call it."""
+        context.need_present(self.describe())
         return self.function(context, *self.args, **self.kwargs)
 
     def describe(self) -> str:

@@ -9,6 +9,7 @@ from aionode.launch._launch.action import Action
 from aionode.launch._launch.actions import EmitEvent
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import SomeSubstitutionsType
+from aionode.launch._launch.utilities.type_utils import perform_typed_substitution
 from aionode.launch._launch_ros.actions._node import Node
 from aionode.launch._launch_ros.events.lifecycle import ChangeState, matches_node_name
 from aionode.launch._launch_ros.namespaces import text_or_none
@@ -29,6 +30,10 @@ class LifecycleNode(Node):
     ) -> None:
         super().__init__(name=name, namespace=namespace, **options)
         self.autostart = autostart
+
+    def autostarts(self, context: LaunchContext) -> bool:
+        """Return whether the node is configured and activated."""
+        return bool(perform_typed_substitution(context, self.autostart, bool))
 
     @property
     def is_lifecycle(self) -> bool:
