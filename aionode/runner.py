@@ -6,20 +6,23 @@ import asyncio
 import contextlib
 import gc
 import inspect
+import os
 import sys
 import traceback
 from collections.abc import Callable, Coroutine, Sequence
-from typing import Any, Self
+from typing import Any, Final, Self
 
 from aionode._signals import signals_to
 from aionode._tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
 from aionode.context import Context
-from aionode.errors import AionodeError, InvalidROSArgsError
+from aionode.errors import AionodeError, ConfigurationError, InvalidROSArgsError
 from aionode.logging import configure, get_logger, release_root
 from aionode.node import Node
 
 __all__ = ["Runnable", "freeze_objects", "run"]
+
+LOOP_VARIABLE: Final = "AIONODE_LOOP"
 
 Runnable = Node | Callable[[], Node] | Callable[[], Coroutine[Any, Any, None]]
 LoopFactory = Callable[[], asyncio.AbstractEventLoop]
@@ -67,8 +70,8 @@ def run(
             running loop. A coroutine function is run alongside them.
         args: The command line without the program name; ``sys.argv[1:]`` if None. Arguments between
             ``--ros-args`` and ``--`` apply to all nodes created until the function returns.
-        loop_factory: Creates the event loop; by default uvloop's if it is installed, else
-            asyncio's.
+        loop_factory: Creates the event loop; by default the one that ``AIONODE_LOOP`` names,
+            ``asyncio`` or ``uvloop``, and without it uvloop's if it is installed, else asyncio's.
 
     Raises:
         SystemExit: with status 1 after an error, which was printed on stderr: for one of aionode's
@@ -156,10 +159,23 @@ def maker_of(node: Node) -> str:
 
 
 def best_loop_factory() -> LoopFactory | None:
-    """Return uvloop's loop factory if it is installed; None stands for asyncio's own."""
+    """Return what creates the event loop; None stands for asyncio's own.
+
+    Raises:
+        ConfigurationError: ``AIONODE_LOOP`` names none, or one that is not installed (a
+            ValueError).
+    """
+    wanted = os.environ.get(LOOP_VARIABLE, "")
+    if wanted not in {"", "asyncio", "uvloop"}:
+        raise ConfigurationError(LOOP_VARIABLE, wanted, "use asyncio or uvloop")
+    if wanted == "asyncio":
+        return None
     try:
         import uvloop  # an optional extra
     except ImportError:
+        if wanted:
+            fits = "it is not installed: pip install 'aionode[fast]', or use asyncio"
+            raise ConfigurationError(LOOP_VARIABLE, wanted, fits) from None
         return None
     factory: LoopFactory = uvloop.new_event_loop
     return factory

@@ -69,4 +69,4 @@ async def robot(system: System) -> None:
 
 
 if __name__ == "__main__":
-    run(robot)
+    run(robot, name="robot")

@@ -9,15 +9,16 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 import aionode
 from aionode._concurrency import checkpoint
-from aionode.errors import AionodeError
+from aionode.errors import AionodeError, ConfigurationError
 from aionode.node import Node
-from aionode.runner import FROZEN_BY_PYTHON, failure_text
+from aionode.runner import FROZEN_BY_PYTHON, best_loop_factory, failure_text
 from aionode.testing import local_context
 from tests.support.program import PREAMBLE, Program
 
@@ -350,3 +351,25 @@ def test_a_node_that_fails_in_run_is_told_of_once() -> None:
     with Program(body) as program:
         _, _, err = program.end()
     assert err.count("ZeroDivisionError") == 1
+
+
+def test_the_environment_names_the_event_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One member of a system can have another one than the others, without a change of its code."""
+    made: Any = "made by uvloop"
+    for module, wanted, factory in [
+        ("here", "", made),
+        ("here", "asyncio", None),
+        ("here", "uvloop", made),
+        (None, "", None),
+    ]:
+        uvloop = module and SimpleNamespace(new_event_loop=made)
+        monkeypatch.setitem(sys.modules, "uvloop", uvloop)
+        monkeypatch.setenv("AIONODE_LOOP", wanted)
+        assert best_loop_factory() == factory
+
+    monkeypatch.setenv("AIONODE_LOOP", "uvloop")
+    with pytest.raises(ConfigurationError, match=r"not installed: pip install 'aionode\[fast\]'"):
+        best_loop_factory()
+    monkeypatch.setenv("AIONODE_LOOP", "trio")
+    with pytest.raises(ConfigurationError, match="'trio' given; use asyncio or uvloop"):
+        best_loop_factory()

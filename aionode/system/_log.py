@@ -83,10 +83,12 @@ class SystemLog:
             self._folder.mkdir(parents=True, exist_ok=True)
         self._max_bytes, self._backups = max_bytes, backups
         self._clock = MachineTime()
-        self._time = self._zone = ""  # of the lines since the last flush
+        self._moment = ""  # of the lines since the last flush, as records have it
+        self._date_and_time = self._time_only = b""  # as files and the stream have it
         self._lost_file = False
         self._width = len("system")
         self._colors: dict[str, int] = {}
+        self._labels: dict[str, bytes] = {}
         self._unfinished: dict[tuple[str, int], bytes] = {}
         self._last: dict[str, bytearray] = {}
         self._new: list[Buffer] = []  # since the last flush
@@ -97,6 +99,7 @@ class SystemLog:
         """Reserve a colour and the width of a name, before the first line of it."""
         self._colors.setdefault(name, COLORS[len(self._colors) % len(COLORS)])
         self._width = max(self._width, len(name))
+        self._labels.clear()
 
     def note(self, text: str) -> None:
         """Write a line of the system's own."""
@@ -146,34 +149,44 @@ class SystemLog:
         last += output[max(0, end - KEPT_BYTES) : end]
         if len(last) > 2 * KEPT_BYTES:
             del last[:-KEPT_BYTES]
-        if not self._time:
-            moment = datetime.fromtimestamp(self._clock.system_ns() / 1e9)  # noqa: DTZ006  # of here
-            self._time = moment.isoformat(" ", "milliseconds")
-            self._zone = moment.astimezone().isoformat(timespec="milliseconds")
-        if self._json:
-            self._new.append(records(self._zone, name, before + output[:end]))
-        else:
-            self._new += prefixed(self._prefix(name), before, output, end)
+        if not self._moment:
+            self._look_at_the_clock()
+        # The file first: then its text is freed before that of the stream is made, and malloc gives
+        # nothing back to the system after each piece of a large output.
         if self._folder is not None:
-            self._write_file(name, prefixed(f"{self._time} ".encode(), before, output, end))
+            self._write_file(name, prefixed(self._date_and_time, before, output, end))
+        if self._json:
+            self._new.append(records(self._moment, name, before + output[:end]))
+        else:
+            label = self._labels.get(name) or self._label(name)
+            self._new += prefixed(self._time_only + label, before, output, end)
+
+    def _look_at_the_clock(self) -> None:
+        """Set the time of all lines until the next flush."""
+        moment = datetime.fromtimestamp(self._clock.system_ns() / 1e9)  # noqa: DTZ006  # of here
+        self._moment = moment.astimezone().isoformat(timespec="milliseconds")
+        self._date_and_time = f"{moment.isoformat(' ', 'milliseconds')} ".encode()
+        self._time_only = self._date_and_time[len("2026-11-23 ") :]
+
+    def _label(self, name: str) -> bytes:
+        label = f"{name:>{self._width}} |"
+        if self._color:
+            label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
+        self._labels[name] = found = f"{label} ".encode()
+        return found
 
     def _write_file(self, name: str, lines: Sequence[Buffer]) -> None:
         try:
-            self._file(name).write(lines)
+            file = self._files.get(name) or self._open_file(name)
+            file.write(lines)
         except OSError as error:  # such as a full disk; the system goes on, and so does its log
             if not self._lost_file:
                 self._lost_file = True
                 self.note(f"files of the log are incomplete from here on: {error}")
 
-    def _prefix(self, name: str) -> bytes:
-        label = f"{name:>{self._width}} |"
-        if self._color:
-            label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
-        return f"{self._time[len('2026-11-23 ') :]} {label} ".encode()
-
     def flush(self) -> bool:
         """Write what the stream takes without blocking, and return whether that was everything."""
-        new, self._new, self._time = self._new, [], ""
+        new, self._new, self._moment = self._new, [], ""
         for listener in self.listeners if new else ():
             listener(new)
         descriptor = self._descriptor
@@ -199,12 +212,11 @@ class SystemLog:
             del self._unwritten[:written]
         return True
 
-    def _file(self, name: str) -> RotatingFile:
-        if name not in self._files:
-            assert self._folder is not None  # noqa: S101  # checked by the caller
-            path = self._folder / f"{name.strip('/').replace('/', '.')}.log"
-            self._files[name] = RotatingFile(path, self._max_bytes, self._backups)
-        return self._files[name]
+    def _open_file(self, name: str) -> RotatingFile:
+        assert self._folder is not None  # noqa: S101  # checked by the caller
+        path = self._folder / f"{name.strip('/').replace('/', '.')}.log"
+        self._files[name] = file = RotatingFile(path, self._max_bytes, self._backups)
+        return file
 
     def close(self) -> None:
         """Write what is left, as far as the stream takes it, and close the files."""

@@ -19,15 +19,12 @@ PAUSE_SEC: Final = 0.04
 """Between two turns, in seconds. A program may write a line at a time, a hundred thousand a second:
 each would wake the loop."""
 
-SMALL_PIPE: Final = 1 << 16
-"""How large a pipe is at first, in bytes."""
+PIECE: Final = 1 << 16
+"""How much is read at once, in bytes: what a pipe takes at first. The allocator gives much larger
+buffers back to the system each time, and their pages cost more than the copies."""
 
 LARGE_PIPE: Final = 1 << 20
 """How large a pipe becomes that was full, in bytes: what an ordinary user may ask for."""
-
-PIECE: Final = 1 << 18
-"""How much of a large pipe is read at once, in bytes. The allocator gives buffers that are much
-larger back to the system each time, whose pages cost more than the copy."""
 
 F_SETPIPE_SZ: Final = 1031
 """Of fcntl; Python 3.10 has a name for it on Linux alone."""
@@ -111,11 +108,10 @@ class OutputReader:
     def _turn(self) -> None:
         self._loop.remove_reader(self._epoll.fileno())
         for pipe, _ in self._epoll.poll(0):
-            count = self._read(pipe)
-            for _ in range(LARGE_PIPE // PIECE - 1):
+            for _ in range(LARGE_PIPE // PIECE):
+                count = self._read(pipe)
                 if count != PIECE or not self._log.flush():
                     break
-                count = self._read(pipe)
             if count == 0:
                 with suppress(FileNotFoundError):
                     self._epoll.unregister(pipe)  # at its end; `remove` closes it
@@ -131,14 +127,14 @@ class OutputReader:
     def _read(self, pipe: int) -> int | None:
         """Read once, and return how many bytes: 0 at the end of the pipe, None if it is empty."""
         try:
-            output = os.read(pipe, PIECE if pipe in self._large else SMALL_PIPE)
+            output = os.read(pipe, PIECE)
         except BlockingIOError:
             return None
         except OSError:  # a terminal that nobody has open any more
             return 0
         if not output:
             return 0
-        if len(output) == SMALL_PIPE and pipe not in self._large:
+        if len(output) == PIECE and pipe not in self._large:
             self._large.add(pipe)
             with suppress(OSError):  # the user's pipes have a limit
                 import fcntl  # not on Windows

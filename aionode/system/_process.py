@@ -103,6 +103,7 @@ class ProcessMember(Member):
             await program.started
         except ProgramStartError as error:
             self._stop_reading(pipes)
+            self.process.limits.leave(cgroup)
             self.host.log.note(f"{self.name}: {error}")
             return MemberEnd(self.name, failed=True, text="could not be started", status=127)
         self.note_running(program.pid)

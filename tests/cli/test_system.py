@@ -12,6 +12,7 @@ import pytest
 from aionode import Context, Node
 from aionode.cli._nouns.system import (
     list_systems,
+    print_log,
     print_status,
     restart_member,
     stop_member,
@@ -19,6 +20,7 @@ from aionode.cli._nouns.system import (
 from aionode.cli._support.output import Output
 from aionode.errors import CommandError
 from aionode.system import System, SystemLog
+from tests.support.waiting import until
 
 
 @pytest.fixture
@@ -67,6 +69,16 @@ async def test_a_member_is_restarted_and_stopped(tool: Node, system: System, scr
     assert (after.restarts, after.pid == before) == (1, False)
     assert system.status()["driver"].state == "stopped"
     assert screen.text == "driver restarts\ndriver is stopped\n"
+
+
+async def test_log_prints_the_lines_from_now_on(
+    tool: Node, system: System, screen: Any, running: Any
+) -> None:
+    """With time and name, as the terminal of the system has them."""
+    async with running(print_log(tool, output=screen.output)):
+        await until(lambda: system._control._log.get_subscription_count() > 0)
+        system.log.note("hello")
+        await until(lambda: "system | hello" in screen.text)
 
 
 async def test_the_whole_system_is_ended(tool: Node, system: System, screen: Any) -> None:

@@ -8,14 +8,18 @@ import os
 import signal
 import sys
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import pytest
 
 from aionode import Context, Node
 from aionode.errors import MemberNotFoundError, NotReadyError
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.std_srvs.srv import Trigger
 from aionode.lifecycle import LifecycleNode, State, TransitionCallbackReturn
 from aionode.system import (
+    ActionReady,
     NodeActive,
     NodeExists,
     ServiceReady,
@@ -23,6 +27,8 @@ from aionode.system import (
     SystemLog,
     TopicPublished,
 )
+from aionode.system._process import ProcessMember
+from aionode.testing import settle
 from tests.support.waiting import until
 
 FOREVER = ["sleep", "1000"]
@@ -90,6 +96,47 @@ async def test_what_a_program_leaves_behind_ends_with_it(system: System, tmp_pat
         await system.wait()
 
         assert not alive(int(orphan.read_text()))
+
+
+async def test_a_program_has_its_environment_and_folder_and_the_domain_of_its_system(
+    output: io.StringIO, tmp_path: Path
+) -> None:
+    """Whatever the environment of the supervisor says."""
+    context = Context(transport="local", domain_id=42, discovery_range="OFF")
+    script = "echo $ROS_DOMAIN_ID $ROS_AUTOMATIC_DISCOVERY_RANGE $AIONODE_LOOP; pwd; cat"
+    async with System("tested", context=context, log=SystemLog(output)) as system:
+        env = {"AIONODE_LOOP": "asyncio"}
+        system.process("driver", ["sh", "-c", script], env=env, cwd=tmp_path)
+        system.process("other", ["sh", "-c", script], env={"ROS_DOMAIN_ID": "7"})
+        await system.wait()  # `cat` ends: standard input is empty
+
+    assert system.log.last_lines("driver") == ["42 OFF asyncio", str(tmp_path)]
+    assert system.log.last_lines("other")[0].startswith("7 OFF")
+
+
+def test_a_program_has_seven_seconds_after_sigint_and_five_after_sigterm(system: System) -> None:
+    """A node of aionode needs five seconds at most to end its callbacks."""
+    member = system.process("driver", FOREVER)
+
+    assert isinstance(member, ProcessMember)
+    assert member.process.ladder() == [("SIGINT", 7.0), ("SIGTERM", 5.0), ("SIGKILL", 0.0)]
+
+
+async def test_each_policy_restarts_what_it_says(system: System) -> None:
+    """A clean end is a failure for none of them."""
+    async with system:
+        for policy in ("never", "on-failure", "always"):
+            system.process(policy, ["true"], restart=policy, min_delay_sec=0.0)
+        system.process("broken", ["false"])
+        await until(lambda: system.status()["always"].restarts == 2)
+        status = system.status()
+
+    assert [status[name].state for name in ("never", "on-failure", "broken")] == [
+        "ended",
+        "ended",
+        "failed",
+    ]
+    assert {status[name].restarts for name in ("never", "on-failure", "broken")} == {0}
 
 
 async def test_a_program_that_is_killed_is_restarted_on_failure(system: System) -> None:
@@ -333,6 +380,57 @@ async def test_a_node_runs_as_tasks_with_its_parameters_and_name(system: System)
         await until(lambda: system.status()["right"].state == "ended")
 
 
+async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system: System) -> None:
+    """As tasks of this process, and as the command line of one of its own."""
+    shared: dict[str, Any] = {"remappings": {"/cmd_vel": "/left/speed"}, "namespace": "robot"}
+    apart = system.node("apart", "tests.system.robot:Wheels", processes=True, **shared)
+    assert isinstance(apart, ProcessMember)
+    words = " ".join(apart.process.argv[1:])
+    assert words == (
+        "-m aionode run tests.system.robot:Wheels --ros-args "
+        "-r __node:=apart -r __ns:=/robot -r /cmd_vel:=/left/speed"
+    )
+
+    inside = System("inside", context=system.context, log=system.log)
+    async with inside:
+        inside.node("wheels", "tests.system.robot:Wheels", **shared)
+        await inside.ready()
+        assert inside.graph_node.count_subscribers("/left/speed") == 1
+
+
+class Server(Node):
+    """Has one endpoint of each kind that is awaited."""
+
+    def __init__(self) -> None:
+        super().__init__("server")
+        self.create_publisher(String, "/words", 1)
+        self.create_service(Trigger, "/reset", lambda _: Trigger.Response())
+        self.create_action_server(Fibonacci, "/count", lambda _: Fibonacci.Result())
+
+
+async def test_what_is_awaited_comes_with_the_node_that_has_it(system: System) -> None:
+    """A topic has a publisher, a service and an action have a server, a node is there."""
+    facts = [
+        NodeExists("server", 5.0),
+        TopicPublished(topic="words", timeout_sec=5.0),
+        ServiceReady(service="/reset", timeout_sec=5.0),
+        ActionReady(action="/count", timeout_sec=5.0),
+    ]
+    async with system:
+        system.process("viewer", FOREVER, ready=facts)
+        await settle()
+        assert not system.member("viewer").is_ready()
+        system.node("server", Server)
+        await system.ready()
+
+    assert [str(fact) for fact in facts] == [
+        "node /server",
+        "a publisher of /words",
+        "service /reset",
+        "action /count",
+    ]
+
+
 async def test_a_node_that_fails_is_restarted(system: System) -> None:
     """As a process is, by the same policy."""
     made: list[Beacon] = []
@@ -357,29 +455,46 @@ class Camera(LifecycleNode):
 
     moves: ClassVar[list[str]] = []
 
+    def on_configure(self, state: State) -> TransitionCallbackReturn:
+        """Record it."""
+        self.moves.append(f"configure {self.get_name()}")
+        return super().on_configure(state)
+
     def on_activate(self, state: State) -> TransitionCallbackReturn:
         """Record it."""
-        self.moves.append("activate")
+        self.moves.append(f"activate {self.get_name()}")
         return super().on_activate(state)
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
         """Record it."""
-        self.moves.append("deactivate")
+        self.moves.append(f"deactivate {self.get_name()}")
         return super().on_deactivate(state)
 
 
 async def test_managed_nodes_are_active_when_ready_and_brought_down_before_the_end(
     system: System,
 ) -> None:
-    """What needs them waits for their state, not for their process."""
+    """What needs them waits for their states, not for their processes; the order is kept."""
     Camera.moves.clear()
     async with system:
-        system.node("camera", lambda: Camera("camera"), managed="/camera")
+        system.node("lidar", lambda: Camera("lidar"))
+        system.node("camera", lambda: Camera("camera"), managed=["/lidar", "/camera"])
         system.process("viewer", FOREVER, after="camera", ready=NodeActive("/camera", 5.0))
+        system.node("planner", lambda: Camera("planner"), after="viewer", managed="/planner")
         await system.ready()
-        assert Camera.moves == ["activate"]
+        up = [
+            f"{move} {node}" for move in ("configure", "activate") for node in ("lidar", "camera")
+        ]
+        up += ["configure planner", "activate planner"]
+        assert Camera.moves == up
 
-    assert Camera.moves == ["activate", "deactivate"]
+        Camera.moves.clear()
+        await system.restart("planner")
+        await system.ready()
+        assert Camera.moves == ["deactivate planner", "configure planner", "activate planner"]
+        Camera.moves.clear()
+
+    assert Camera.moves == ["deactivate planner", "deactivate camera", "deactivate lidar"]
 
 
 def test_members_may_be_added_before_there_is_an_event_loop(output: io.StringIO) -> None:
