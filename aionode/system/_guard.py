@@ -77,10 +77,12 @@ class RunningProgram:
         exited: Done when its first process has ended, with the exit code; negative for a signal,
             None if nobody knows, as the guardian was gone.
         gone: Done when no process of it is left.
+        is_stopping: Whether the guardian was told to stop it.
     """
 
     number: int
     pid: int = 0
+    is_stopping: bool = False
     started: asyncio.Future[None] = field(default_factory=future)
     exited: asyncio.Future[int | None] = field(default_factory=future)
     gone: asyncio.Future[None] = field(default_factory=future)
@@ -134,6 +136,8 @@ class Orphans:
             if not running.started.done():
                 running.refuse(description.argv, LOST)
                 program.note_end()
+            elif running.is_stopping:
+                program.stop()
             self._left[running.number] = running, program
         self._look()
 
@@ -229,6 +233,7 @@ class Guard:
 
     def stop(self, program: RunningProgram) -> None:
         """Have a program stopped by the signals of its description."""
+        program.is_stopping = True
         if self._orphans is None:
             self._send({"do": "stop", "number": program.number})
         else:

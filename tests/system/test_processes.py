@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import io
+import json
 import os
 import signal
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -227,6 +229,37 @@ async def test_a_program_that_ends_after_the_guardian_was_killed_has_ended(syste
         assert system.status()["brief"].error == "ended; how, only the guardian knew"
 
 
+async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_meanwhile(
+    system: System,
+) -> None:
+    """Nobody would wait for it in vain."""
+    script = "trap 'echo stopping' INT; echo up; while :; do sleep 0.01; done"
+    async with system:
+        system.process("slow", ["sh", "-c", script], term_after_sec=0.2)
+        await until(lambda: system.log.last_lines("slow"))
+        async with asyncio.TaskGroup() as tasks:
+            stop = tasks.create_task(system.stop("slow"))
+            await until(lambda: "stopping" in system.log.last_lines("slow"))
+            kill_guardian(system)
+            async with asyncio.timeout(20.0):
+                await stop
+
+    assert system.status()["slow"].state == "stopped"
+
+
+async def test_a_second_signal_kills_all_although_the_guardian_was_killed(system: System) -> None:
+    """Who presses Ctrl-C twice does not want to wait."""
+    script = "trap '' INT TERM; echo up; while :; do sleep 1; done"
+    async with system:
+        system.process("deaf", ["sh", "-c", script])
+        await until(lambda: system.log.last_lines("deaf"))
+        pid = system.status()["deaf"].pid
+        kill_guardian(system)
+        await system.wait()
+        system.guard._kill_at_sudden_end(0)
+        await until(lambda: not alive(pid))
+
+
 def kill_guardian(system: System) -> None:
     """Kill the guardian of a system."""
     assert system.guard._process is not None
@@ -302,6 +335,28 @@ async def test_a_required_member_ends_the_system(system: System, output: io.Stri
     assert "  out of memory" in output.getvalue()
 
 
+async def test_the_exit_status_is_that_of_the_first_that_failed_for_good(
+    system: System, tmp_path: Path
+) -> None:
+    """Not of one that was started again and ended well, nor of those that follow."""
+    script = "[ -e $0 ] || { : >$0; exit 2; }"
+    async with system:
+        again = ["sh", "-c", script, f"{tmp_path}/once"]
+        system.process("again", again, restart="on-failure", min_delay_sec=0.0)
+        await until(lambda: system.status()["again"].state == "ended")
+        system.process("first", ["sh", "-c", "exit 3"])
+        await until(lambda: system.status()["first"].state == "failed")
+        system.process("second", ["sh", "-c", "exit 4"])
+        await system.wait()
+
+    assert [(end.name, end.status) for end in system.ends if end.failed] == [
+        ("again", 2),
+        ("first", 3),
+        ("second", 4),
+    ]
+    assert system.exit_status == 3
+
+
 async def test_a_member_stops_and_starts_with_the_one_it_fails_with(system: System) -> None:
     """A commander of a driver that has failed knows nothing of the new one."""
     async with system:
@@ -350,6 +405,7 @@ async def test_health_says_who_is_not_well(system: System) -> None:
 
     assert not health.ok
     assert health.problems == ("bad: failed: ended with exit status 1",)
+    assert json.loads(json.dumps(asdict(health)))["members"] == {"good": "running", "bad": "failed"}
 
 
 class Beacon(Node):
