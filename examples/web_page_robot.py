@@ -6,6 +6,7 @@ when the page is closed. It needs ``pip install 'aionode[gateway]'``.
 
 from __future__ import annotations
 
+import asyncio
 import math
 from typing import Annotated
 
@@ -132,7 +133,7 @@ async def main() -> None:
     """Run the robot and its page until Ctrl-C."""
     async with Robot() as robot, Gateway(robot, policy=POLICY, port=8090) as gateway:
         robot.get_logger().info(f"Open http://127.0.0.1:{gateway.port}")
-        await robot.ended()
+        await asyncio.Event().wait()
 
 
 if __name__ == "__main__":

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any, Final, TypeVar
 from aionode.graph import EndpointKind
 from aionode.qos import (
     DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
     best_available_for_subscription,
     qos_profile_best_available,
 )
@@ -18,7 +20,6 @@ if TYPE_CHECKING:
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.graph import EndpointInfo
     from aionode.node import Node
-    from aionode.qos import QoSProfile
 
 __all__ = ["Feed", "Feeds", "Received"]
 
@@ -26,6 +27,9 @@ T = TypeVar("T")
 
 DEPTH: Final = 100
 """The depth of subscriptions: the loop may be busy for some milliseconds."""
+
+UNDEMANDING: Final = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
+"""While there is no publisher: whatever the first one offers, it fits."""
 
 MOST_LATCHED: Final = 100
 """How many messages of each transient local publisher are kept for clients that come later."""
@@ -155,12 +159,12 @@ class Feed:
             self._subscribe()
 
     def _profile(self) -> QoSProfile:
-        """Return the strongest profile that all publishers fit; volatile while there are none."""
+        """Return the strongest profile that all publishers fit; one that any fits without them."""
         if self._wanted is not None:
             return self._wanted
-        profile = qos_profile_best_available.replace(depth=DEPTH)
         if not self._offered:
-            profile = profile.replace(durability=DurabilityPolicy.VOLATILE)
+            return UNDEMANDING
+        profile = qos_profile_best_available.replace(depth=DEPTH)
         return best_available_for_subscription(profile, self._offered.values())
 
     def _subscribe(self) -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
+import socket
 import struct
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from aionode import bag
@@ -25,6 +26,7 @@ from aionode.interfaces.std_srvs.srv import SetBool
 from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.wire import cdr
+from examples.gateway import play_bag
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
@@ -450,3 +452,35 @@ async def test_foxglove_connects_by_its_subprotocol(node: Node) -> None:
 
     assert first["op"] == "serverInfo"
     assert sessions == {"foxglove": 1}
+
+
+async def test_the_example_plays_a_bag_for_foxglove(tmp_path: Path, node: Node) -> None:
+    """Its timeline is that of the bag, and its policy lets a viewer pause it."""
+    with bag.BagWriter(tmp_path / "run") as out:
+        number = out.add_topic(topic_info("/words", String, []))
+        for at in range(60):
+            out.write(number, (100 + at) * 10**9, cdr.encode(String(data=str(at))))
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = free.getsockname()[1]
+    async with asyncio.TaskGroup() as tasks:
+        playing = tasks.create_task(play_bag.main(str(tmp_path / "run"), port))
+        viewer = await connected(port, node)
+        info = json.loads(await viewer.recv())
+        await viewer.send(struct.pack("<BBfBQI", 3, 1, 1.0, 0, 0, 5) + b"pause")
+        while not ((frame := await viewer.recv())[:2] == b"\x05\x01" and b"pause" in frame):
+            assert "refused" not in str(frame)
+        await viewer.close()
+        playing.cancel()
+
+    assert info["dataEndTime"] == {"sec": 159, "nsec": 0}
+
+
+async def connected(port: int, node: Node) -> ClientConnection:
+    """Return a connection to a gateway that is about to listen."""
+    while True:
+        try:
+            return await connect(
+                f"ws://127.0.0.1:{port}", subprotocols=[Subprotocol("foxglove.sdk.v1")]
+            )
+        except OSError:
+            await node.get_clock().sleep(0.02)
