@@ -150,7 +150,7 @@ class Gateway(Clients):
         async with self.session_of(websocket.scope, kind) as session:
             session.connection = websocket.scope["state"]["aionode_connection"]
             bucket = Bucket(self._policy.limits.frames_per_sec, self.robot.time_base.steady_ns)
-            websocket._receive = paced(websocket._receive, bucket, self.robot.clock)
+            websocket._receive = paced(websocket._receive, bucket, self.robot.clock, session)
             if is_foxglove:
                 serving = _foxglove.serve(websocket, session, self._player)
             else:
@@ -181,15 +181,18 @@ class Gateway(Clients):
             if modified(path) == read:
                 continue
             read = modified(path)
-            try:
-                policy = Policy.load(path)
-            except PolicyFileError as error:
-                self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
-            else:
-                self.use_policy(policy)
+            self._reread(path)
+
+    def _reread(self, path: str) -> None:
+        try:
+            policy = Policy.load(path)
+        except PolicyFileError as error:
+            self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
+        else:
+            self.use_policy(policy)
 
 
-def paced(receive: Any, bucket: Bucket, clock: Clock) -> Any:
+def paced(receive: Any, bucket: Bucket, clock: Clock, session: Session) -> Any:
     """Return a `receive` of WebSockets that takes no more frames than a rate allows.
 
     A client that sends faster is not read meanwhile, and so has to wait.
@@ -198,6 +201,7 @@ def paced(receive: Any, bucket: Bucket, clock: Clock) -> Any:
     async def receive_paced() -> Any:
         message = await receive()
         if message["type"] == "websocket.receive":
+            session.note_frame()
             while wait_sec := bucket.wait_sec():
                 await clock.sleep(wait_sec)
         return message

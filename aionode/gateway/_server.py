@@ -19,6 +19,9 @@ __all__ = ["HttpConnection", "Server", "WebSocketConnection", "server_config"]
 
 PING_SEC: Final = 20.0
 CLOSING_SEC: Final = 1
+SPARE: Final = 16
+"""How many more connections there may be than clients: those for pages, and those that are told
+that there are too many."""
 
 
 class Server(uvicorn.Server):
@@ -52,7 +55,7 @@ class HttpConnection(H11Protocol):
         super().connection_made(transport)
         self.access_log = False  # it would have the paths of requests, and belongs to the program
         limits = self.config.policy().limits  # type: ignore[attr-defined]  # a ServerConfig
-        if len(self.connections) > limits.clients:
+        if len(self.connections) > limits.clients + SPARE:
             transport.abort()
             return
         state = {"aionode_certificate": common_name(transport), "aionode_connection": self}

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
+from aionode.clock import S_TO_NS
 from aionode.errors import InterfaceNotFoundError, RefusedError
 from aionode.gateway._outbox import Outbox
 from aionode.gateway._rosbridge_values import from_json
@@ -52,6 +53,7 @@ class SessionBase:
         self._busy = 0
         self.refused = 0
         self.connection: Connection | None = None
+        self._frame_ns: int | None = None  # when the frame arrived that is handled
         self._is_doubtful = False
 
     # The policy
@@ -149,6 +151,12 @@ class SessionBase:
         if self.connection is not None:
             self._is_doubtful = True
             self.connection.ping(self._trust)
+
+    def note_frame(self) -> None:
+        """Take that a frame is handled now, which arrived with the last bytes of the client."""
+        if self.connection is not None:
+            age_ns = round(self.connection.silent_sec() * S_TO_NS)
+            self._frame_ns = self._robot.time_base.steady_ns() - age_ns
 
     def _trust(self) -> None:
         self._is_doubtful = False

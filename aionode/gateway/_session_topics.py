@@ -172,7 +172,8 @@ class SessionTopics(SessionBase):
             topic: The name of the topic.
             values: The message, its values, or its CDR bytes.
             type_name: The type, if the client has not advertised the topic.
-            arrived_ns: When the frame arrived, in nanoseconds of the steady clock; now by default.
+            arrived_ns: When the frame arrived, in nanoseconds of the steady clock; by default when
+                that which is handled did.
 
         Raises:
             RefusedError: the policy does not allow it; another client commands the topic; the
@@ -181,7 +182,7 @@ class SessionTopics(SessionBase):
             DecodeError: the bytes are no such message (a ValueError).
             InterfaceNotFoundError: nobody knows the type.
         """
-        arrived_ns = self._robot.time_base.steady_ns() if arrived_ns is None else arrived_ns
+        arrived_ns = self._arrival_ns() if arrived_ns is None else arrived_ns
         topic = self.topic_name(topic)
         if topic not in self._published:
             await self.advertise(topic, type_name)
@@ -212,6 +213,9 @@ class SessionTopics(SessionBase):
         for subscribed in self._subscribed:
             found[subscribed.topic] += self.outbox.dropped.get(subscribed._key, 0)
         return dict(found)
+
+    def _arrival_ns(self) -> int:
+        return self.steady_ns() if self._frame_ns is None else self._frame_ns
 
     def _note_published(self, topic: str, message: Message) -> None:
         """Write down what is published: once a second for each topic, with a count."""

@@ -9,6 +9,7 @@ import pytest
 from aionode.gateway._robot import Robot
 from aionode.node import Node
 from aionode.testing import settle
+from tests.support.gateway_bench import Bench, bench_of_gateway
 from tests.support.rosbridge import RosbridgeClient, robot_of, rosbridge_client
 
 Make = Callable[..., Node]
@@ -37,3 +38,10 @@ async def client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
     async with rosbridge_client(robot) as client:
         client.send("set_level", level="error")
         yield client
+
+
+@pytest.fixture
+async def bench() -> AsyncIterator[Bench]:
+    """Yield a gateway without a server that allows everything, at a time that a test sets."""
+    async with bench_of_gateway() as bench:
+        yield bench

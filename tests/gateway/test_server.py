@@ -1,0 +1,330 @@
+"""The door of the gateway, over sockets of this host: who gets in, and what a connection may do."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+import signal
+import socket
+import ssl
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
+from aionode.context import Context
+from aionode.errors import ConfigurationError, RefusedError
+from aionode.gateway import Gateway, Identity, Policy
+from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.node import Node
+from aionode.testing import local_context
+from tests.support.waiting import until
+
+TOKEN = "a-token-that-nobody-may-read"
+POLICY = f"""
+[[who]]
+name = "operator"
+token = "{TOKEN}"
+[[who]]
+name = "local"
+loopback = true
+[[allow]]
+see = "/**"
+publish = "/**"
+"""
+DRIVE = json.dumps(
+    {
+        "op": "publish",
+        "topic": "/cmd_vel",
+        "type": "geometry_msgs/Twist",
+        "msg": {"linear": {"x": 1.0}},
+    }
+)
+
+
+@asynccontextmanager
+async def serving(policy: Policy | None = None, **options: Any) -> AsyncIterator[Gateway]:
+    """Yield a gateway on a free port, in a context of its own."""
+    async with (
+        local_context() as context,
+        Node("gateway", context=context) as node,
+        Gateway(node, policy, port=0, **options) as gateway,
+    ):
+        yield gateway
+
+
+def address(gateway: Gateway, path: str = "/") -> str:
+    """Return the address of a WebSocket."""
+    return f"ws://127.0.0.1:{gateway.port}{path}"
+
+
+def http_client() -> httpx.AsyncClient:
+    """Return a client that loads no certificates, which takes it a tenth of a second."""
+    return httpx.AsyncClient(trust_env=False, verify=ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT))
+
+
+async def get(
+    gateway: Gateway, path: str = "/topics", headers: dict[str, str] | None = None
+) -> httpx.Response:
+    """Return the answer to a request."""
+    async with http_client() as client:
+        return await client.get(f"http://127.0.0.1:{gateway.port}{path}", headers=headers)
+
+
+STRANGERS = (
+    {"origin": "http://evil.example"},
+    {"origin": "null"},
+    {"host": "evil.example"},
+    {"host": "evil.example", "origin": "http://evil.example"},
+    {"sec-fetch-site": "cross-site"},
+    {"authorization": "Bearer wrong"},
+)
+
+
+async def test_strangers_are_refused_on_every_way_in() -> None:
+    """Pages of other origins, names that are bound anew, wrong tokens."""
+    async with serving(Policy.parse(POLICY)) as gateway:
+        for headers in STRANGERS:
+            public = [] if "authorization" in headers else ["/"]  # the page itself
+            for path in (*public, "/topics", "/openapi.json", "/metrics", "/nothing"):
+                answer = await get(gateway, path, headers)
+                assert (answer.status_code, answer.json()["code"]) == (401, "unauthorized")
+                assert answer.headers["cross-origin-resource-policy"] == "same-origin"
+            for path, protocols in (("/", []), ("/ws", []), ("/", ["foxglove.sdk.v1"])):
+                with pytest.raises(InvalidStatus) as refused:
+                    async with raw_connect(gateway, path, headers, protocols):
+                        pass
+                assert refused.value.response.status_code == 401
+        assert gateway.stats.sessions == {}
+
+
+@asynccontextmanager
+async def raw_connect(
+    gateway: Gateway, path: str, headers: dict[str, str], protocols: list[str]
+) -> AsyncIterator[ClientConnection]:
+    """Connect with headers of one's own, as no library lets a page do."""
+    host = headers.get("host", f"127.0.0.1:{gateway.port}")
+    others = {name: value for name, value in headers.items() if name != "host"}
+    async with connect(
+        f"ws://{host}{path}" if ":" in host else f"ws://{host}:{gateway.port}{path}",
+        host="127.0.0.1",
+        port=gateway.port,
+        additional_headers=others,
+        subprotocols=protocols or None,  # type: ignore[arg-type]  # names of protocols
+        proxy=None,
+    ) as websocket:
+        yield websocket
+
+
+async def test_a_page_of_an_allowed_origin_may_read_the_answers() -> None:
+    """A browser asks first what such a page may do."""
+    origin = "https://dash.example"
+    policy = Policy.parse(f"origins = ['{origin}']\n{POLICY}")
+    async with serving(policy) as gateway, http_client() as client:
+        url = f"http://127.0.0.1:{gateway.port}/topics"
+        asked = await client.options(url, headers={"origin": origin})
+        answer = await get(gateway, headers={"origin": origin})
+        refused = await client.options(url, headers={"origin": "https://evil.example"})
+    assert asked.status_code == 204
+    assert asked.headers["access-control-allow-origin"] == origin
+    assert answer.headers["access-control-allow-origin"] == origin
+    assert refused.status_code == 401
+    assert "access-control-allow-origin" not in refused.headers
+
+
+async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
+    caplog: pytest.LogCaptureFixture, tmp_path: Path
+) -> None:
+    """Header, subprotocol and address; the last one is what servers write into logs."""
+    caplog.set_level(logging.DEBUG)
+    caplog.set_level(logging.INFO, "uvicorn.error")
+    caplog.set_level(logging.INFO, "websockets.client")  # the test's own side
+    caplog.set_level(logging.INFO, "httpx")
+    caplog.set_level(logging.INFO, "httpcore")
+    logging.getLogger("httpx").disabled = True
+    log = tmp_path / "audit"
+    got: list[Twist] = []
+    async with serving(Policy.parse(f"audit_file = '{log}'\n{POLICY}")) as gateway:
+        gateway.node.create_subscription(Twist, "/cmd_vel", got.append)
+        await get(gateway, headers={"authorization": f"Bearer {TOKEN}"})
+        await get(gateway, f"/topics?token={TOKEN}")
+        await get(gateway, f"/topics?token={TOKEN}x")
+        for path, protocols in ((f"/?token={TOKEN}", []), ("/", ["rosbridge", f"bearer.{TOKEN}"])):
+            async with raw_connect(gateway, path, {}, protocols) as websocket:
+                await websocket.send(DRIVE)
+                await until(lambda: got)
+            await until(lambda: not gateway.stats.sessions)
+            got.clear()
+    logging.getLogger("httpx").disabled = False
+    lines = [json.loads(line) for line in log.read_text().splitlines()]
+    assert {line["who"] for line in lines if line["action"] == "publish"} == {"operator"}
+    assert "accepted" in caplog.text
+    assert TOKEN not in caplog.text + log.read_text()
+    assert log.stat().st_mode & 0o777 == 0o600
+
+
+async def test_another_interface_needs_a_secret() -> None:
+    """A gateway that anybody on the network could use does not start."""
+    async with local_context() as context, Node("gateway", context=context) as node:
+        for host in ("0.0.0.0", "", "::", "192.168.0.7"):  # noqa: S104  # that is what is refused
+            with pytest.raises(ConfigurationError, match="token or certificate"):
+                Gateway(node, Policy.default(allow_write=True), host=host)
+            Gateway(node, Policy.parse(POLICY), host=host)
+
+
+async def test_an_address_that_a_client_claims_is_not_believed() -> None:
+    """Any program can send such a header; it would pass for one of this host, or as another."""
+    claimed = {"x-forwarded-for": "203.0.113.9"}
+    async with (
+        serving(Policy.parse(POLICY)) as gateway,
+        raw_connect(gateway, "/", claimed, []),
+    ):
+        await until(lambda: gateway.stats.sessions)
+        (session,) = gateway._sessions
+        assert session.identity.address == "127.0.0.1"
+
+
+async def test_what_is_too_large_is_refused() -> None:
+    """The body of a request, and a frame: a client must not take the robot's memory."""
+    policy = Policy.parse(f"{POLICY}\n[limits]\nframe_bytes = 1000")
+    async with serving(policy) as gateway, http_client() as client:
+        url = f"http://127.0.0.1:{gateway.port}/publish/x"
+        async with raw_connect(gateway, "/", {}, []) as websocket:
+            await websocket.send("x" * 2000)
+            with pytest.raises(ConnectionClosed):
+                await websocket.recv()
+        answer = await client.post(url, content=b"x" * 2000)
+        assert answer.status_code in {404, 405, 413}
+        await until(lambda: not gateway.stats.sessions)
+
+
+async def test_there_are_so_many_clients_and_no_more() -> None:
+    """The next one is refused, and may come when one has left."""
+    async with serving(Policy.parse(f"{POLICY}\n[limits]\nclients = 2")) as gateway:
+        async with raw_connect(gateway, "/", {}, []), raw_connect(gateway, "/", {}, []):
+            await until(lambda: sum(gateway.stats.sessions.values()) == 2)
+            with pytest.raises(InvalidStatus) as refused:
+                async with raw_connect(gateway, "/", {}, []):
+                    pass
+            assert refused.value.response.status_code == 429
+        await until(lambda: not gateway.stats.sessions)
+        assert (await get(gateway)).status_code == 200
+
+
+async def test_a_client_that_says_nothing_is_disconnected() -> None:
+    """Otherwise some hundred such connections keep all others out."""
+    async with serving(Policy.parse(f"{POLICY}\n[limits]\nhandshake_sec = 0.05")) as gateway:
+        for beginning in (b"", b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: "):
+            reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
+            writer.write(beginning)
+            with contextlib.suppress(ConnectionResetError):  # closed in either way
+                assert await asyncio.wait_for(reader.read(), 20) == b""
+            writer.close()
+
+
+async def test_the_stop_is_sent_when_a_connection_breaks() -> None:
+    """Without a word of the client, as when its process is killed."""
+    got: list[float] = []
+    async with serving(Policy.default(allow_write=True)) as gateway:
+        gateway.node.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x))
+        async with raw_connect(gateway, "/", {}, []) as websocket:
+            await websocket.send(DRIVE)
+            await until(lambda: got == [1.0])
+            assert gateway.stats.holders == {"/cmd_vel": "local"}
+            websocket.transport.abort()
+            await until(lambda: got == [1.0, 0.0])
+        await until(lambda: not gateway.stats.sessions)
+
+
+async def test_the_stop_is_sent_when_the_gateway_ends() -> None:
+    """And its port is free then; nobody waits for clients that do not read."""
+    got: list[float] = []
+    async with local_context() as context, Node("robot", context=context) as robot:
+        robot.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x))
+        async with Node("gateway", context=context) as node:
+            gateway = Gateway(node, Policy.default(allow_write=True), port=0)
+            async with gateway:
+                websocket = await connect(address(gateway), proxy=None)
+                await websocket.send(DRIVE)
+                await until(lambda: got == [1.0])
+            assert got == [1.0, 0.0]
+            await websocket.close()
+            with socket.socket() as probe:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                probe.bind(("127.0.0.1", gateway.port))
+
+
+async def test_a_port_that_is_taken_is_an_error() -> None:
+    """And the process goes on: the server must not end it."""
+    async with serving() as gateway:
+        second = Gateway(gateway.node, port=gateway.port)
+        with pytest.raises(OSError, match="in use"):
+            await second.__aenter__()
+
+
+async def test_the_process_is_left_as_it_was() -> None:
+    """Handlers of signals and loggers belong to the program, which may run a server of its own."""
+    logger = logging.getLogger("uvicorn.access")
+
+    def state() -> object:
+        handlers = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
+        logs = [
+            (log.level, list(log.handlers), log.propagate)
+            for log in (logger, logging.getLogger("uvicorn.error"), logging.getLogger())
+        ]
+        return handlers, logs
+
+    before = state()
+    async with serving() as gateway:
+        await get(gateway)
+        assert state() == before
+    assert state() == before
+
+
+async def test_a_policy_file_is_read_again(tmp_path: Path) -> None:
+    """Clients stay; a file with a mistake changes nothing."""
+    path = tmp_path / "policy.toml"
+    path.write_text(POLICY)
+    async with serving(Policy.load(path)) as gateway, raw_connect(gateway, "/", {}, []):
+        await until(lambda: gateway.stats.sessions)
+        path.write_text("[[allow]]\nsee = 5")
+        gateway._reread(str(path))
+        assert gateway.policy.allow
+        path.write_text("[[who]]\nname = 'local'\nloopback = true")
+        gateway._reread(str(path))
+        (session,) = gateway._sessions
+        with pytest.raises(RefusedError):
+            session.decide("publish", "/x", "")
+        assert not session.ended.is_set()
+        path.write_text("[[who]]\nname = 'operator'\ntoken = 'x'")
+        gateway._reread(str(path))
+        await until(lambda: not gateway.stats.sessions)
+
+
+async def test_a_program_has_sessions_of_its_own() -> None:
+    """Of another way in, such as one for language models."""
+    async with serving() as gateway:
+        async with gateway.session(Identity("program"), "own") as session:
+            assert "/rosout" in session.topics()
+            assert gateway.stats.sessions == {"own": 1}
+        assert gateway.stats.sessions == {}
+
+
+async def test_a_gateway_needs_a_node_that_runs(context: Context) -> None:
+    """Otherwise nothing would ever be delivered."""
+    with pytest.raises(RuntimeError, match="does not run"):
+        await Gateway(Node("late", context=context)).__aenter__()
+
+
+@pytest.fixture
+async def context() -> AsyncIterator[Context]:
+    """A context of its own."""
+    async with local_context() as made:
+        yield made
