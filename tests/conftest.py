@@ -122,6 +122,13 @@ def pytest_runtestloop() -> None:
     gc.enable()
 
 
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish() -> None:
+    """Look for garbage once: pytest looks ten times, at all objects that collecting has made."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.hookimpl(tryfirst=True)  # before tests are deselected by their marks
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Bound async tests, mark those of processes, and leave out what one loop can show."""
@@ -168,11 +175,16 @@ def pytest_asyncio_loop_factories(
 
 
 @pytest.fixture(autouse=True)
-def own_workspace() -> Iterator[None]:
-    """Have no other test see the packages of a workspace that this one names."""
+def own_imports() -> Iterator[None]:
+    """Have no other test import what this one has `install` find, or see its workspace."""
+    before = list(sys.meta_path)
     yield
-    if workspace := sys.modules.get("aionode.rclpy._workspace"):
-        workspace.GIVEN.clear()
+    for finder in [each for each in sys.meta_path if each not in before]:
+        if type(finder).__name__ in {"AionodeFinder", "NamedFinder"}:
+            sys.meta_path.remove(finder)
+    for module, found in (("_workspace", "GIVEN"), ("_rosidl._search", "NAMED")):
+        if loaded := sys.modules.get(f"aionode.rclpy.{module}"):
+            getattr(loaded, found).clear()
 
 
 @pytest.fixture

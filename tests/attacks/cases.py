@@ -111,14 +111,12 @@ def all_attacks() -> list[Attack]:
             "ask_and_read_nothing",
             pair(env=SMALL_QUEUES, publish=kept()),
             10.0,
-            short=True,
         ),
         Attack(
             "50 content filters of 4 kB with LIKE",
             "member",
             "filter_costly",
             pair(publish=clouds()),
-            short=True,
         ),
         Attack(
             "filters that let nothing through for the subscriptions of others",

@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from aionode import bag
-from aionode.cli._nouns.bag import bag_command
+from aionode.cli._main import root
 from aionode.clock import Time
 from aionode.interfaces.std_msgs.msg import Float64
 
@@ -28,7 +28,7 @@ assert not ("/a" in piece["topics"] and piece["start_ns"] <= 7 * 10**9 < piece["
 
 def aionode(*arguments: str | Path) -> Result:
     """Run `aionode bag` with arguments."""
-    return CliRunner().invoke(bag_command, [str(one) for one in arguments])
+    return CliRunner().invoke(root, ["bag", *map(str, arguments)])
 
 
 def write(path: Path, last: float = 9.0) -> Path:

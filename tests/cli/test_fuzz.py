@@ -127,6 +127,7 @@ def test_any_filter_is_an_expression_or_an_error(text: str) -> None:
 @given(st.text(max_size=20))
 @example("a{99999999999999999999}")
 @example("(" * 5000)
+@example("[[")
 @example("(?" + "i" * 100)
 def test_any_pattern_is_one_or_an_error(text: str) -> None:
     """Of `param list --filter`."""

@@ -118,7 +118,6 @@ def freezes(way: str) -> Iterator[Case]:
                     (name,),
                     loss="none" if keep_all else "told",
                     lasts_s=seconds,
-                    short=short and keep_all and name == "reader",
                 )
         yield Case(
             f"{way}: KEEP_ALL reader frozen {seconds} s, its publisher idle at first",
@@ -202,7 +201,6 @@ def kills(way: str) -> Iterator[Case]:
             f"{way}: KEEP_ALL {name} killed and replaced",
             on(way, *talk(keep_all=True)),
             replace(name),
-            short=name == "talker" and way == "link",
         )
     for roles, kind in ((CALLING, "calls"), (ACTING, "goals")):
         for name in ("server", "client"):
@@ -211,7 +209,6 @@ def kills(way: str) -> Iterator[Case]:
                 on(way, *roles),
                 replace(name),
                 loss="told",
-                short=kind == "calls" and name == "server" and way == "Zenoh",
             )
 
 

@@ -16,10 +16,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from types import TracebackType
 
-__all__ = ["ROOT", "Process", "member"]
+__all__ = ["ROOT", "SOON_S", "Process", "member"]
 
 ROOT = Path(__file__).parent.parent.parent
 PATIENCE_S = 40.0
+
+SOON_S = 5.0
+"""How long something that takes a moment may take on a busy machine, in seconds.
+
+The defects that a longer time shows took ten seconds, a minute, or did not end. The times that are
+promised are measured by `make faults` and `make motion`.
+"""
 
 
 class Process:

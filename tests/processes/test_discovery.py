@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.processes.process import Process, member
+from tests.processes.process import SOON_S, Process, member
 from tests.support.peers import ros_router, ros_session
 
 ATTEMPTS = 4
@@ -44,17 +44,12 @@ def heard_within(stack: ExitStack, limit_s: float, *others: str) -> Process:
     pytest.fail(f"newcomers took {took} s to hear {others}; {limit_s} s is the limit")
 
 
-FLUSH_LIMIT_S = 1.0
-"""How long a program may wait at its end for a reader that takes nothing: half a second over Zenoh,
-and a second over a link."""
-
-
-def stop_within_a_second(*members: Process, flush_limit_s: float = 0.0) -> None:
-    """End each with Ctrl-C: within a second of its flush limit."""
+def stop_soon(*members: Process) -> None:
+    """End each with Ctrl-C, also beside readers that take nothing."""
     for each in members:
         took_s, status = each.stop()
         assert status == 0, f"{status}: {each.rest()}"
-        assert took_s < 1.0 + flush_limit_s
+        assert took_s < SOON_S
 
 
 @pytest.mark.parametrize("first", ["talker", pytest.param("listener", marks=pytest.mark.stress)])
@@ -64,24 +59,19 @@ def test_two_terminals_hear_each_other_in_either_order(first: str) -> None:
     with Process(f"examples/{first}.py") as one, Process(f"examples/{second}.py") as two:
         listener = one if first == "listener" else two
         listener.expect("I heard: Hello")
-        stop_within_a_second(one, two)
+        stop_soon(one, two)
 
 
 def test_the_second_process_hears_the_first_soon_after_its_start() -> None:
     """`benchmarks/start.py` holds the target of 300 ms from exec, on a quiet machine."""
-    with member("first") as first:
-        first.expect("open")
-        took = []
-        for number in range(ATTEMPTS):
-            with member(f"second{number}") as second:
-                began_s = second.expect("started")
-                took.append(second.expect("heard first") - began_s)
-    assert min(took) < 1.0
+    with ExitStack() as stack:
+        group(stack, "first")
+        heard_within(stack, 1.0, "first")
 
 
-def test_eight_started_at_once_all_hear_all() -> None:
-    """They race for the meeting ports; those that lose are introduced by the others."""
-    names = [f"m{number}" for number in range(8)]
+def test_six_started_at_once_all_hear_all() -> None:
+    """They race for three meeting ports; those that lose are introduced by the others."""
+    names = [f"m{number}" for number in range(6)]
     with ExitStack() as stack:
         members = [stack.enter_context(member(name)) for name in names]
         for each in members:
@@ -98,7 +88,7 @@ def test_nothing_listens_beyond_loopback() -> None:
 
 
 def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
-    """Within a second, and callers that wait for an answer get an error."""
+    """Soon, and callers that wait for an answer get an error."""
     with ExitStack() as stack:
         one, two, three = group(stack, "one", "two", "three")
         one.expect("heard three")
@@ -108,9 +98,9 @@ def test_a_killed_process_leaves_the_graph_and_ends_its_calls() -> None:
         three.send(signal.SIGKILL)
         for each in (one, two):
             gone_s = each.expect("gone three") + each.started_s
-            assert gone_s - killed_s < 1.0
+            assert gone_s - killed_s < SOON_S
         ended_s = two.expect("error ServiceUnavailableError: /add_three: the server went away")
-        assert ended_s + two.started_s - killed_s < 1.0
+        assert ended_s + two.started_s - killed_s < SOON_S
         two.write("call one 5")
         two.expect("sum 5")
 
@@ -130,9 +120,8 @@ def test_newcomers_hear_everyone_when_the_holder_of_the_meeting_port_is_gone(
         holder, *others = group(stack, "holder", "one", "two", "three")
         others[-1].expect("heard holder", "heard one", "heard two")
         holder.send(number)
-        newcomer = heard_within(stack, 0.5, "one", "two", "three")
-        flush_limit_s = FLUSH_LIMIT_S if number is signal.SIGSTOP else 0.0
-        stop_within_a_second(newcomer, *others, flush_limit_s=flush_limit_s)
+        newcomer = heard_within(stack, 1.0, "one", "two", "three")
+        stop_soon(newcomer, *others)
 
 
 def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:
@@ -146,7 +135,7 @@ def test_newcomers_hear_everyone_when_all_holders_are_killed() -> None:
         newcomer = stack.enter_context(member("newcomer"))
         newcomer.expect("heard last")
         last.expect("heard newcomer")
-        stop_within_a_second(last, newcomer)
+        stop_soon(last, newcomer)
 
 
 def test_the_others_do_not_notice_when_the_holder_goes() -> None:
@@ -157,7 +146,7 @@ def test_the_others_do_not_notice_when_the_holder_goes() -> None:
         holder.send(signal.SIGSTOP)
         one.write("call two 4")
         one.expect("sum 4")
-        stop_within_a_second(one, two)
+        stop_soon(one, two)
 
 
 @pytest.mark.parametrize("order", ["router first", "ours first"])
@@ -237,4 +226,4 @@ def test_our_router_introduces_ros_nodes_to_each_other() -> None:
         assert linked.wait(15), router.lines
         publisher.put(b"hello")
         assert heard.get(timeout=5) == b"hello"
-        stop_within_a_second(router)
+        stop_soon(router)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import re
+import warnings
 from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -232,7 +233,10 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
         CommandError: the regular expression is invalid.
     """
     try:
-        compiled = re.compile(pattern or "")
+        with warnings.catch_warnings():
+            # Python warns of what later versions may read in another way, such as "[[".
+            warnings.simplefilter("ignore", FutureWarning)
+            compiled = re.compile(pattern or "")
     except (re.error, OverflowError, RecursionError) as error:
         raise CommandError(
             f"--filter {pattern!r}: not a regular expression: {error}; expected one such as "

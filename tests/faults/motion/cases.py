@@ -102,7 +102,6 @@ def leases(place: Place) -> Iterator[Motion]:
             mover=mover(ttl_sec=LONG_TTL_S),
             strike=strike,
             ends=True,
-            short="20 ms" in goes and place.name == "link",
             **promised,
         )
     for goes, strike in BLOCKS:
@@ -114,7 +113,6 @@ def leases(place: Place) -> Iterator[Motion]:
             mover=mover(),
             strike=strike,
             lasts_s=5.0,
-            short="sleep" in goes and place.name == "link",
             **promised,
         )
     yield case(
@@ -317,7 +315,7 @@ def goals(place: Place) -> Iterator[Motion]:
             switches=("lost",),
             limit_s=LOST_S,
             allowed_s=0.5,
-            **{**options, "short": options["strike"] is killed and place.name == "link"},
+            **options,
         )
     ends: tuple[tuple[str, str, Role, Strike, bool], ...] = (
         *(
