@@ -18,6 +18,7 @@
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make tf-differential TF2=<folder>   transforms beside those of geometry2's sources, compiled here
+#   make rosbridge-clients   roslib of npm and roslibpy talk to the gateway: needs node and npm
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make system-stress   fifty processes that are killed, hang and print; a hundred starts and stops
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
@@ -34,13 +35,14 @@ FUZZ_SECONDS ?= 60
 FAULTS_TIMES ?= 3
 MOTION_TIMES ?= 20
 WORKERS ?= auto
+CLIENTS := .rosbridge-clients
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks motion live ros-test crowd \
+.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks motion live ros-test rosbridge-clients crowd \
 	tf-differential system-stress soak quotes clean
 
 help:
-	@sed -n '3,25s/^# *//p' Makefile
+	@sed -n '3,26s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -118,6 +120,13 @@ tf-differential: .venv/installed-dev
 live: .venv/installed-dev
 	$(BIN)/python -m pytest -q -rs tests/live
 
+rosbridge-clients: .venv/installed-dev
+	npm install --silent --no-audit --no-fund --prefix $(CLIENTS) roslib@2.1.0
+	test -d $(CLIENTS)/venv || python3 -m venv $(CLIENTS)/venv
+	$(CLIENTS)/venv/bin/pip install --quiet --disable-pip-version-check roslibpy==2.1.0
+	AIONODE_ROSLIB=$(CLIENTS)/node_modules/roslib/dist/RosLib.js \
+		AIONODE_ROSLIBPY=$(CLIENTS)/venv/bin/python $(BIN)/python -m pytest -q -rs tests/gateway/clients
+
 crowd: .venv/installed-dev
 	$(BIN)/python -m tests.faults.crowd
 
@@ -131,7 +140,7 @@ quotes: .venv/installed-dev
 	$(BIN)/python docs/quotes.py
 
 clean:
-	rm -rf .venv .fuzz .mcap-core site benchmarks/results .coverage htmlcov
+	rm -rf .venv .fuzz .mcap-core .rosbridge-clients site benchmarks/results .coverage htmlcov
 	rm -rf .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache .grimp_cache
 
 # Two steps, so that the first look at aionode does not wait for the tools of its developers.

@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Callable, Hashable
 from typing import TYPE_CHECKING, Any, Final, TypeVar
 
+from aionode.endpoints.events import SubscriptionEventCallbacks
 from aionode.graph import EndpointKind
 from aionode.qos import (
     DurabilityPolicy,
@@ -170,8 +171,16 @@ class Feed:
     def _subscribe(self) -> None:
         if self._subscription is not None:
             self._subscription.destroy()
+        # What a publisher offers that appears is no mistake: the feed subscribes anew for it.
+        ignore = None if self._wanted is not None else ignore_incompatible_qos
         self._subscription = self._node.create_subscription(
-            self.message_class, self.topic, self._take, self._profile(), raw=True, on_error="log"
+            self.message_class,
+            self.topic,
+            self._take,
+            self._profile(),
+            raw=True,
+            on_error="log",
+            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=ignore),
         )
 
     def _take(self, raw: bytes, info: MessageInfo) -> None:
@@ -191,6 +200,10 @@ class Feed:
             self._latched.setdefault(gid, deque(maxlen=depth)).append(received)
         for taker in tuple(self._takers.values()):
             taker(received)
+
+
+def ignore_incompatible_qos(info: object) -> None:
+    """Have the log get no warning of it."""
 
 
 class Feeds:

@@ -17,6 +17,7 @@ from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError
 from aionode.gateway._rosapi_types import full_text, type_definitions
 from aionode.gateway._rosbridge_request import full_name
 from aionode.gateway._rosbridge_values import stamp
+from aionode.graph import EndpointKind
 from aionode.interfaces import interface_names
 
 if TYPE_CHECKING:
@@ -188,7 +189,13 @@ async def service_providers(session: Session, args: Args) -> dict[str, Any]:
 
 @service("action_servers")
 async def action_servers(session: Session, _: Args) -> dict[str, Any]:
-    return {"action_servers": list(session.actions())}
+    graph = session._robot.node.graph
+    served = [
+        name
+        for name in session.actions()
+        if graph.count(EndpointKind.SERVER, f"{name}/_action/send_goal")
+    ]
+    return {"action_servers": served}
 
 
 @service("action_type", "action")
@@ -351,7 +358,9 @@ async def names_of(session: Session, node: str) -> list[str]:
 
 @service("get_time")
 async def get_time(session: Session, _: Args) -> dict[str, Any]:
-    return {"time": stamp(session.now_ns())}
+    time = stamp(session.now_ns())
+    # roslibpy reads the words of ROS 1.
+    return {"time": {**time, "secs": time["sec"], "nsecs": time["nanosec"]}}
 
 
 @service("get_ros_version")
