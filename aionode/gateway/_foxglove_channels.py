@@ -52,6 +52,7 @@ class Channels:
         self._names: dict[int, Named] = {}
         self._subscriptions: dict[int, tuple[int, Subscribed]] = {}
         self._unknown: set[str] = set()
+        self._news: dict[tuple[str, str], list[dict[str, Any]]] = {}
 
     # What there is
 
@@ -107,7 +108,7 @@ class Channels:
         described = schema(named.type_name, await self._session.message_class(named.type_name))
         channel_id = self._topics[named] = self._new_id(named)
         channel = {"id": channel_id, "topic": named.name, **described}
-        self._session.outbox.send(frames.op_frame("advertise", {"channels": [channel]}))
+        self._tell("advertise", "channels", channel)
 
     async def _offer(self, named: Named) -> None:
         cls = await self._session.service_class(named.type_name)
@@ -117,7 +118,21 @@ class Channels:
         }
         service_id = self._services[named] = self._new_id(named)
         service = {"id": service_id, "name": named.name, "type": named.type_name, **described}
-        self._session.outbox.send(frames.op_frame("advertiseServices", {"services": [service]}))
+        self._tell("advertiseServices", "services", service)
+
+    def _tell(self, op: str, field: str, item: dict[str, Any]) -> None:
+        """Send what is new at the end of this turn of the loop, in one frame.
+
+        A frame for each would be more than may wait for the client, in a large system.
+        """
+        if not self._news:
+            asyncio.get_running_loop().call_soon(self._send_news)
+        self._news.setdefault((op, field), []).append(item)
+
+    def _send_news(self) -> None:
+        for (op, field), items in self._news.items():
+            self._session.outbox.send(frames.op_frame(op, {field: items}))
+        self._news.clear()
 
     def service(self, service_id: int) -> Named:
         """Return the service that the client was told of by this id.

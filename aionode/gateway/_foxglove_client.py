@@ -149,9 +149,8 @@ class Client:
                 self._start(self._call, asked)
             case frames.PlaybackRequest():
                 await self._put("playback", self.playback.control, self._start, asked)
-            case frames.Subscribe():
-                for wish in asked.subscriptions:
-                    await self._put("channels", self._channels.subscribe, wish.id, wish.channel_id)
+            case frames.Subscribe() | frames.Unsubscribe():
+                await self._put("channels", self._do, asked)
             case _:
                 await self._put(type(asked).__name__.removeprefix("Un"), self._do, asked)
 
@@ -177,6 +176,9 @@ class Client:
     async def _do(self, op: frames.Op) -> None:
         """Do what the client asks for of channels, parameters or the graph."""
         match op:
+            case frames.Subscribe():
+                for wish in op.subscriptions:
+                    await self._attempt(self._channels.subscribe, wish.id, wish.channel_id)
             case frames.Unsubscribe():
                 self._channels.unsubscribe(op.subscription_ids)
             case frames.GetParameters():

@@ -22,6 +22,9 @@ __all__ = ["Parameters"]
 EVENTS: Final = "/parameter_events"
 EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 
+MOST_QUESTIONS: Final = 8
+"""How many nodes are asked at a time."""
+
 
 class Parameters:
     """The parameters that one client reads, sets and follows.
@@ -83,10 +86,12 @@ class Parameters:
     async def _all(self) -> dict[str, list[str]]:
         """Return the names of all parameters by their nodes, of nodes that answer."""
         found: dict[str, list[str]] = {}
+        room = asyncio.Semaphore(MOST_QUESTIONS)
 
         async def ask(node: str) -> None:
             with suppress(AionodeError, TimeoutError):  # a node without parameters, or that ends
-                found[node] = await self._session.parameter_names(node)
+                async with room:
+                    found[node] = await self._session.parameter_names(node)
 
         async with asyncio.TaskGroup() as tasks:
             for node in self._session.nodes():

@@ -35,6 +35,16 @@ if TYPE_CHECKING:
     from aionode.context import Context
     from aionode.gateway._outbox import Frame
 
+WITHOUT_LIMIT = """
+[[who]]
+name = "local"
+loopback = true
+[[allow]]
+subscribe = "/**"
+[limits]
+subscriptions = 10000
+"""
+
 WRITING = Policy.default(allow_write=True)
 
 
@@ -82,27 +92,25 @@ class Client:
             await self.until(lambda frame: isinstance(frame, bytes) and frame[0] == opcode)
         )
 
+    async def announced(self, op: str, field: str, key: str, name: str) -> Any:
+        """Wait until something of this name is announced, and return what is said about it."""
+        async with asyncio.timeout(20):
+            while True:
+                for frame in self.got:
+                    items = frame[field] if isinstance(frame, dict) and frame["op"] == op else ()
+                    for item in items:
+                        if item[key] == name:
+                            return item
+                self._news.clear()
+                await self._news.wait()
+
     async def channel(self, topic: str) -> Any:
         """Wait until a topic is announced, and return its channel."""
-        op = await self.until(
-            lambda frame: (
-                isinstance(frame, dict)
-                and frame["op"] == "advertise"
-                and frame["channels"][0]["topic"] == topic
-            )
-        )
-        return op["channels"][0]
+        return await self.announced("advertise", "channels", "topic", topic)
 
     async def service(self, name: str) -> Any:
         """Wait until a service is announced, and return what is said about it."""
-        op = await self.until(
-            lambda frame: (
-                isinstance(frame, dict)
-                and frame["op"] == "advertiseServices"
-                and frame["services"][0]["name"] == name
-            )
-        )
-        return op["services"][0]
+        return await self.announced("advertiseServices", "services", "name", name)
 
     def publish(self, channel_id: int, data: bytes) -> None:
         """Publish a message."""
@@ -158,6 +166,23 @@ async def test_a_topic_is_a_channel_with_its_definition(node: Node) -> None:
         assert "Vector3 linear" in channel["schema"]
         assert "MSG: geometry_msgs/Vector3" in channel["schema"]
         assert gone["channelIds"] == [channel["id"]]
+
+
+async def test_a_large_system_is_announced_in_few_frames(node: Node) -> None:
+    """More frames than may wait for a client would disconnect it; all channels may be wanted."""
+    for number in range(1100):
+        node.create_publisher(String, f"/words_{number}", 1)
+    async with client_of(node, Policy.parse(WITHOUT_LIMIT)) as client:
+        last = await client.channel("/words_1099")
+        frames = [frame for frame in client.got if frame["op"] == "advertise"]
+        ids = [each["id"] for frame in frames for each in frame["channels"]][:300]
+        client.send("subscribe", subscriptions=[{"id": each, "channelId": each} for each in ids])
+        while len(client.session._subscribed) < 300:
+            await node.graph.changed()
+
+        assert last["schema"] == "string data\n"
+        assert not client.session.outbox.overflowed
+        assert not [frame for frame in client.got if frame["op"] == "status"]
 
 
 async def test_a_subscriber_gets_the_bytes_of_the_message(node: Node) -> None:

@@ -5,6 +5,7 @@ import { element, fill, notice } from "./dom.js";
 const LEVELS = { 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL" };
 const MOST_LINES = 500;
 const LIST_MS = 5000;
+const AT_ONCE = 8; // parameters that are asked for
 // Services that every node has for tools: the other panels stand for them.
 const BUILT_IN = /^\/rosapi\/|\/(describe_parameters|get_parameters|get_parameter_types|list_parameters|set_parameters|set_parameters_atomically|get_type_description|get_logger_levels|set_logger_levels)$|\/_action\//;
 
@@ -53,9 +54,12 @@ export function parameters(robot) {
     try {
       const { names } = await robot.call("/rosapi/get_param_names", {}, 10);
       const own = names.filter((name) => name.startsWith(`${node}:`)).sort();
-      const answers = await Promise.all(own.map((name) => robot.call("/rosapi/get_param", { name })));
-      if (select.value !== node) return;
-      rows.replaceChildren(...own.map((name, index) => row(name, answers[index].value)));
+      for (let at = 0; at < own.length; at += AT_ONCE) {
+        const some = own.slice(at, at + AT_ONCE);
+        const answers = await Promise.all(some.map((name) => robot.call("/rosapi/get_param", { name })));
+        if (select.value !== node) return;
+        rows.append(...some.map((name, index) => row(name, answers[index].value)));
+      }
       if (!own.length) rows.append(element("tr", {}, element("td", { textContent: "none" })));
     } catch (error) {
       notice(`Parameters of ${node}: ${error.message}`);
