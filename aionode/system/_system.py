@@ -119,6 +119,9 @@ class System:
         name: str,
         argv: Sequence[str | os.PathLike[str]],
         *,
+        parameters: Parameters | Sequence[Parameters] | None = None,
+        remappings: Mapping[str, str] | Sequence[tuple[str, str]] | None = None,
+        namespace: str | None = None,
         env: Mapping[str, str | None] | None = None,
         cwd: str | os.PathLike[str] | None = None,
         restart: Restart = "never",
@@ -140,6 +143,11 @@ class System:
         Args:
             name: Its name in the system.
             argv: Its command line.
+            parameters: For a program with nodes of ROS, as are the next two: a mapping of names to
+                values, the path of a parameter file, or a sequence of both, of which later ones
+                win. They are added to the command line, after ``--ros-args``.
+            remappings: Names of topics and services, and what they become.
+            namespace: The namespace of its nodes.
             env: Variables of its environment beside those of this process; None for one that it
                 does not get.
             cwd: Its working folder.
@@ -170,8 +178,9 @@ class System:
         """
         if not argv or isinstance(argv, str):
             raise ValueError(f"{name}: argv={argv!r}; use a list, such as ['my_driver', '--fast']")
+        arguments = ros_arguments(None, namespace, parameters, remappings)
         process = ProcessOptions(
-            [os.fspath(word) for word in argv],
+            [os.fspath(word) for word in argv] + (["--ros-args", *arguments] if arguments else []),
             dict(env or {}),
             None if cwd is None else os.fspath(cwd),
             stdin,

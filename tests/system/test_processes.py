@@ -447,6 +447,12 @@ async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system:
         "-r __node:=apart -r __ns:=/robot -r /cmd_vel:=/left/speed"
     )
 
+    driver = system.process("driver", ["my_driver", "-x"], parameters={"speed": 2.0}, **shared)
+    assert isinstance(driver, ProcessMember)
+    assert " ".join(driver.process.argv) == (
+        "my_driver -x --ros-args -r __ns:=/robot -r /cmd_vel:=/left/speed -p speed:=2.0"
+    )
+
     inside = System("inside", context=system.context, log=system.log)
     async with inside:
         inside.node("wheels", "tests.system.robot:Wheels", **shared)
