@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["serve_frames"]
 
 Op = dict[str, Any]
-Handler = Callable[[Op], Awaitable[None]]
+Handler = Callable[..., Awaitable[None]]
 
 logger = logging.getLogger("aionode.gateway")
 
@@ -127,6 +127,8 @@ class Client:
 
     async def _put(self, op: Op) -> None:
         kind, field, handler = self._in_order[op["op"]]
+        if op["op"] == "publish":  # it may wait for an earlier one, and be too old then
+            handler = partial(handler, arrived_ns=self._link.session.arrival_ns())
         await self._lanes.put((kind, text(op, field)), partial(self._attempt, op, handler))
 
     async def _attempt(self, op: Op, handler: Handler) -> None:

@@ -143,14 +143,15 @@ class Topics:
             del self._advertised[topic]
             await self._session.unadvertise(topic)
 
-    async def publish(self, op: Op) -> None:
+    async def publish(self, op: Op, arrived_ns: int | None = None) -> None:
         """Publish a message; a topic that is not advertised is advertised now, with its type."""
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type", ""), "msg") or None
         if topic not in self._advertised:
             await self._session.advertise(topic, type_name, publisher_profile(op))
             self._advertised[topic] = {None}
-        await self._session.publish(topic, values(op, "msg"), type_name)
+        message = values(op, "msg")
+        await self._session.publish(topic, message, type_name, arrived_ns=arrived_ns)
 
     async def subscribe(self, op: Op) -> None:
         """Send the client the messages of a topic.

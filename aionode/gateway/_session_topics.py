@@ -182,7 +182,7 @@ class SessionTopics(SessionBase):
             DecodeError: the bytes are no such message (a ValueError).
             InterfaceNotFoundError: nobody knows the type.
         """
-        arrived_ns = self._arrival_ns() if arrived_ns is None else arrived_ns
+        arrived_ns = self.arrival_ns() if arrived_ns is None else arrived_ns
         topic = self.topic_name(topic)
         if topic not in self._published:
             await self.advertise(topic, type_name)
@@ -214,7 +214,8 @@ class SessionTopics(SessionBase):
             found[subscribed.topic] += self.outbox.dropped.get(subscribed._key, 0)
         return dict(found)
 
-    def _arrival_ns(self) -> int:
+    def arrival_ns(self) -> int:
+        """Return when the frame arrived that is handled, in nanoseconds of the steady clock."""
         return self.steady_ns() if self._frame_ns is None else self._frame_ns
 
     def _note_published(self, topic: str, message: Message) -> None:

@@ -223,6 +223,7 @@ FIBONACCI = "example_interfaces/action/Fibonacci"
             marks=pytest.mark.stress,
         ),
         ("router -l tcp/127.0.0.1:0", "Router is listening", 0),
+        ("gateway --port 0", "Gateway is listening", 0),
     ],
 )
 def test_ctrl_c_ends_a_command_without_a_traceback(

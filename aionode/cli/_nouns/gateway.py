@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import AsyncExitStack
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,7 +11,7 @@ from aionode.cli._support.session import run_verb
 from aionode.errors import CommandError
 
 if TYPE_CHECKING:
-    from collections.abc import Awaitable, Callable
+    from collections.abc import Callable, Coroutine
 
     from aionode.cli._support.output import Output
     from aionode.node import Node
@@ -58,7 +58,7 @@ def gateway_command(
 
 def serving(
     path: str | None, allow_write: bool, host: str, port: int
-) -> Callable[[Node, Output], Awaitable[int | None]]:
+) -> Callable[[Node, Output], Coroutine[Any, Any, int | None]]:
     """Return what serves the robot until it is cancelled.
 
     Raises:

@@ -1,0 +1,56 @@
+"""``aionode gateway``: what it serves with, and what it refuses to start with."""
+
+from __future__ import annotations
+
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+import httpx
+import pytest
+
+from aionode.cli._main import main
+from aionode.cli._nouns.gateway import serving
+from aionode.errors import CommandError, ConfigurationError
+from aionode.node import Node
+from tests.cli.conftest import Running, Screen
+from tests.support.waiting import until
+
+
+async def test_it_serves_until_it_is_stopped(
+    tool: Node, screen: Screen, running: Running, node_factory: Callable[..., Node]
+) -> None:
+    """And says where, as port 0 is any free one."""
+    async with running(serving(None, False, "127.0.0.1", 0)(tool, screen.output)):
+        await until(lambda: "listening on 127.0.0.1:" in screen.text)
+        port = screen.text.rpartition(":")[2].strip()
+        async with httpx.AsyncClient(trust_env=False) as client:
+            answer = await client.get(f"http://127.0.0.1:{port}/nothing")
+    assert answer.status_code == 404
+
+
+async def test_a_port_that_is_taken_is_an_error_in_one_line(tool: Node, screen: Screen) -> None:
+    """With what to do about it."""
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        with pytest.raises(CommandError, match="choose another --port"):
+            await serving(None, False, "127.0.0.1", other.getsockname()[1])(tool, screen.output)
+
+
+async def test_other_machines_need_a_policy(tool: Node, screen: Screen) -> None:
+    """Nobody serves a robot to a network by mistake."""
+    with pytest.raises(ConfigurationError, match="token or certificate"):
+        await serving(None, True, "0.0.0.0", 0)(tool, screen.output)  # noqa: S104  # refused
+
+
+def test_what_does_not_fit_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Before a node is made, in one line."""
+    wrong = tmp_path / "policy.toml"
+    wrong.write_text("[[allow]]\npublsh = '/x'")
+
+    assert main(["gateway", "--policy", str(wrong)]) == 1
+    assert "publsh" in capsys.readouterr().err
+    assert main(["gateway", "--policy", str(tmp_path / "none.toml")]) == 1
+    assert main(["gateway", "--policy", str(wrong), "--allow-write"]) == 2
+    assert "say it there" in capsys.readouterr().err
