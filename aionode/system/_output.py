@@ -23,6 +23,9 @@ PIECE: Final = 1 << 16
 """How much is read at once, in bytes: what a pipe takes at first. The allocator gives much larger
 buffers back to the system each time, and their pages cost more than the copies."""
 
+TERMINAL_PIECE: Final = 4095
+"""What Linux gives at once of the output to a terminal, in bytes, if there is more."""
+
 LARGE_PIPE: Final = 1 << 20
 """How large a pipe becomes that was full, in bytes: what an ordinary user may ask for."""
 
@@ -110,7 +113,7 @@ class OutputReader:
         for pipe, _ in self._epoll.poll(0):
             for _ in range(LARGE_PIPE // PIECE):
                 count = self._read(pipe)
-                if count != PIECE or not self._log.flush():
+                if count not in {PIECE, TERMINAL_PIECE} or not self._log.flush():
                     break
             if count == 0:
                 with suppress(FileNotFoundError):
