@@ -7,7 +7,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Coroutine, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -114,7 +114,10 @@ class RunningLaunch:
                 if not self._is_shutdown:
                     self._dispatch(Shutdown(reason="the launch ends"))
 
-    def _spawn(self, work: Any, action: Any = None) -> None:
+    def _spawn(self, work: Coroutine[Any, Any, None], action: Any = None) -> None:
+        if self._is_shutdown:
+            work.close()  # it would be cancelled
+            return
         task = self._tasks.create_task(work)
         self._work.add(task)
         if action is not None:

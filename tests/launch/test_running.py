@@ -330,6 +330,23 @@ async def test_a_process_may_print_to_a_terminal(robot: Robot) -> None:
     assert {"yes", "no"} <= set(lines)
 
 
+async def test_nothing_begins_at_a_shutdown(robot: Robot) -> None:
+    """Neither a timer nor a coroutine: everything ends, so they would never be done."""
+    lines = await robot.run(
+        """
+        RegisterEventHandler(OnShutdown(on_shutdown=[
+            TimerAction(period=0.0, actions=[LogInfo(msg='late')]),
+            OpaqueCoroutine(coroutine=work), LogInfo(msg='good bye')])),
+        """,
+        imports="""
+        async def work(context):
+            raise ValueError
+        """,
+    )
+
+    assert lines[-1] == "good bye"
+
+
 async def test_an_error_in_an_event_handler_ends_the_launch(robot: Robot) -> None:
     """It is the error of the launch file, with its line."""
     with pytest.raises(LaunchFileError, match="'nope' does not exist"):
