@@ -22,7 +22,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncIterator
+    from collections.abc import AsyncIterator, Awaitable, Callable
 
     from starlette.requests import Request
 
@@ -62,7 +62,7 @@ async def until_disconnected(request: Request) -> AsyncIterator[None]:
         pass  # the route has read the body as a stream
     scope = asyncio.timeout(None)
     try:
-        async with scope, watching(request, scope):
+        async with scope, watching(lambda: disconnected(request), scope):
             yield
     except TimeoutError:
         if not scope.expired():
@@ -70,13 +70,20 @@ async def until_disconnected(request: Request) -> AsyncIterator[None]:
         raise gone from None
 
 
+async def disconnected(request: Request) -> None:
+    """Wait until the client of a request disconnects."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass  # the empty end of the body
+
+
 @contextlib.asynccontextmanager
-async def watching(request: Request, scope: asyncio.Timeout) -> AsyncIterator[None]:
-    """Let `scope` expire when the client disconnects."""
+async def watching(
+    sign: Callable[[], Awaitable[object]], scope: asyncio.Timeout
+) -> AsyncIterator[None]:
+    """Let `scope` expire when `sign` returns."""
 
     async def watch() -> None:
-        while (await request.receive())["type"] != "http.disconnect":
-            pass  # the empty end of the body
+        await sign()
         scope.reschedule(0.0)  # in the past: at the next turn of the loop
 
     error: BaseException | None = None

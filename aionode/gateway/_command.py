@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from aionode.gateway._identity import Identity
     from aionode.gateway._policy import LeaseRule
 
-__all__ = ["Commands", "Holder", "check_age"]
+__all__ = ["Commands", "Holder", "Owner", "check_age"]
 
 
 class Owner(Protocol):
-    """What commands a topic: a session."""
+    """What commands a topic: a session, or what stands for several sessions of one client."""
 
     def doubt(self) -> None:
         """Take that the client was silent for the time to live."""
@@ -31,7 +31,7 @@ class Holder:
     """A client that commands a topic, from its first command until its lease ends.
 
     Attributes:
-        owner: The session of the client.
+        owner: The session of the client, or what stands for several of its sessions.
         identity: Who it is.
         rule: How it publishes.
     """
@@ -76,7 +76,7 @@ class Commands:
             RefusedError: another one does; its code is ``held``.
         """
         holder = self._holders.get(topic)
-        if holder is not None and holder.owner is not owner:
+        if holder is not None and holder.owner != owner:
             raise held(topic, holder)
 
     async def publish(
@@ -96,7 +96,7 @@ class Commands:
         """
         topic = publisher.topic_name
         holder = self._holders.get(topic)
-        if holder is not None and holder.owner is not owner:
+        if holder is not None and holder.owner != owner:
             if rule.priority <= holder.rule.priority:
                 raise held(topic, holder)
             await self._end(holder)
@@ -148,8 +148,13 @@ class Commands:
     async def leave(self, owner: object, topic: str | None = None) -> None:
         """End the leases of a client: all, or that of one topic."""
         for name, holder in list(self._holders.items()):
-            if holder.owner is owner and topic in {None, name}:
+            if holder.owner == owner and topic in {None, name}:
                 await self._end(holder)
+
+    async def close(self) -> None:
+        """End all leases, and wait until their stops were sent."""
+        for holder in list(self._holders.values()):
+            await self._end(holder)
 
 
 def held(topic: str, holder: Holder) -> RefusedError:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
 from starlette.routing import WebSocketRoute
 
 from aionode._concurrency import to_the_end
@@ -131,6 +132,7 @@ class Gateway(Clients):
             session.ended.set()
         server.should_exit = True
         await serving
+        await self.robot.commands.close()  # those of requests, which have no session any more
 
     # Routes
 
@@ -141,7 +143,7 @@ class Gateway(Clients):
             *_http.routes(self),
             *_page_files.routes(),
         ]
-        return Starlette(routes=routes)
+        return Starlette(routes=routes, exception_handlers={HTTPException: _http.answer_http_error})
 
     async def _websocket(self, websocket: WebSocket) -> None:
         """Serve a WebSocket by the protocol that its client asks for."""

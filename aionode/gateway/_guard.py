@@ -84,11 +84,11 @@ class Guard:
 
 
 def is_public(scope: Message) -> bool:
-    """Return whether a request is for the page, which has nothing of the robot."""
+    """Return whether a request is for the page or the health, which tell nothing of the robot."""
     path: str = scope["path"]
     if scope["type"] != "http" or scope["method"] not in {"GET", "HEAD"}:
         return False
-    return path == "/" or path.startswith(PUBLIC)
+    return path in {"/", "/healthz"} or path.startswith(PUBLIC)
 
 
 def is_preflight(scope: Message) -> bool:
@@ -132,7 +132,7 @@ class Answer:
 async def preflight(send: Send) -> None:
     """Answer a browser that asks for a page which may connect."""
     headers = [
-        (b"access-control-allow-methods", b"GET, POST"),
+        (b"access-control-allow-methods", b"GET, POST, PUT"),
         (b"access-control-allow-headers", b"authorization, content-type"),
         (b"access-control-max-age", b"600"),
     ]

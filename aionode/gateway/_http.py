@@ -1,27 +1,259 @@
-"""HTTP: this module is replaced by the whole of it."""
+"""HTTP: the graph, topics, services, actions and parameters of the robot for curl and programs.
+
+Each request is a session of its own, which ends with its connection: a program that closes the
+stream of a goal cancels the goal. Only the lease of a command outlives the request, by its time to
+live: who sends the next command before that still holds the topic.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import importlib.metadata
+from collections.abc import AsyncGenerator, Awaitable, Callable, Mapping
+from typing import TYPE_CHECKING, Any, Final
 
-from starlette.responses import JSONResponse
+import msgspec
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
 from starlette.routing import Route
 
+from aionode.errors import AionodeError
+from aionode.fastapi import until_disconnected
+from aionode.gateway._http_answers import (
+    ALIVE,
+    CLIENT_GONE,
+    EVENTS,
+    HEADERS,
+    MOST_SEC,
+    Asked,
+    Stream,
+    body_of,
+    error_of,
+    error_response,
+    event,
+    json_response,
+    until_ended,
+)
+from aionode.gateway._http_parameters import set_parameter, show_parameters
+from aionode.gateway._http_topics import answer_topic
+from aionode.gateway._identity import Identity
+from aionode.gateway._metrics import MEDIA_TYPE, gateway_metrics, node_metrics, prometheus
+from aionode.gateway._offers import may, offers
+from aionode.gateway._openapi import openapi
+from aionode.gateway._rosbridge_values import json_of
+from aionode.node import Node
+
 if TYPE_CHECKING:
-    from starlette.requests import Request
-    from starlette.responses import Response
     from starlette.routing import BaseRoute
+    from starlette.types import Receive, Scope, Send
 
     from aionode.gateway._clients import Clients
+    from aionode.gateway._session import Session
 
-__all__ = ["routes"]
+__all__ = ["answer_http_error", "routes"]
+
+CALL_SEC: Final = 5.0
+"""How long a request waits for a response unless it says otherwise, in seconds."""
+
+Handler = Callable[[Asked], Awaitable[Response]]
 
 
 def routes(gateway: Clients) -> list[BaseRoute]:
-    """Return the routes of HTTP."""
+    """Return the routes of HTTP, for a Starlette application."""
+    api = HttpApi(gateway)
+    table: list[tuple[str, str, Handler]] = [
+        ("GET", "/topics", list_topics),
+        ("GET", "/services", list_services),
+        ("GET", "/actions", list_actions),
+        ("GET", "/nodes", list_nodes),
+        ("GET", "/nodes/{name:path}", show_node),
+        ("GET", "/topics/{name:path}", answer_topic),
+        ("POST", "/topics/{name:path}", publish),
+        ("POST", "/services/{name:path}", call),
+        ("POST", "/actions/{name:path}", send_goal),
+        ("GET", "/parameters/{name:path}", show_parameters),
+        ("PUT", "/parameters/{name:path}", set_parameter),
+        ("GET", "/openapi.json", api.openapi),
+        ("GET", "/metrics", api.metrics),
+    ]
+    return [
+        *(
+            Route(path, Endpoint(gateway, handler), methods=[method])
+            for method, path, handler in table
+        ),
+        Route("/healthz", api.healthz, methods=["GET"]),
+    ]
 
-    async def topics(request: Request) -> Response:
-        async with gateway.session_of(request.scope, "http") as session:
-            return JSONResponse(session.topics())
 
-    return [Route("/topics", topics)]
+class Endpoint:
+    """One route: opens a session for the request, and answers errors in JSON."""
+
+    def __init__(self, gateway: Clients, handler: Handler) -> None:
+        self._gateway = gateway
+        self._handler = handler
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer one request; what it began ends with its connection."""
+        request = Request(scope, receive)
+        try:
+            body = await body_of(request, self._gateway.policy.limits.handshake_sec)
+            async with (
+                self._gateway.session_of(scope, "http") as session,
+                until_disconnected(request),
+            ):
+                session.owner = Caller(session.identity)
+                async with until_ended(session):
+                    answer = await self._handler(Asked(session, request, body))
+                await answer(scope, receive, send)
+        except (AionodeError, HTTPException, TimeoutError) as error:
+            if isinstance(error, HTTPException) and error.status_code == CLIENT_GONE:
+                return  # there is nobody to answer
+            await error_response(error)(scope, receive, send)
+
+
+class Caller(msgspec.Struct, frozen=True):
+    """Who holds the topics that requests command, as the session of each ends with the request.
+
+    Attributes:
+        identity: Who has sent the requests.
+    """
+
+    identity: Identity
+
+    def doubt(self) -> None:
+        """Do nothing: the next request has to come with all that the caller has to show."""
+
+
+async def answer_http_error(_request: Request, error: Exception) -> Response:
+    """Answer a path or method that does not exist, for a Starlette application."""
+    return error_response(error)
+
+
+class HttpApi:
+    """The routes that need more than the session of their request.
+
+    Args:
+        gateway: The gateway.
+    """
+
+    def __init__(self, gateway: Clients) -> None:
+        self._gateway = gateway
+
+    async def openapi(self, asked: Asked) -> Response:
+        """Return the document of what the caller may do."""
+        version = importlib.metadata.version("aionode")
+        title = f"aionode gateway {self._gateway.node.get_fully_qualified_name()}"
+        return json_response(openapi(title, version, await offers(asked.session)))
+
+    async def metrics(self, asked: Asked) -> Response:
+        """Return what is counted, for Prometheus."""
+        nodes = [node for node in self._gateway.node.context._nodes if isinstance(node, Node)]
+
+        def sees(name: str, type_name: str) -> bool:
+            return may(asked.session, "see", name, type_name)
+
+        families = [*gateway_metrics(self._gateway.stats, sees), *node_metrics(nodes, sees)]
+        return Response(prometheus(families), headers=HEADERS, media_type=MEDIA_TYPE)
+
+    async def healthz(self, _request: Request) -> Response:
+        """Return whether the gateway's node runs: to all who reach it, as it says nothing else."""
+        ok = self._gateway.node.is_running
+        return json_response({"ok": ok}, 200 if ok else 503)
+
+
+# The graph
+
+
+def named(types: Mapping[str, list[str]]) -> list[dict[str, Any]]:
+    """Return names with their types, as ``aionode topic list --json`` prints them."""
+    return [{"name": name, "types": of} for name, of in sorted(types.items())]
+
+
+async def list_topics(asked: Asked) -> Response:
+    """Return the topics that the caller sees."""
+    return json_response(named(asked.session.topics()))
+
+
+async def list_services(asked: Asked) -> Response:
+    """Return the services that the caller sees."""
+    return json_response(named(asked.session.services()))
+
+
+async def list_actions(asked: Asked) -> Response:
+    """Return the actions that the caller sees."""
+    return json_response(named(asked.session.actions()))
+
+
+async def list_nodes(asked: Asked) -> Response:
+    """Return the full names of the nodes that the caller sees."""
+    return json_response(asked.session.nodes())
+
+
+async def show_node(asked: Asked) -> Response:
+    """Return what a node publishes, subscribes to, serves and calls."""
+    return json_response(asked.session.node_details(asked.name))
+
+
+# Messages, services and actions
+
+
+async def publish(asked: Asked) -> Response:
+    """Publish one message."""
+    values = asked.json()
+    type_name = asked.type_name
+    await asked.session.publish(asked.name, values, type_name)
+    return Response(status_code=204)
+
+
+async def call(asked: Asked) -> Response:
+    """Call a service and return its response. The call ends with the connection."""
+    response = await asked.session.call(
+        asked.name,
+        asked.json(),
+        type_name=asked.type_name,
+        timeout_sec=asked.number("timeout_sec", CALL_SEC, MOST_SEC),
+    )
+    return json_response(json_of(response))
+
+
+async def send_goal(asked: Asked) -> Response:
+    """Send a goal, and return its feedback and result as events, or its result alone as JSON.
+
+    The goal ends with the connection.
+    """
+    values, type_name = asked.json(), asked.type_name
+    if "application/json" in asked.accept:
+        async with asked.session.goal(asked.name, values, type_name=type_name) as goal:
+            return json_response(outcome_of(goal, await goal.result()))
+    events = goal_events(asked.session, asked.name, values, type_name)
+    accepted = await anext(events)  # a goal that is not accepted is answered without a stream
+    return Stream(asked.session, events, EVENTS, first=accepted, alive=ALIVE)
+
+
+async def goal_events(
+    session: Session, action: str, values: Any, type_name: str | None
+) -> AsyncGenerator[bytes, None]:
+    """Send a goal, and yield its events. Closing the generator cancels the goal."""
+    async with session.goal(action, values, type_name=type_name) as goal:
+        yield event("accepted", msgspec.json.encode({"goal_id": goal.text}))
+        try:
+            async for feedback in goal:
+                yield event("feedback", json_of(feedback))
+            result = await goal.result()
+        except AionodeError as error:
+            _, code, text = error_of(error)
+            yield event("failure", msgspec.json.encode({"code": code, "error": text}))
+        else:
+            yield event("result", outcome_of(goal, result))
+
+
+def outcome_of(goal: Any, result: Any) -> bytes:
+    """Return how a goal ended, as JSON."""
+    return msgspec.json.encode(
+        {
+            "goal_id": goal.text,
+            "status": result.status.name,
+            "error": result.error_text,
+            "result": msgspec.Raw(json_of(result.result)),
+        }
+    )

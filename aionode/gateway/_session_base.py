@@ -17,6 +17,7 @@ from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
     from aionode.clock import Clock
+    from aionode.gateway._command import Owner
     from aionode.gateway._identity import Credentials, Identity
     from aionode.gateway._policy import Decision, Verb
     from aionode.gateway._robot import Robot
@@ -47,6 +48,7 @@ class SessionBase:
         self.kind = kind
         self.credentials = credentials
         self.ended = asyncio.Event()
+        self.owner: Owner = self
         self._robot = robot
         self._limits = robot.policy.limits
         self.outbox = Outbox(self._limits.queued_bytes)

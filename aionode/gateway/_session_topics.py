@@ -192,7 +192,7 @@ class SessionTopics(SessionBase):
         self._check_size("publish", topic, decision, message)
         lease = decision.lease
         if lease is None:
-            self._robot.commands.refuse_if_held(topic, self)
+            self._robot.commands.refuse_if_held(topic, self.owner)
             publisher.publish(decision.message)
         else:
             if self._is_doubtful:
@@ -203,7 +203,7 @@ class SessionTopics(SessionBase):
             check_age(topic, message, lease, now_ns=now_ns, arrived_ns=arrived_ns,
                       time_base=self._robot.time_base)  # fmt: skip
             await self._robot.commands.publish(
-                publisher, self, self.identity, lease, decision.message
+                publisher, self.owner, self.identity, lease, decision.message
             )
         self._note_published(topic, decision.message)
 
@@ -231,7 +231,7 @@ class SessionTopics(SessionBase):
     async def unadvertise(self, topic: str) -> None:
         """Give a publisher back, and end the lease of its commands, which sends the stop."""
         topic = self.topic_name(topic)
-        await self._robot.commands.leave(self, topic)
+        await self._robot.commands.leave(self.owner, topic)
         self._give_back(topic)
 
     def _give_back(self, topic: str) -> None:

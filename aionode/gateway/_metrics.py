@@ -1,0 +1,206 @@
+"""What nodes, endpoints and the gateway count, in the text format of Prometheus."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
+
+import msgspec
+
+from aionode.endpoints.stats import CallbackStats, ClientStats, Distribution, PublisherStats
+from aionode.names import is_hidden
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from aionode.gateway._clients import GatewayStats
+    from aionode.node import Node
+
+__all__ = ["MEDIA_TYPE", "Family", "gateway_metrics", "node_metrics", "prometheus"]
+
+MEDIA_TYPE: Final = "text/plain; version=0.0.4; charset=utf-8"
+
+QUANTILES: Final = (0.5, 0.9, 0.99)
+
+Labels = dict[str, str]
+
+Stats: TypeAlias = PublisherStats | CallbackStats | ClientStats
+
+KINDS: Final = {
+    "Publisher": "publisher",
+    "Subscription": "subscription",
+    "Service": "service",
+    "Client": "client",
+    "ActionServer": "action server",
+    "Timer": "timer",
+}
+"""The entities with stats, by the names of their classes, and what they are called."""
+
+
+class Family(msgspec.Struct):
+    """One metric, with a sample for each set of labels.
+
+    Attributes:
+        name: Its name; those of counters end in ``_total``.
+        kind: What it is.
+        text: What it says, for people.
+        samples: The end of the name (for summaries), the labels and the value of each sample.
+    """
+
+    name: str
+    kind: Literal["counter", "gauge", "summary"]
+    text: str
+    samples: list[tuple[str, Labels, float]] = []
+
+    def add(self, value: float, **labels: str) -> None:
+        """Add a sample."""
+        self.samples.append(("", labels, value))
+
+    def add_durations(self, durations: Distribution, labels: Labels) -> None:
+        """Add the quantiles of durations, in seconds, and their count."""
+        for quantile in QUANTILES:
+            seconds = durations.percentile_ns(quantile * 100) / 1e9
+            self.samples.append(("", {**labels, "quantile": str(quantile)}, seconds))
+        self.samples.append(("_count", labels, durations.count))
+
+
+def prometheus(families: Iterable[Family]) -> str:
+    """Return the text of an answer to Prometheus; metrics without samples are left out."""
+    return "".join(f"{line}\n" for family in families if family.samples for line in lines(family))
+
+
+def lines(family: Family) -> Iterator[str]:
+    """Yield the lines of one metric."""
+    yield f"# HELP {family.name} {family.text}"
+    yield f"# TYPE {family.name} {family.kind}"
+    for ending, labels, value in family.samples:
+        shown = ",".join(f'{name}="{escaped(text)}"' for name, text in labels.items())
+        yield (
+            f"{family.name}{ending}{{{shown}}} {value!r}"
+            if shown
+            else (f"{family.name}{ending} {value!r}")
+        )
+
+
+def escaped(text: str) -> str:
+    """Return the value of a label as it is written between quotes."""
+    return text.replace("\\", "\\\\").replace("\n", "\\n").replace('"', '\\"')
+
+
+def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> list[Family]:
+    """Return what a gateway counts, as far as the caller sees the names.
+
+    Args:
+        stats: What it counts.
+        sees: Returns whether the caller sees a topic of this name; its type is not told.
+    """
+    sessions = Family("aionode_gateway_sessions", "gauge", "Clients now, by the way in.")
+    for kind, count in stats.sessions.items():
+        sessions.add(count, way=kind)
+    totals = [
+        ("refused", stats.refused, "What the policy has refused."),
+        ("audit_lost", stats.audit_lost, "Lines of the audit log that were not written."),
+    ]
+    families = [sessions]
+    for name, value, text in totals:
+        families.append(Family(f"aionode_gateway_{name}_total", "counter", text))
+        families[-1].add(value)
+    queued = Family("aionode_gateway_sent", "gauge", "Frames sent to the clients there are.")
+    queued.add(stats.sent)
+    dropped = Family("aionode_gateway_dropped", "gauge", "Frames that clients were too slow for.")
+    received = Family("aionode_gateway_received", "gauge", "Messages of topics that clients want.")
+    for family, by_topic in ((dropped, stats.dropped), (received, stats.received)):
+        for topic, count in by_topic.items():
+            if sees(topic, ""):
+                family.add(count, topic=topic)
+    held = Family("aionode_gateway_held", "gauge", "Whether a client commands the topic.")
+    for topic in stats.holders:
+        if sees(topic, ""):
+            held.add(1, topic=topic)
+    return [*families, queued, dropped, received, held]
+
+
+COUNTERS: Final = {
+    "published": "Messages that were published.",
+    "calls": "Requests that were sent.",
+    "received": "Messages, requests, ticks or goals that were handed to a callback or a reader.",
+    "dropped": "Messages, requests or ticks that a full queue or a slow reader has cost.",
+    "expired": "Messages that were older than their lifespan.",
+    "filtered": "Messages that did not pass a content filter.",
+    "lost": "Messages that are missing in the sequence numbers of publishers.",
+    "errors": "Callbacks that have raised, and calls that have failed.",
+}
+"""What entities count, by the attributes of their stats."""
+
+DURATIONS: Final = {
+    "queue_wait": "Time from the arrival to the start of the callback.",
+    "run_time": "Time from the start of a callback to its end, and of a call to its response.",
+    "blocking": "The longest stretch of each callback without an await.",
+}
+"""The durations that entities measure, by the attributes of their stats."""
+
+
+def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> list[Family]:
+    """Return what the entities of nodes count, as far as the caller sees their names.
+
+    Args:
+        nodes: The nodes.
+        sees: Returns whether the caller sees a topic, service or action of this name and type.
+    """
+    running = Family("aionode_node_running", "gauge", "Whether the node calls callbacks.")
+    counters = {
+        name: Family(f"aionode_{name}_total", "counter", text) for name, text in COUNTERS.items()
+    }
+    durations = {
+        name: Family(f"aionode_{name}_seconds", "summary", text) for name, text in DURATIONS.items()
+    }
+    for node in nodes:
+        full_name = node.get_fully_qualified_name()
+        running.add(node.is_running, node=full_name)
+        for (kind, name), stats in entities_of(node, sees).items():
+            labels = {"node": full_name, "entity": kind, "name": name}
+            for attribute, family in counters.items():
+                if hasattr(stats[0], attribute):
+                    family.add(sum(getattr(each, attribute) for each in stats), **labels)
+            for attribute, family in durations.items():
+                if hasattr(stats[0], attribute):
+                    family.add_durations(merged(getattr(each, attribute) for each in stats), labels)
+    return [running, *counters.values(), *durations.values()]
+
+
+def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str, str], list[Stats]]:
+    """Return the stats of the entities that the caller sees, by kind and name.
+
+    Entities of one kind and name are one for Prometheus, which refuses the same labels twice.
+    """
+    found: dict[tuple[str, str], list[Stats]] = {}
+    for entity in list(node._entities):
+        kind = kind_of(entity)
+        if kind is None:
+            continue
+        name, type_name = name_and_type(entity)
+        if not name or (not is_hidden(name) and sees(name, type_name)):
+            found.setdefault((kind, name), []).append(entity.stats)  # type: ignore[attr-defined]  # of KINDS
+    return found
+
+
+def kind_of(entity: object) -> str | None:
+    """Return what an entity with stats is called; None for others."""
+    names = (cls.__name__ for cls in type(entity).__mro__)
+    return next((KINDS[name] for name in names if name in KINDS), None)
+
+
+def name_and_type(entity: Any) -> tuple[str, str]:
+    """Return the full name of an entity, and that of its type; a timer has neither."""
+    if hasattr(entity, "_endpoint"):
+        return entity._endpoint.name, entity._endpoint.type_name
+    if hasattr(entity, "action_type"):
+        return entity.action_name, entity.action_type.__ros_type__
+    return "", ""
+
+
+def merged(several: Iterable[Distribution]) -> Distribution:
+    """Return durations of several entities as one."""
+    together = Distribution()
+    for durations in several:
+        together._merge(durations._read(), durations.max_ns)
+    return together

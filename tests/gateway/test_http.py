@@ -1,0 +1,547 @@
+"""HTTP: what curl and programs do with the robot, and what they are refused."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from collections.abc import AsyncIterator, Callable
+from contextlib import asynccontextmanager
+from typing import Any
+
+import httpx
+import pytest
+
+from aionode import image
+from aionode.action import CancelResponse, GoalResponse, ServerGoalHandle
+from aionode.context import Context
+from aionode.gateway import Gateway, Policy
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image, LaserScan
+from aionode.interfaces.std_msgs.msg import String
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, QoSProfile
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""So that a request finds the message, whichever comes first."""
+
+NodeFactory = Callable[..., Node]
+
+
+@asynccontextmanager
+async def client_of(context: Context, policy: str | Policy) -> AsyncIterator[httpx.AsyncClient]:
+    """Yield a client of a gateway with a policy."""
+    found = Policy.parse(policy) if isinstance(policy, str) else policy
+    async with (
+        Node("gateway", context=context) as node,
+        Gateway(node, found, port=0) as gateway,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}") as client,
+    ):
+        yield client
+
+
+@pytest.fixture
+async def client(aionode_context: Context) -> AsyncIterator[httpx.AsyncClient]:
+    """A client that may do everything."""
+    async with client_of(aionode_context, Policy.default(allow_write=True)) as found:
+        yield found
+
+
+@pytest.fixture
+async def robot(node_factory: NodeFactory) -> Node:
+    """The node of a robot."""
+    return node_factory("robot")
+
+
+def data_of(lines: list[str]) -> list[Any]:
+    """Return the data of server-sent events."""
+    return [json.loads(line.removeprefix("data: ")) for line in lines if line.startswith("data: ")]
+
+
+# The graph
+
+
+async def test_the_graph_is_listed_as_the_command_line_prints_it(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """One form for programs, whichever way they ask."""
+    robot.create_publisher(String, "/chatter", 10)
+    robot.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())
+
+    topics = (await client.get("/topics")).json()
+    services = (await client.get("/services")).json()
+    nodes = (await client.get("/nodes")).json()
+    details = (await client.get("/nodes/robot")).json()
+
+    assert {"name": "/chatter", "types": ["std_msgs/msg/String"]} in topics
+    assert {"name": "/add", "types": ["example_interfaces/srv/AddTwoInts"]} in services
+    assert "/robot" in nodes
+    assert details["publishers"]["/chatter"] == ["std_msgs/msg/String"]
+
+
+@pytest.mark.parametrize(
+    ("path", "code"),
+    [
+        ("/topics/nothing", "not_found"),
+        ("/nodes/nobody", "not_found"),
+        ("/parameters/nobody/rate", "not_found"),
+        ("/nonsense", "not_found"),
+    ],
+)
+async def test_a_name_that_does_not_exist_is_told_with_a_code(
+    client: httpx.AsyncClient, path: str, code: str
+) -> None:
+    """A program reads the code, and a person the text."""
+    answer = await client.get(path)
+
+    assert answer.status_code == 404
+    assert answer.json()["code"] == code
+    assert answer.json()["error"]
+
+
+# Topics
+
+
+async def test_the_next_message_is_json(client: httpx.AsyncClient, robot: Node) -> None:
+    """NaN is null, as JSON has none."""
+    scan = LaserScan(ranges=[1.5, float("nan")])
+    robot.create_publisher(LaserScan, "/scan", LATCHED).publish(scan)
+
+    answer = await client.get("/topics/scan")
+
+    assert answer.headers["content-type"] == "application/json"
+    assert answer.json()["ranges"] == [1.5, None]
+
+
+async def test_a_topic_without_messages_is_waited_for_in_vain(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """The wait has an end, which the caller may choose."""
+    robot.create_publisher(String, "/chatter", 10)
+
+    answer = await client.get("/topics/chatter?timeout_sec=0")
+
+    assert (answer.status_code, answer.json()["code"]) == (504, "timeout")
+
+
+@pytest.mark.parametrize("query", ["timeout_sec=-1", "timeout_sec=nan", "timeout_sec=soon"])
+async def test_a_number_of_the_query_is_checked(
+    client: httpx.AsyncClient, robot: Node, query: str
+) -> None:
+    """A request cannot wait for ever."""
+    robot.create_publisher(String, "/chatter", 10)
+
+    answer = await client.get(f"/topics/chatter?{query}")
+
+    assert (answer.status_code, answer.json()["code"]) == (400, "bad_request")
+
+
+async def test_messages_are_a_stream_of_events(client: httpx.AsyncClient, robot: Node) -> None:
+    """An EventSource of a page gets each message."""
+    publisher = robot.create_publisher(String, "/chatter", 10)
+    async with client.stream(
+        "GET", "/topics/chatter", headers={"Accept": "text/event-stream"}
+    ) as answer:
+        lines = answer.aiter_lines()
+        assert await anext(lines) == ": alive"  # the subscription is there
+        for text in ("one", "two"):
+            publisher.publish(String(data=text))
+        read = [await anext(lines) for _ in range(5)]
+
+    assert answer.headers["content-type"].startswith("text/event-stream")
+    assert data_of(read) == [{"data": "one"}, {"data": "two"}]
+
+
+async def test_a_closed_stream_leaves_no_subscription(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """What a request began ends with its connection."""
+    publisher = robot.create_publisher(String, "/chatter", 10)
+    async with client.stream(
+        "GET", "/topics/chatter", headers={"Accept": "text/event-stream"}
+    ) as answer:
+        await anext(answer.aiter_lines())
+        assert publisher.get_subscription_count() == 1
+
+    await robot.graph.until(lambda: publisher.get_subscription_count() == 0)
+
+
+async def test_a_message_is_published(client: httpx.AsyncClient, robot: Node) -> None:
+    """The robot gets what the caller sends, and the caller nothing but the news that it is done."""
+    subscription = robot.create_subscription(String, "/chatter")
+
+    answer = await client.post("/topics/chatter", json={"data": "hello"})
+
+    assert answer.status_code == 204
+    assert (await anext(subscription)).data == "hello"
+
+
+async def test_bytes_are_base64_in_both_directions(client: httpx.AsyncClient, robot: Node) -> None:
+    """What a client reads, it can send."""
+    subscription = robot.create_subscription(CompressedImage, "/in")
+    sent = CompressedImage(format="raw", data=b"\x00\xff")
+    robot.create_publisher(CompressedImage, "/out", LATCHED).publish(sent)
+    headers = {"Accept": "application/json"}
+
+    read = (await client.get("/topics/out", headers=headers)).json()
+    answer = await client.post("/topics/in", json=read)
+
+    assert answer.status_code == 204
+    assert bytes((await anext(subscription)).data) == b"\x00\xff"
+
+
+@pytest.mark.parametrize(
+    ("body", "media_type", "status", "code"),
+    [
+        (b'{"data": 1}', "application/json", 400, "invalid_message"),
+        (b'{"text": "a"}', "application/json", 400, "invalid_message"),
+        (b"{", "application/json", 400, "bad_request"),
+        (b"[" * 100_000, "application/json", 400, "bad_request"),
+        (b'{"data": "a"}', "text/plain", 415, "unsupported"),
+        (b'"' + b"a" * 1_000_001, "application/json", 413, "too_large"),
+    ],
+)
+async def test_a_body_that_is_no_message_is_refused(
+    client: httpx.AsyncClient, robot: Node, body: bytes, media_type: str, status: int, code: str
+) -> None:
+    """Also one that would take the parser's stack, or the robot's memory."""
+    robot.create_subscription(String, "/chatter")
+
+    answer = await client.post(
+        "/topics/chatter", content=body, headers={"Content-Type": media_type}
+    )
+
+    assert (answer.status_code, answer.json()["code"]) == (status, code)
+
+
+# Images
+
+
+def raw_image() -> Image:
+    """Return an image of two by two pixels."""
+    return Image(height=2, width=2, encoding="bgra8", step=8, data=bytes(range(16)))
+
+
+@pytest.mark.parametrize("path", ["/topics/image", "/topics/image.jpeg"])
+async def test_an_image_is_a_picture(client: httpx.AsyncClient, robot: Node, path: str) -> None:
+    """A page shows it with `<img src>`."""
+    robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
+
+    answer = await client.get(path)
+
+    assert answer.headers["content-type"] == "image/jpeg"
+    picture = image.decompress(CompressedImage(data=answer.content))
+    assert (picture.width, picture.height) == (2, 2)
+
+
+async def test_a_compressed_image_passes_through(client: httpx.AsyncClient, robot: Node) -> None:
+    """It is not decoded, so it costs nothing, and Pillow is not needed."""
+    png = b"\x89PNG\r\n\x1a\nand so on"
+    message = CompressedImage(format="png", data=png)
+    robot.create_publisher(CompressedImage, "/image", LATCHED).publish(message)
+
+    answer = await client.get("/topics/image")
+
+    assert (answer.headers["content-type"], answer.content) == ("image/png", png)
+
+
+async def test_images_are_a_stream_of_pictures(client: httpx.AsyncClient, robot: Node) -> None:
+    """Browsers show multipart/x-mixed-replace as a video."""
+    publisher = robot.create_publisher(Image, "/image", LATCHED)
+    publisher.publish(raw_image())
+
+    async with client.stream("GET", "/topics/image.mjpeg") as answer:
+        chunks = answer.aiter_bytes()
+        read = await anext(chunks)
+        publisher.publish(raw_image())
+        read += await anext(chunks)
+
+    assert answer.headers["content-type"] == "multipart/x-mixed-replace; boundary=picture"
+    assert read.count(b"--picture\r\nContent-Type: image/jpeg\r\n") == 2
+
+
+async def test_an_image_that_jpeg_cannot_hold_is_refused(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """The caller learns which fit."""
+    deep = Image(height=1, width=1, encoding="16UC1", step=2, data=b"\x00\x01")
+    robot.create_publisher(Image, "/depth", LATCHED).publish(deep)
+
+    answer = await client.get("/topics/depth")
+
+    assert (answer.status_code, answer.json()["code"]) == (422, "unsupported_image")
+
+
+async def test_without_pillow_an_image_is_refused(
+    client: httpx.AsyncClient, robot: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pillow is no part of the extra: the answer says how to get it."""
+    monkeypatch.setitem(sys.modules, "PIL.Image", None)
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
+
+    answer = await client.get("/topics/image")
+
+    assert (answer.status_code, answer.json()["code"]) == (501, "not_installed")
+    assert "pip install pillow" in answer.json()["error"]
+
+
+async def test_a_topic_without_images_has_no_picture(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """The suffix is the caller's mistake."""
+    robot.create_publisher(String, "/chatter", LATCHED).publish(String(data="a"))
+
+    answer = await client.get("/topics/chatter.jpeg")
+
+    assert (answer.status_code, answer.json()["code"]) == (406, "not_acceptable")
+
+
+# Services
+
+
+async def test_a_service_is_called(client: httpx.AsyncClient, robot: Node) -> None:
+    """The response is the answer."""
+    robot.create_service(
+        AddTwoInts, "/add", lambda request: AddTwoInts.Response(sum=request.a + request.b)
+    )
+
+    answer = await client.post("/services/add", json={"a": 2, "b": 3})
+
+    assert answer.json() == {"sum": 5}
+
+
+async def test_a_service_that_fails_is_answered_with_its_text(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """It is the robot's failure, not the caller's."""
+
+    def fail(request: AddTwoInts.Request) -> AddTwoInts.Response:
+        raise ValueError("the motor is hot")
+
+    robot.create_service(AddTwoInts, "/add", fail)
+
+    answer = await client.post("/services/add", json={})
+
+    assert (answer.status_code, answer.json()["code"]) == (502, "call_failed")
+    assert "the motor is hot" in answer.json()["error"]
+
+
+async def test_a_call_without_an_answer_has_an_end(client: httpx.AsyncClient, robot: Node) -> None:
+    """The caller chooses how long it waits."""
+
+    async def wait(request: AddTwoInts.Request) -> AddTwoInts.Response:
+        await asyncio.Event().wait()
+        return AddTwoInts.Response()
+
+    robot.create_service(AddTwoInts, "/add", wait)
+
+    answer = await client.post("/services/add?timeout_sec=0.01", json={})
+
+    assert (answer.status_code, answer.json()["code"]) == (504, "timeout")
+
+
+async def test_a_service_that_nobody_knows_is_not_found(client: httpx.AsyncClient) -> None:
+    """Its type is unknown as well."""
+    answer = await client.post("/services/add", json={})
+
+    assert (answer.status_code, answer.json()["code"]) == (404, "unknown_type")
+
+
+# Actions
+
+
+class Counter:
+    """An action server that counts until its order, waits, and tells how its goals end."""
+
+    def __init__(self, node: Node) -> None:
+        self.ended: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        self.go_on = asyncio.Event()
+        node.create_action_server(
+            Fibonacci,
+            "/count",
+            self.execute,
+            goal_callback=self.accept,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+
+    def accept(self, goal: Fibonacci.Goal) -> GoalResponse:
+        """Reject negative orders."""
+        return GoalResponse.REJECT if goal.order < 0 else GoalResponse.ACCEPT
+
+    async def execute(self, goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+        """Give feedback once, and succeed when it may go on."""
+        goal.publish_feedback(Fibonacci.Feedback(sequence=[0]))
+        try:
+            await self.go_on.wait()
+        except asyncio.CancelledError:
+            self.ended.set_result("cancelled")
+            raise
+        self.ended.set_result("succeeded")
+        goal.succeed()
+        return Fibonacci.Result(sequence=[0, goal.request.order])
+
+
+async def test_a_goal_is_followed_by_events(client: httpx.AsyncClient, robot: Node) -> None:
+    """Feedback comes as it is sent, and the result is the last event."""
+    counter = Counter(robot)
+    read: list[str] = []
+
+    async with client.stream("POST", "/actions/count", json={"order": 7}) as answer:
+        async for line in answer.aiter_lines():
+            read.append(line)
+            if line == "event: feedback":
+                counter.go_on.set()
+
+    assert [line for line in read if line.startswith("event: ")] == [
+        "event: accepted",
+        "event: feedback",
+        "event: result",
+    ]
+    accepted, feedback, result = data_of(read)
+    assert feedback == {"sequence": [0]}
+    assert result == {
+        "goal_id": accepted["goal_id"],
+        "status": "SUCCEEDED",
+        "error": "",
+        "result": {"sequence": [0, 7]},
+    }
+
+
+async def test_closing_the_stream_cancels_the_goal(client: httpx.AsyncClient, robot: Node) -> None:
+    """Motion ends with whoever asked for it."""
+    counter = Counter(robot)
+
+    async with client.stream("POST", "/actions/count", json={"order": 7}) as answer:
+        await anext(answer.aiter_lines())
+
+    assert await counter.ended == "cancelled"
+
+
+async def test_a_goal_without_a_stream_ends_with_its_connection_too(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """A caller that takes JSON gets the result alone, and may leave before."""
+    counter = Counter(robot)
+    headers = {"Accept": "application/json"}
+    with pytest.raises(TimeoutError):
+        async with asyncio.timeout(0.2):
+            await client.post("/actions/count", json={"order": 7}, headers=headers)
+
+    assert await counter.ended == "cancelled"
+
+
+async def test_the_result_alone_is_json(client: httpx.AsyncClient, robot: Node) -> None:
+    """For a script that wants no events."""
+    Counter(robot).go_on.set()
+
+    answer = await client.post(
+        "/actions/count", json={"order": 7}, headers={"Accept": "application/json"}
+    )
+
+    assert answer.json()["result"] == {"sequence": [0, 7]}
+
+
+async def test_a_rejected_goal_has_no_stream(client: httpx.AsyncClient, robot: Node) -> None:
+    """A program looks at the status first."""
+    Counter(robot)
+
+    answer = await client.post("/actions/count", json={"order": -1})
+
+    assert (answer.status_code, answer.json()["code"]) == (409, "rejected")
+
+
+# Parameters
+
+
+async def test_parameters_are_read_and_set(client: httpx.AsyncClient, robot: Node) -> None:
+    """A whole number is one for a floating-point parameter: JavaScript writes 2.0 as 2."""
+    robot.declare_parameter("rate", 1.5)
+    robot.declare_parameter("gains", [0.5, 1.0])
+
+    every = (await client.get("/parameters/robot")).json()
+    changed = await client.put("/parameters/robot/rate", json=2)
+    one = (await client.get("/parameters/robot/rate")).json()
+    gains = await client.put("/parameters/robot/gains", json=[1, 2])
+
+    assert every["rate"] == 1.5
+    assert every["gains"] == [0.5, 1.0]
+    assert (changed.status_code, one) == (204, 2.0)
+    assert gains.status_code == 204
+    assert list(robot.get_parameter("gains").value) == [1.0, 2.0]
+
+
+async def test_a_parameter_that_the_node_rejects_is_told_with_its_reason(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """The node has the last word."""
+    robot.declare_parameter("name", "a")
+
+    answer = await client.put("/parameters/robot/name", json=[True])
+
+    assert (answer.status_code, answer.json()["code"]) == (409, "rejected")
+    assert "name" in answer.json()["error"]
+
+
+# Documents
+
+
+async def test_the_document_has_what_the_caller_may_do(
+    aionode_context: Context, robot: Node
+) -> None:
+    """It is made from the policy, so it is the answer to what a client can do."""
+    policy = """
+        [[who]]
+        name = "local"
+        loopback = true
+        [[allow]]
+        see = "/**"
+        subscribe = "/scan"
+        call = "/add"
+    """
+    robot.create_publisher(LaserScan, "/scan", 10)
+    robot.create_publisher(String, "/secret", 10)
+    robot.create_subscription(Twist, "/cmd_vel")
+    robot.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())
+    async with client_of(aionode_context, policy) as client:
+        document = (await client.get("/openapi.json")).json()
+
+    assert document["openapi"] == "3.1.0"
+    paths = {path for path in document["paths"] if path.startswith(("/topics/", "/services/"))}
+    assert paths == {"/topics/scan", "/services/add"}
+    assert "post" not in document["paths"]["/topics/scan"]
+
+
+async def test_metrics_count_what_the_endpoints_count(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """Prometheus refuses two samples with the same labels, and so two publishers are one."""
+    for _ in range(2):
+        robot.create_publisher(String, "/chatter", 10).publish(String(data="a"))
+
+    text = (await client.get("/metrics")).text
+
+    labels = '{node="/robot",entity="publisher",name="/chatter"}'
+    assert f"aionode_published_total{labels} 2" in text.splitlines()
+    assert 'aionode_gateway_sessions{way="http"} 1' in text.splitlines()
+    samples = [line.rpartition(" ")[0] for line in text.splitlines() if not line.startswith("#")]
+    assert len(samples) == len(set(samples))
+
+
+async def test_the_health_is_told_to_everyone(aionode_context: Context) -> None:
+    """What watches the process has no token, and the answer says nothing else."""
+    policy = """
+        [[who]]
+        name = "operator"
+        token = "secret"
+        [[allow]]
+        see = "/**"
+    """
+    async with client_of(aionode_context, policy) as client:
+        healthy, refused = await client.get("/healthz"), await client.get("/metrics")
+
+    assert (healthy.status_code, healthy.json()) == (200, {"ok": True})
+    assert (refused.status_code, refused.json()["code"]) == (401, "unauthorized")
+    assert refused.headers["www-authenticate"].startswith("Bearer")
