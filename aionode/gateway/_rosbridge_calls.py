@@ -64,7 +64,7 @@ class Calls:
         message_id = optional_text(op, "id") or old_id or None
         answer = {"op": "service_response", "service": name, "id": message_id}
         try:
-            self._lanes.start(partial(self._call, op, name, answer))
+            await self._lanes.start(partial(self._call, op, name, answer))
         except MessageError as error:
             self._link.send(answer | {"values": str(error), "result": False})
 
@@ -100,12 +100,12 @@ class Calls:
         if key in self._goals:
             self._fail(answer, f"send_action_goal.id: {message_id} is under way; use another id")
             return
+        self._goals[key] = goal
         try:
-            goal.task = self._lanes.start(partial(self._pursue, op, goal, answer, key))
+            goal.task = await self._lanes.start(partial(self._pursue, op, goal, answer, key))
         except MessageError as error:
+            del self._goals[key]
             self._fail(answer, str(error))
-        else:
-            self._goals[key] = goal
 
     async def _pursue(self, op: Op, goal: Goal, answer: Op, key: object) -> None:
         """Send a goal, pass on its feedback, and answer with its result."""

@@ -21,8 +21,8 @@ LEVELS: Final = ("none", "error", "warning", "info")
 MOST_WAITING: Final = 100
 """Most ops of one lane that wait."""
 
-MOST_TASKS: Final = 200
-"""Most calls and goals of one client at a time, and most lanes."""
+MOST_TASKS: Final = 1000
+"""Most calls, goals and lanes of one client at a time; the policy limits the first two, too."""
 
 
 class Link:
@@ -88,19 +88,25 @@ class Lanes:
             await checkpoint()  # one burst, perhaps, that no task has had a turn to work off
             waiting = self._lanes.get(lane)
         if waiting is None:
-            self.start(lambda: self._run(lane))
             self._lanes[lane] = deque([work])
+            try:
+                await self.start(lambda: self._run(lane))
+            except MessageError:
+                del self._lanes[lane]
+                raise
         elif len(waiting) < MOST_WAITING:
             waiting.append(work)
         else:
             raise MessageError("client", f"{MOST_WAITING} ops wait for an earlier one; send fewer")
 
-    def start(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
+    async def start(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
         """Run `work` beside everything else; return its task.
 
         Raises:
             MessageError: too many tasks are running.
         """
+        if len(self._running) >= MOST_TASKS:
+            await checkpoint()  # those of a burst may have nothing to wait for
         if len(self._running) >= MOST_TASKS:
             raise MessageError("client", f"{MOST_TASKS} ops are under way; wait for their ends")
 

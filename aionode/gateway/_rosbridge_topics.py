@@ -129,6 +129,7 @@ class Topics:
         """Make a publisher for the client."""
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type"), "msg")
+        self._refuse_other_type(topic, type_name)
         await self._session.advertise(topic, type_name, publisher_profile(op))
         self._advertised.setdefault(topic, set()).add(optional_text(op, "id"))
 
@@ -152,6 +153,17 @@ class Topics:
             self._advertised[topic] = {None}
         message = values(op, "msg")
         await self._session.publish(topic, message, type_name, arrived_ns=arrived_ns)
+
+    def _refuse_other_type(self, topic: str, type_name: str) -> None:
+        """Refuse a publisher that no subscription of the topic would hear.
+
+        Raises:
+            MessageError: the topic has another type.
+        """
+        types = self._session.topics(hidden=True).get(topic, [type_name])
+        if type_name not in types:
+            problem = f"{topic} has the type {', '.join(types)}, not {type_name}"
+            raise MessageError("advertise.type", problem)
 
     async def subscribe(self, op: Op) -> None:
         """Send the client the messages of a topic.

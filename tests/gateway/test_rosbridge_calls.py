@@ -8,7 +8,14 @@ from typing import Any, TypeVar
 
 import pytest
 
-from aionode.action import ActionClient, ActionServer, CancelResponse, GoalStatus, ServerGoalHandle
+from aionode.action import (
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+    GoalResponse,
+    GoalStatus,
+    ServerGoalHandle,
+)
 from aionode.errors import ServiceError
 from aionode.gateway._policy import Policy
 from aionode.gateway._robot import Robot
@@ -290,6 +297,28 @@ async def test_a_goal_that_fails_is_answered(client: RosbridgeClient, node: Node
         result = await client.receive()
         assert (result["op"], result["result"], result["status"]) == ("action_result", False, 0)
         assert told in result["values"]
+
+
+async def test_a_goal_can_be_canceled_before_it_is_accepted(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """Then it is withdrawn, and its client is told that no result comes."""
+    is_asked = asyncio.Event()
+
+    async def decide(goal: object) -> GoalResponse:
+        is_asked.set()
+        await asyncio.Event().wait()
+        return GoalResponse.ACCEPT
+
+    ActionServer(node, Fibonacci, "/fibonacci", count, goal_callback=decide)
+    await settle()
+    client.send("send_action_goal", **goal_of(3))
+    await is_asked.wait()
+
+    client.send("cancel_action_goal", action="/fibonacci", id="g1")
+
+    result = await client.receive()
+    assert (result["op"], result["result"], result["id"]) == ("action_result", False, "g1")
 
 
 # Actions that a client serves

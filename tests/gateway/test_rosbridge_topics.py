@@ -289,3 +289,44 @@ async def test_a_burst_of_messages_is_published_whole_and_in_order(
     got = [to_builtins(await reader.receive())["data"] for _ in range(500)]
 
     assert got == list(range(500))
+
+
+async def test_a_page_may_subscribe_to_very_many_topics_at_once(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """When it is loaded, all its ops come in one burst, which is no attack."""
+    for number in range(60):
+        for op in ("advertise", "subscribe"):
+            client.send(op, topic=f"/t{number}", type="std_msgs/String")
+    client.send("call_service", service="/rosapi/topics", id="end")
+
+    topics = (await client.receive())["values"]["topics"]
+
+    assert len([topic for topic in topics if topic.startswith("/t")]) == 60
+
+
+async def test_a_publisher_of_another_type_is_refused(client: RosbridgeClient, node: Node) -> None:
+    """No subscription would hear it, and its author would look for the reason in vain."""
+    node.create_subscription(Int32, "/count", print)
+    client.send("advertise", topic="/count", type="std_msgs/String", id="a")
+
+    status = await client.receive()
+
+    assert "/count has the type std_msgs/msg/Int32" in status["msg"]
+
+
+async def test_a_command_is_as_old_as_its_frame(
+    client: RosbridgeClient, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also if it then waits for an earlier op, and whatever the client says of it."""
+    seen: list[int] = []
+
+    async def publish(*_: object, arrived_ns: int) -> None:
+        seen.append(arrived_ns)
+
+    monkeypatch.setattr(client.session, "publish", publish)
+    monkeypatch.setattr(client.session, "arrival_ns", lambda: 42)
+    client.send("publish", topic="/words", type="std_msgs/String", arrived_ns=10**30)
+    await settle()
+
+    assert seen == [42]
