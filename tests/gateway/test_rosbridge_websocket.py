@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import json
 from collections.abc import AsyncIterator, Callable
+from functools import partial
 from typing import Any
 
 import cbor2
@@ -13,12 +14,13 @@ import pytest
 import websockets
 
 from aionode.gateway import Gateway, Policy
+from aionode.gateway._rosbridge import subprotocol
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import settle
 
-Connect = Callable[[], contextlib.AbstractAsyncContextManager[websockets.ClientConnection]]
+Connect = Callable[..., contextlib.AbstractAsyncContextManager[websockets.ClientConnection]]
 
 
 @pytest.fixture
@@ -28,7 +30,7 @@ async def connect(node_factory: Callable[..., Node]) -> AsyncIterator[Connect]:
     await settle()
     async with Gateway(gateway_node, Policy.default(allow_write=True), port=0) as gateway:
         url = f"ws://127.0.0.1:{gateway.port}/"
-        yield lambda: websockets.connect(url, max_size=None)
+        yield partial(websockets.connect, url, max_size=None)
 
 
 async def send(client: websockets.ClientConnection, op: str, **fields: Any) -> None:
@@ -133,3 +135,12 @@ async def test_a_client_that_sends_garbage_is_disconnected(connect: Connect) -> 
 
         assert bad.close_code == 1008
         assert json.loads(await good.recv())["result"] is True
+
+
+async def test_a_subprotocol_of_the_client_is_answered(connect: Connect) -> None:
+    """Otherwise a browser closes the connection; one may be there only for its token."""
+    async with connect(subprotocols=["rosbridge"]) as client:
+        assert client.subprotocol == "rosbridge"
+    assert subprotocol(["bearer.t", "rosbridge"]) == "rosbridge"
+    assert subprotocol(["bearer.t"]) == "bearer.t"
+    assert subprotocol([]) is None
