@@ -130,6 +130,13 @@ def kill_cgroup(cgroup: str | None) -> None:
             file.write("1")  # since Linux 5.14
 
 
+def remove_cgroup(cgroup: str | None) -> None:
+    """Remove a cgroup without processes; the supervisor may be gone, which has created it."""
+    if cgroup is not None:
+        with suppress(OSError):
+            os.rmdir(cgroup)  # noqa: PTH106  # every import here takes time at each start
+
+
 def processes_in(cgroup: str | None) -> list[int]:
     """Return the processes of a cgroup."""
     if cgroup is None:
@@ -309,6 +316,7 @@ class Guardian:
             rest = owned.get(program.number, [])
             if program.ended and not rest:
                 program.gone = True
+                remove_cgroup(program.cgroup)
                 self._forget(program)
                 self._tell(event="gone", number=program.number)
             else:
