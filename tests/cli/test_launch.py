@@ -74,12 +74,17 @@ def test_it_finds_a_file_of_a_package(
 def test_its_exit_status_is_that_of_the_first_failure(
     tmp_path: Path, options: list[str], status: int
 ) -> None:
-    """Unless it is asked for that of ros2 launch, as test frameworks do."""
+    """Unless it is asked for that of ros2 launch, as test frameworks do.
+
+    The last words of each process are in a file, on request.
+    """
     path = tmp_path / "a.launch.xml"
-    path.write_text("""<launch><executable cmd="sh -c 'exit 3'"/></launch>""")
+    path.write_text("""<launch><executable cmd="sh -c 'echo no device; exit 3'"/></launch>""")
     command = [sys.executable, "-m", "aionode", "launch", str(path), *options]
+    command += ["--log-folder", str(tmp_path / "log")]
 
     assert subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode == status
+    assert (tmp_path / "log" / "sh-1.log").read_text().endswith(" no device\n")
 
 
 @pytest.mark.parametrize(

@@ -34,6 +34,12 @@ __all__ = ["launch_command"]
 )
 @click.option("--json", "as_json", is_flag=True, help="One record of JSON a line.")
 @click.option(
+    "--log-folder",
+    type=click.Path(file_okay=False),
+    metavar="FOLDER",
+    help="Write the log into files as well, one for each process; they are rotated at 10 MB.",
+)
+@click.option(
     "--watch", is_flag=True, help="Restart a process when the file of its program changes."
 )
 @click.option("--once-ready", metavar="CMD", help="Run a command when all nodes are in the graph.")
@@ -57,6 +63,7 @@ def launch_command(
     show_args: bool,
     prints: bool,
     as_json: bool,
+    log_folder: str | None,
     watch: bool,
     once_ready: str | None,
     real: bool,
@@ -82,7 +89,9 @@ def launch_command(
     elif prints:
         print_plan(plan, as_json=as_json)
     else:
-        status = start(plan, watch=watch, once_ready=once_ready, as_json=as_json)
+        status = start(
+            plan, watch=watch, once_ready=once_ready, as_json=as_json, log_folder=log_folder
+        )
         if status and not noninteractive:
             sys.exit(status)
 
@@ -150,14 +159,17 @@ def print_plan(plan: Plan, *, as_json: bool) -> None:
             click.echo(line)
 
 
-def start(plan: Plan, *, watch: bool, once_ready: str | None, as_json: bool) -> int:
+def start(
+    plan: Plan, *, watch: bool, once_ready: str | None, as_json: bool, log_folder: str | None
+) -> int:
     """Start what a plan says; return the exit status of the first failure, or 0."""
     from aionode.launch import run_plan
     from aionode.runner import run
     from aionode.system import System, SystemLog
 
     _ = plan.steps  # whatever is wrong with the file is said before anything begins
-    system = System(Path(plan.path).name.partition(".")[0], log=SystemLog(json=as_json))
+    log = SystemLog(json=as_json, folder=log_folder)
+    system = System(Path(plan.path).name.partition(".")[0], log=log)
 
     async def main() -> None:
         async with system:
