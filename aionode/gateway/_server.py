@@ -91,6 +91,15 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         self._heard_s = self.loop.time()
         super().data_received(data)
 
+    async def send(self, message: Any) -> None:
+        """Send what the application does; a client that it has refused is no fault of it.
+
+        uvicorn would write an error into the log for each of them.
+        """
+        await super().send(message)
+        if message["type"] == "websocket.http.response.body":
+            self.handshake_complete = True
+
     def silent_sec(self) -> float:
         """Return how long nothing has arrived, in seconds."""
         return self.loop.time() - self._heard_s

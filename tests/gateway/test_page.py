@@ -177,6 +177,22 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
         assert commands[-1] == Twist()
 
 
+async def test_a_second_page_is_told_who_drives(context: Context) -> None:
+    """Its pad is let go, as its commands have no effect."""
+    async with scene(context) as (page, robot, _, commands), chromium() as other:
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        second = await other.open(await page.value("location.href"))
+        await connected(second)
+        await second.write("#teleop .speed", "0.1")
+        await hold(second)
+        await second.until("document.querySelector('#notice').textContent.includes('commands it')")
+        await second.until("!document.querySelector('.pad').classList.contains('held')")
+
+        assert 0.1 not in {command.linear.x for command in commands}
+
+
 async def test_the_page_asks_for_a_token(context: Context) -> None:
     """A token after the number sign of its address is enough; that of a user is typed in."""
     policy = Policy.parse("""

@@ -18,6 +18,7 @@ import httpx
 import pytest
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.typing import Origin
 
 from aionode.context import Context
 from aionode.errors import ConfigurationError, RefusedError
@@ -121,6 +122,15 @@ async def raw_connect(
         proxy=None,
     ) as websocket:
         yield websocket
+
+
+async def test_a_refused_client_is_no_error_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    """Anybody could fill the log of the robot otherwise."""
+    async with serving() as gateway:
+        with caplog.at_level(logging.WARNING), pytest.raises(InvalidStatus, match="401"):
+            await connect(address(gateway), origin=Origin("http://evil.example"))
+
+    assert [each.message for each in caplog.records if each.levelno >= logging.WARNING] == []
 
 
 async def test_a_page_of_an_allowed_origin_may_read_the_answers() -> None:

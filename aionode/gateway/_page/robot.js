@@ -90,7 +90,7 @@ export class Robot extends EventTarget {
       if (frame.result) call?.resolve(frame.values);
       else call?.reject(new Error(String(frame.values)));
     } else if (frame.op === "status") {
-      this.tell("status", { level: frame.level, text: frame.msg });
+      this.tell("status", { level: frame.level, text: frame.msg, id: frame.id });
     }
   }
 
@@ -152,8 +152,8 @@ export class Robot extends EventTarget {
     this.send({ op: "unadvertise", id: `advertise:${topic}`, topic });
   }
 
-  publish(topic, msg) {
-    this.send({ op: "publish", topic, msg });
+  publish(topic, msg, id) {
+    this.send({ op: "publish", id, topic, msg });
   }
 
   // Services

@@ -2,6 +2,7 @@
 
 import { element, notice } from "./dom.js";
 
+const ID = "teleop";
 const PERIOD_MS = 50;
 const MOST_WAITING_BYTES = 2000;
 const KEYS = {
@@ -23,6 +24,7 @@ export class Teleop {
     this.knob = this.pad.querySelector("i");
     this.keys = new Set();
     this.timer = null;
+    this.pointer = null;
     this.command = null; // [forward, left], from -1 to 1, while it is held
 
     this.armed.onchange = () => (this.armed.checked ? this.arm() : this.disarm());
@@ -40,6 +42,8 @@ export class Teleop {
     addEventListener("pagehide", () => this.disarm());
     document.addEventListener("visibilitychange", () => document.hidden && this.disarm());
     robot.addEventListener("state", () => this.disarm());
+    // Refused commands do nothing: whoever holds the pad should see that, and let it go.
+    robot.addEventListener("status", ({ detail }) => detail.id === ID && this.release());
     topics.addEventListener("change", () => this.list());
   }
 
@@ -80,7 +84,8 @@ export class Teleop {
 
   grab(event) {
     if (!this.armed.checked || event.button !== 0) return;
-    this.pad.setPointerCapture(event.pointerId);
+    this.pointer = event.pointerId;
+    this.pad.setPointerCapture(this.pointer);
     this.move(event);
   }
 
@@ -95,7 +100,7 @@ export class Teleop {
   key(event, isDown) {
     if (!KEYS[event.code]) return;
     event.preventDefault();
-    if (!this.armed.checked) return;
+    if (!this.armed.checked || (event.repeat && this.command === null)) return;
     if (isDown) this.keys.add(event.code);
     else this.keys.delete(event.code);
     if (!this.keys.size) { this.release(); return; }
@@ -116,6 +121,11 @@ export class Teleop {
     if (this.command === null) return;
     clearInterval(this.timer);
     this.command = null;
+    // A pointer or key that is still held has to be pressed again.
+    if (this.pointer !== null && this.pad.hasPointerCapture(this.pointer)) {
+      this.pad.releasePointerCapture(this.pointer);
+    }
+    this.pointer = null;
     this.keys.clear();
     this.publish([0, 0]);
     this.draw();
@@ -139,7 +149,8 @@ export class Teleop {
     };
     // The gateway puts the time of the robot into a header without a stamp.
     const isStamped = this.type.endsWith("Stamped");
-    this.robot.publish(this.name, isStamped ? { header: { frame_id: "base_link" }, twist } : twist);
+    const message = isStamped ? { header: { frame_id: "base_link" }, twist } : twist;
+    this.robot.publish(this.name, message, ID);
   }
 
   draw() {
