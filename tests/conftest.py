@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import uvloop
 from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture import providers
 
 from aionode.node import Node
 from tests.bytecode import share_bytecode
@@ -108,6 +109,15 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
     if config.getoption("numprocesses", None) and config.option.dist == "no":
         config.option.dist = "loadfile"
         config.option.loadscopereorder = False
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Have only longer runs try the numbers and texts that stand in the code of all modules.
+
+    Hypothesis reads more than a thousand files for them, for two seconds in each worker.
+    """
+    if not config.getoption("--hypothesis-profile") and hasattr(providers, "_get_local_constants"):
+        providers._get_local_constants = lambda: providers._local_constants
 
 
 @pytest.hookimpl(optionalhook=True)  # of pytest-xdist

@@ -54,7 +54,9 @@ async def test_a_node_from_the_factory_may_be_entered_by_the_test(
     assert node.destroyed
 
 
-def test_a_failing_callback_fails_the_test_at_its_end(pytester: pytest.Pytester) -> None:
+def test_a_failing_callback_fails_the_test_at_its_end(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A test that forgot to look still notices."""
     pytester.makeini("[pytest]\nasyncio_mode = auto\n")
     pytester.makepyfile(
@@ -66,7 +68,7 @@ def test_a_failing_callback_fails_the_test_at_its_end(pytester: pytest.Pytester)
             await settle()
         """
     )
-    result = pytester.runpytest_subprocess("-p", "no:cacheprovider")
+    result = without(pytester=pytester, monkeypatch=monkeypatch, plugins="asyncio")
     result.assert_outcomes(passed=1, errors=1)
     result.stdout.fnmatch_lines(["*ZeroDivisionError*"])
 
@@ -89,15 +91,22 @@ def test_something_else():
 
 
 def without(
-    *missing: str, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch, plugins: str = ""
+    *missing: str,
+    pytester: pytest.Pytester,
+    monkeypatch: pytest.MonkeyPatch,
+    plugins: str = "",
+    options: tuple[str, ...] = (),
 ) -> pytest.RunResult:
-    """Run pytest where packages are missing, with aionode's plugin and a few others."""
+    """Run pytest where packages are missing, with aionode's plugin and a few others.
+
+    To load all plugins that are installed takes a second of processor time.
+    """
     for name in missing:
         pytester.makepyfile(**{name: f"raise ImportError('{name} is not installed')"})
     monkeypatch.setenv("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "1")
     monkeypatch.setenv("PYTHONPATH", str(pytester.path), prepend=os.pathsep)
     words = [word for name in (*plugins.split(), "aionode.pytest_plugin") for word in ("-p", name)]
-    return pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider")
+    return pytester.runpytest_subprocess(*words, "-p", "no:cacheprovider", *options)
 
 
 def test_pytest_starts_where_no_plugin_for_async_tests_is(
@@ -138,7 +147,7 @@ def test_the_fixtures_work_with_anyio_alone(
     [("strict", "@pytest.mark.asyncio"), ("auto", ""), ("strict", "@pytest.mark.anyio")],
 )
 def test_the_fixtures_work_in_each_mode_of_pytest_asyncio_and_beside_it(
-    mode: str, mark: str, pytester: pytest.Pytester
+    mode: str, mark: str, pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Also where anyio's plugin runs the test although pytest-asyncio is there."""
     pytester.makeini(
@@ -148,7 +157,8 @@ def test_the_fixtures_work_in_each_mode_of_pytest_asyncio_and_beside_it(
         "import pytest\n@pytest.fixture\ndef anyio_backend():\n    return 'asyncio'\n"
     )
     pytester.makepyfile(TEST_OF_A_NODE.format(mark=mark))
-    pytester.runpytest_subprocess("-p", "no:cacheprovider").assert_outcomes(passed=2)
+    plugins = "asyncio anyio"
+    without(pytester=pytester, monkeypatch=monkeypatch, plugins=plugins).assert_outcomes(passed=2)
 
 
 GOLDEN = """
@@ -166,15 +176,20 @@ async def test_it(replay_bag, golden_bag):
 """
 
 
-def test_outputs_are_compared_with_a_golden_bag_beside_the_test(pytester: pytest.Pytester) -> None:
+def test_outputs_are_compared_with_a_golden_bag_beside_the_test(
+    pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It has to be made once; after that, a difference fails the test and is named."""
     with BagWriter(pytester.path / "run") as writer:
         writer.write_message("/x", Float64(data=2.0), Time(nanoseconds=1))
 
     def run(factor: float, *options: str) -> pytest.RunResult:
         pytester.makepyfile(GOLDEN.replace("FACTOR", str(factor)))
-        return pytester.runpytest_subprocess(
-            "-p", "no:cacheprovider", "-o", "asyncio_mode=auto", *options
+        return without(
+            pytester=pytester,
+            monkeypatch=monkeypatch,
+            plugins="asyncio",
+            options=("-o", "asyncio_mode=auto", *options),
         )
 
     run(1.0).stdout.fnmatch_lines(["*--update-golden-bags writes it*"])

@@ -33,8 +33,9 @@ def numbers(path: Path) -> list[int]:
         return [each.message.data for each in run.read("/numbers")]
 
 
+@pytest.mark.parametrize("step", [7, pytest.param(1, marks=pytest.mark.stress)])
 def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    step: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A power cut ends a file anywhere; only what was not on the disk is lost."""
     monkeypatch.setattr("os.fdatasync", lambda fd: None)  # thousands of them take half a minute
@@ -45,12 +46,14 @@ def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(
         summary = make_reader(stream).get_summary()
     assert summary is not None
     ends = [index.chunk_start_offset + index.chunk_length for index in summary.chunk_indexes]
-    for at in range(ends[0], len(whole)):
+    shown = {ends[0], ends[1] + 5, ends[2], len(whole) - 1}
+    borders = {end + near for end in ends for near in range(-9, 9)} - set(range(ends[0]))
+    for at in sorted({*range(ends[0], len(whole), step), *borders, *shown}):
         file.write_bytes(whole[:at])
         (found,) = bag.check(file)
         kept = sum(end <= at for end in ends)
         assert found.messages == 2 * kept, at
-        if at in {ends[0], ends[1] + 5, ends[2], len(whole) - 1}:
+        if at in shown:
             assert numbers(file) == list(range(kept))
             with file.open("rb") as stream:
                 read = list(make_reader(stream, validate_crcs=True).iter_messages())

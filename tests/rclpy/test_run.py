@@ -253,11 +253,14 @@ def test_a_program_that_python_cannot_read_is_shown_as_usual(folder: Path) -> No
     [
         (("nothing.py",), "aionode.rclpy: can't open file 'nothing.py': No such file or directory"),
         (("-m", "nothing.inside"), "aionode.rclpy: No module named nothing"),
-        (("-m", "nothing"), "aionode.rclpy: No module named nothing"),
+        pytest.param(
+            *(("-m", "nothing"), "aionode.rclpy: No module named nothing"),
+            marks=pytest.mark.stress,
+        ),
         (("-m", "helper:no name"), "aionode.rclpy: helper:no name is no MODULE:FUNCTION"),
         (("--interfaces", "nothing", "program.py"), "aionode.rclpy: nothing: no such folder"),
-        ((), "usage: python -m aionode.rclpy"),
         (("--nothing",), "usage: python -m aionode.rclpy"),
+        pytest.param((), "usage: python -m aionode.rclpy", marks=pytest.mark.stress),
     ],
 )
 def test_what_cannot_run_is_reported_in_one_line(
