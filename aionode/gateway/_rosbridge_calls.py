@@ -64,7 +64,7 @@ class Calls:
         message_id = optional_text(op, "id") or old_id or None
         answer = {"op": "service_response", "service": name, "id": message_id}
         try:
-            await self._lanes.start(partial(self._call, op, name, answer))
+            self._lanes.start(partial(self._call, op, name, answer))
         except MessageError as error:
             self._link.send(answer | {"values": str(error), "result": False})
 
@@ -102,7 +102,7 @@ class Calls:
             return
         self._goals[key] = goal
         try:
-            goal.task = await self._lanes.start(partial(self._pursue, op, goal, answer, key))
+            goal.task = self._lanes.start(partial(self._pursue, op, goal, answer, key))
         except MessageError as error:
             del self._goals[key]
             self._fail(answer, str(error))

@@ -88,25 +88,21 @@ class Lanes:
             await checkpoint()  # one burst, perhaps, that no task has had a turn to work off
             waiting = self._lanes.get(lane)
         if waiting is None:
+            if len(self._running) >= MOST_TASKS:
+                await checkpoint()  # those of a burst may have nothing to wait for
+            self.start(lambda: self._run(lane))
             self._lanes[lane] = deque([work])
-            try:
-                await self.start(lambda: self._run(lane))
-            except MessageError:
-                del self._lanes[lane]
-                raise
         elif len(waiting) < MOST_WAITING:
             waiting.append(work)
         else:
             raise MessageError("client", f"{MOST_WAITING} ops wait for an earlier one; send fewer")
 
-    async def start(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
+    def start(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
         """Run `work` beside everything else; return its task.
 
         Raises:
             MessageError: too many tasks are running.
         """
-        if len(self._running) >= MOST_TASKS:
-            await checkpoint()  # those of a burst may have nothing to wait for
         if len(self._running) >= MOST_TASKS:
             raise MessageError("client", f"{MOST_TASKS} ops are under way; wait for their ends")
 
