@@ -127,7 +127,8 @@ def written(
     options: dict[str, Any],
 ) -> int:
     """Write records to a new bag."""
-    with BagWriter(out, custom_data=custom_data, **options) as writer:
+    added = options.pop("custom_data", None) or {}
+    with BagWriter(out, custom_data=custom_data | added, **options) as writer:
         for record in records:
             writer.write_record(record)
         return writer.message_count

@@ -43,7 +43,8 @@ __all__ = ["COMPRESSIONS", "MAGIC", "ChunkWriter", "McapWriter", "record_bytes"]
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 LIBRARY: Final = "aionode"
-COMPRESSIONS: Final = ("zstd", "lz4", "none")
+COMPRESSIONS: Final = ("zstd", "zstd_small", "lz4", "none")
+LEVELS: Final = {"zstd": 1, "zstd_small": 19}
 CHUNK_BYTES: Final = 1 << 20
 """A chunk is written once it is larger than this; a reader has to decompress a whole one."""
 
@@ -155,7 +156,7 @@ class McapWriter:
 
     Args:
         path: The file, which must not exist.
-        compression: ``zstd``, ``lz4`` or ``none``.
+        compression: One of `COMPRESSIONS`.
         chunk_bytes: The size from which on a chunk is written.
 
     Attributes:
@@ -171,7 +172,7 @@ class McapWriter:
         self, path: Path, *, compression: str = "zstd", chunk_bytes: int = CHUNK_BYTES
     ) -> None:
         self.path = path
-        self.compression = "" if compression == "none" else compression
+        self.compression = "" if compression == "none" else compression.split("_", maxsplit=1)[0]
         self.spans: list[Span] = []
         self.counts: dict[int, int] = {}
         self._compress = compressor(compression)
@@ -499,7 +500,7 @@ def compressor(compression: str) -> Callable[[list[bytes], int], list[bytes]]:
         return lambda pieces, _: [lz4.frame.compress(b"".join(pieces))]
     if compression == "none":
         return lambda pieces, _: pieces
-    context = zstandard.ZstdCompressor(level=1)
+    context = zstandard.ZstdCompressor(level=LEVELS[compression])
 
     def compress(pieces: list[bytes], size: int) -> list[bytes]:
         if len(pieces) == 1:

@@ -82,7 +82,7 @@ class Recorder:
         selection: Which topics, services and actions are wanted, in place of `topics`.
         context: The context of its node; `Context.default()` by default.
         node_name: The name of its node.
-        compression: ``zstd``, ``lz4`` or ``none``.
+        compression: ``zstd``, ``zstd_small``, which is slow, ``lz4`` or ``none``.
         max_bytes: The size from which on a new file begins; 0 for one file.
         max_duration_sec: The time after which a new file begins, in seconds; 0 for one file.
         max_messages: How many messages a file takes; 0 for no limit.

@@ -29,6 +29,10 @@ __all__ = ["Checked", "check", "reindex"]
 
 HEAD: Final = struct.Struct("<BQ")
 MESSAGE: Final = struct.Struct("<HIQQ")
+FIRST: Final = len(MAGIC) + HEAD.size
+LONGEST_HEADER: Final = 64
+"""The first record of a file is the header, which is shorter than this, in bytes."""
+
 END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
 MOST_CHUNK: Final = 1 << 32
 """A chunk that claims to be larger, in bytes, is damaged."""
@@ -119,11 +123,26 @@ def check_file(file: Path) -> Checked:
 
 def repaired(file: Path, size: int) -> Checked:
     """Cut a file after its last complete chunk, and write a new summary."""
+    if has_hardly_begun(file):
+        file.unlink()
+        McapWriter(file).close()
+        return Checked(file.name, repaired=True, messages=0, removed_bytes=size)
     with file.open("rb") as stream:
         scan = Scan(file, stream, size)
     writer = McapWriter.resume(file, scan)
     writer.close()
     return Checked(file.name, repaired=True, messages=scan.messages, removed_bytes=size - scan.end)
+
+
+def has_hardly_begun(file: Path) -> bool:
+    """Return whether a file ends, or goes on with zeros, before its first record is complete."""
+    with file.open("rb") as stream:
+        begin = stream.read(LONGEST_HEADER).rstrip(b"\0")
+        if not MAGIC.startswith(begin[: len(MAGIC)]):
+            return False
+        if len(begin) >= FIRST and len(begin) >= FIRST + HEAD.unpack_from(begin, len(MAGIC))[1]:
+            return False
+        return not any(part.strip(b"\0") for part in iter(lambda: stream.read(1 << 20), b""))
 
 
 class Scan:

@@ -39,6 +39,7 @@ DAMAGE: Final = (
     KeyError,
     IndexError,
     AssertionError,
+    OSError,  # of a search before the beginning of a file that is cut short
 )
 """What the libraries raise for a damaged file."""
 
@@ -108,6 +109,9 @@ class McapSource:
                 number: topic_of(schemas.get(channel.schema_id), channel, counts.get(number, 0))
                 for number, channel in summary.channels.items()
             }
+        except (FileNotFoundError, PermissionError):
+            self._open.close()
+            raise
         except DAMAGE as error:
             self._open.close()
             raise damaged(path, error) from error

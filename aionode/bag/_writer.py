@@ -61,7 +61,7 @@ class BagWriter:
 
     Args:
         path: The folder, which must not exist.
-        compression: ``zstd``, ``lz4`` or ``none``.
+        compression: ``zstd``, ``zstd_small``, which is slow, ``lz4`` or ``none``.
         max_bytes: The size from which on a new file begins; 0 for one file.
         max_duration_ns: The time after which a new file begins, in nanoseconds; 0 for one file.
         max_messages: How many messages a file takes; 0 for no limit.

@@ -25,9 +25,9 @@ __all__ = ["Row", "WriterThread"]
 BATCH_S: Final = 0.02
 """How long the thread sleeps between two looks at what has come, in seconds."""
 
-SYNC_NS: Final = 500_000_000
+SYNC_NS: Final = 250_000_000
 """How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
-the last second, and writing takes time as well."""
+the last second, and writing takes time as well, on a busy machine most of it."""
 
 
 LEAST_WAITING: Final = 16 << 20

@@ -18,7 +18,6 @@ import pytest
 
 from aionode import bag
 from aionode.clock import Clock, ClockType
-from aionode.errors import BagError
 
 PROGRAM = textwrap.dedent("""
     import asyncio, os, sys
@@ -51,7 +50,7 @@ PROGRAM = textwrap.dedent("""
 """It records two thousand messages a second, and notes how large the file is at each sync."""
 
 TIMES = 50
-AT_ONCE = 5
+AT_ONCE = 3
 LAST_S = 1.0
 """What may be lost."""
 
@@ -61,12 +60,14 @@ async def killed(path: Path, after_s: float) -> int:
     process = await asyncio.create_subprocess_exec(
         sys.executable, "-c", PROGRAM, str(path), stdout=asyncio.subprocess.PIPE
     )
-    assert process.stdout is not None
-    assert await process.stdout.readline() == b"recording\n"
-    await asyncio.sleep(after_s)  # noqa: TID251  # another process has a real clock
-    killed_ns = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
-    process.kill()
-    await process.wait()
+    try:
+        assert process.stdout is not None
+        assert await process.stdout.readline() == b"recording\n"
+        await asyncio.sleep(after_s)  # noqa: TID251  # another process has a real clock
+        killed_ns = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds
+    finally:
+        process.kill()
+        await process.wait()
     return killed_ns
 
 
@@ -95,7 +96,7 @@ def after_power_cut(path: Path, number: int) -> Path:
 @pytest.mark.stress
 @pytest.mark.processes
 @pytest.mark.timeout(600)
-async def test_all_but_the_last_second_outlives_a_kill_and_a_power_cut(tmp_path: Path) -> None:
+def test_all_but_the_last_second_outlives_a_kill_and_a_power_cut(tmp_path: Path) -> None:
     """What a robot did in its last seconds is what everybody wants to see."""
     moments = random.Random(7)  # noqa: S311  # any moments
     places = asyncio.Semaphore(AT_ONCE)
@@ -107,17 +108,17 @@ async def test_all_but_the_last_second_outlives_a_kill_and_a_power_cut(tmp_path:
         async with places:
             killed_ns = await killed(path, after_s)
         if after_s <= LAST_S:  # there may be nothing yet
-            try:
-                bag.check(path)
-            except BagError as error:
-                assert "nothing can be saved" in str(error)  # noqa: PT017  # either is right
+            seconds_lost(path, killed_ns)
             return
         cut = after_power_cut(path, number)
         lost.append(seconds_lost(cut, killed_ns))
         lost.append(seconds_lost(path, killed_ns))
 
-    async with asyncio.TaskGroup() as tasks:
-        for number in range(TIMES):
-            tasks.create_task(once(number))
+    async def all_of_them() -> None:
+        async with asyncio.TaskGroup() as tasks:
+            for number in range(TIMES):
+                tasks.create_task(once(number))
+
+    asyncio.run(all_of_them())
     assert len(lost) > TIMES
     assert max(lost) <= LAST_S

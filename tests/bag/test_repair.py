@@ -60,6 +60,25 @@ def test_a_file_cut_at_any_byte_keeps_every_complete_chunk(
             assert len(read) == 2 * kept
 
 
+def test_a_file_that_has_hardly_begun_is_made_an_empty_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A recorder that dies at once leaves a few bytes; the other files of the bag are read then."""
+    monkeypatch.setattr("os.fdatasync", lambda fd: None)
+    with bag.BagWriter(tmp_path / "run"):
+        pass
+    file = tmp_path / "run" / "run_0.mcap"
+    whole = file.read_bytes()
+    header_end = 8 + 9 + int.from_bytes(whole[9:17], "little")
+    for at in range(header_end + 1):
+        for tail in (b"", bytes(99)):
+            file.write_bytes(whole[:at] + tail)
+            removed = len(tail) + (at if at < header_end else 0)
+            assert bag.check(tmp_path / "run") == [("run_0.mcap", True, 0, removed)]
+            with bag.open(tmp_path / "run") as run:
+                assert run.message_count == 0
+
+
 def test_a_tail_of_zeros_is_cut_off(tmp_path: Path) -> None:
     """Some file systems leave zeros where a power cut interrupted them."""
     record(tmp_path / "run")

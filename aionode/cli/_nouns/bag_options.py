@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "TOPICS",
+    "bag_names",
     "checked_selection",
+    "names",
     "output_folder",
     "overrides",
     "selection_of",
@@ -62,6 +64,11 @@ def names(*flags: str, what: str) -> Decorator:
 
 
 TOPICS = names("--topics", what="Names of topics.")
+
+
+def bag_names(given: Sequence[str]) -> list[str]:
+    """Return the bags that an option names; rosbag2 has the storage after each of them."""
+    return [name for name in given if name not in {"mcap", "sqlite3"}]
 
 
 def spread(options: Sequence[Decorator]) -> Decorator:

@@ -1,0 +1,147 @@
+"""The YAML files that rosbag2's commands take, for users who have them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, Final
+
+import click
+import yaml
+
+__all__ = ["PRESETS", "chunk_compression", "inputs_in", "outputs_in", "static_topics_in"]
+
+PRESETS: Final = {
+    "none": "none",
+    "fastwrite": "none",
+    "zstd_fast": "zstd",
+    "zstd_small": "zstd_small",
+}
+"""The compression of chunks for each of rosbag2's presets for MCAP."""
+
+COMPRESSIONS: Final = {"None": "none", "Lz4": "lz4", "Zstd": "zstd"}
+"""The same, in the configuration files of its MCAP plugin."""
+
+
+def content_of(path: str) -> dict[str, Any]:
+    """Return what a YAML file has.
+
+    Raises:
+        click.BadParameter: it has no names with values.
+    """
+    try:
+        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+    except yaml.YAMLError as error:
+        raise click.BadParameter(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+    if not isinstance(content, dict):
+        raise click.BadParameter(f"{path}: there are no names with values in it")
+    return content
+
+
+def static_topics_in(path: str | None) -> dict[str, str]:
+    """Return the types by topic of a file for ``--static-topics-path``.
+
+    Raises:
+        click.BadParameter: it is no such file.
+    """
+    if path is None:
+        return {}
+    listed = content_of(path).get("static_topics_and_types_list")
+    try:
+        return {f"/{name.removeprefix('/')}": str(kind) for name, kind in listed or ()}
+    except (TypeError, ValueError, AttributeError) as error:
+        raise click.BadParameter(
+            f"{path}: it needs static_topics_and_types_list, with [topic, type] for each"
+        ) from error
+
+
+def chunk_compression(preset: str | None, config: str | None, compression: str) -> str:
+    """Return how chunks are compressed, by the most particular of three options.
+
+    Raises:
+        click.BadParameter: the file names no compression of MCAP.
+    """
+    if config is not None:
+        named = content_of(config).get("compression")
+        if named is not None and named not in COMPRESSIONS:
+            raise click.BadParameter(f"{config}: compression is one of {', '.join(COMPRESSIONS)}")
+        if named is not None:
+            return COMPRESSIONS[named]
+    return compression if preset is None else PRESETS[preset]
+
+
+def bags_in(path: str, key: str) -> list[dict[str, Any]]:
+    """Return the entries of a list of bags in a file.
+
+    Raises:
+        click.BadParameter: there is none, or one has no ``uri``.
+    """
+    listed = content_of(path).get(key)
+    if not isinstance(listed, list) or not all(
+        isinstance(each, dict) and each.get("uri") for each in listed
+    ):
+        raise click.BadParameter(f"{path}: it needs {key}: a list of entries with a uri")
+    return listed
+
+
+def inputs_in(path: str | None) -> list[str]:
+    """Return the bags of a file for ``--input-options``."""
+    return [] if path is None else [str(each["uri"]) for each in bags_in(path, "input_bags")]
+
+
+def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:
+    """Return the new bags of a file for ``--output-options``: folder, and how `convert` makes it.
+
+    Raises:
+        click.BadParameter: it is no such file, or asks for a bag that is not written.
+    """
+    from aionode.bag import Selection
+    from aionode.clock import Time
+
+    outputs: list[tuple[str, dict[str, Any]]] = []
+    for entry in bags_in(path, "output_bags"):
+        if entry.get("storage_id") not in {None, "", "mcap"}:
+            raise click.BadParameter(
+                f"{path}: {entry['uri']}: aionode writes mcap, and not {entry['storage_id']}"
+            )
+        every = [
+            kind
+            for kind in ("topic", "service", "action")
+            if entry.get("all") or entry.get(f"all_{kind}s")
+        ]
+        names = ("topics", "services", "actions", "topic_types", "regex")
+        if not (every or any(entry.get(name) for name in names)):
+            every = ["topic", "service", "action"]
+        preset = entry.get("storage_preset_profile") or None
+        if preset is not None and preset not in PRESETS:
+            raise click.BadParameter(f"{path}: there is no storage_preset_profile {preset}")
+        start_ns, end_ns = entry.get("start_time_ns", -1), entry.get("end_time_ns", -1)
+        outputs.append(
+            (
+                str(entry["uri"]),
+                {
+                    "selection": Selection(
+                        topics=entry.get("topics") or (),
+                        services=entry.get("services") or (),
+                        actions=entry.get("actions") or (),
+                        types=entry.get("topic_types") or (),
+                        regex=entry.get("regex") or "",
+                        every=every,
+                        exclude_regex=entry.get("exclude_regex") or "",
+                        exclude=[
+                            name
+                            for kind in ("topics", "services", "actions")
+                            for name in entry.get(f"exclude_{kind}") or ()
+                        ],
+                        exclude_types=entry.get("exclude_topic_types") or (),
+                        hidden=True,
+                    ),
+                    "start": Time(nanoseconds=start_ns) if start_ns >= 0 else None,
+                    "end": Time(nanoseconds=end_ns + 1) if end_ns >= 0 else None,
+                    "compression": chunk_compression(preset, None, "zstd"),
+                    "max_bytes": entry.get("max_bagfile_size") or 0,
+                    "max_duration_ns": (entry.get("max_bagfile_duration") or 0) * 10**9,
+                    "custom_data": entry.get("custom_data") or None,
+                },
+            )
+        )
+    return outputs
