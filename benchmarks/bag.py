@@ -1,11 +1,12 @@
 """Bags: the writer beside those of `mcap` and `rosbags`, and a recorder under load.
 
     python benchmarks/bag.py writers
-    python benchmarks/bag.py recorder --seconds 30 [--image]
+    python benchmarks/bag.py recorder --seconds 30
 
-Ratios are comparable between machines; absolute times are not. `recorder` says, topic by topic in
-sum, what was published, recorded and lost, how much of a processor it took, and the longest gap of
-the event loop beside that of the same publishers without a recorder.
+Ratios are comparable between machines; absolute times are not. `recorder` compares, topic by topic,
+what was published with what is in the bag and what the recorder says was lost. It prints how much
+of a processor recording takes, the longest gap of the event loop beside that of the same publishers
+without a recorder, and how late a player of the bag publishes, each with a verdict.
 """
 
 from __future__ import annotations
@@ -17,9 +18,10 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
+from contextlib import AsyncExitStack
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple, TypeVar
 
 from mcap.writer import CompressionType
 from mcap.writer import Writer as McapLibraryWriter
@@ -29,13 +31,19 @@ from rosbags.typesys import Stores, get_typestore
 
 from aionode import bag
 from aionode.bag._writer import topic_info
+from aionode.clock import MachineTime
 from aionode.context import Context
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
+from aionode.runner import best_loop_factory
+
+T = TypeVar("T")
+perf_ns = MachineTime().steady_ns
 
 TOPICS = 20
 RATE_HZ = 1000
+IMAGE_HZ = 30
 SMALL = [os.urandom(500).hex().encode() for _ in range(64)]  # 1 kB, of which half is random
 LARGE = os.urandom(6_000_000)
 
@@ -94,77 +102,175 @@ def compare_writers() -> None:
             print(f"{name}: {other} {cost:.1f} µs, {cost / base:.2f} times as much")
 
 
-async def publish(seconds: float, *, image: bool, folder: Path | None) -> dict[str, Any]:
+class Seen(NamedTuple):
+    """What was seen in one run.
+
+    Attributes:
+        sent: How many messages each topic was given.
+        cpu: How much of a processor the whole process took, all threads together.
+        gap_ms: The longest time between two turns of the event loop.
+        stats: What the recorder says of each topic.
+    """
+
+    sent: int
+    cpu: float
+    gap_ms: float
+    stats: dict[str, bag.TopicStats]
+
+
+async def publish(seconds: float, *, image: bool, folder: Path | None) -> Seen:
     """Publish for some seconds, with a recorder or without, and return what was seen."""
-    gaps: list[float] = []
-    text = "x" * 1000
+    texts = [each.decode() for each in SMALL]
     picture = Image(data=LARGE)
     async with Context(transport="local") as context, Node("load", context=context) as node:
         publishers = [node.create_publisher(String, f"t{n}", 1000) for n in range(TOPICS)]
         camera = node.create_publisher(Image, "image", 10)
-        recorder = bag.Recorder(folder, context=context) if folder is not None else None
-        if recorder is not None:
-            await recorder.__aenter__()
-        loop = asyncio.get_running_loop()
-        cpu, began = time.process_time(), loop.time()
-        done = pictures = 0
-        last = began
-        while (now := loop.time()) < began + seconds:
-            gaps.append(now - last)
-            last = now
-            due = int((now - began) * RATE_HZ)
-            while done < due:
-                done += 1
-                for publisher in publishers:
-                    publisher.publish(String(data=text))
-                if done % 10 == 0:
-                    break
-            if image and now - began > pictures / 30:
-                pictures += 1
-                camera.publish(picture)
-            await asyncio.sleep(0.001)
-        cpu = time.process_time() - cpu
-        seen: dict[str, Any] = {"gap_ms": max(gaps) * 1e3, "cpu": cpu / seconds, "sent": done}
-        if recorder is not None:
+        wanted = [f"/t{n}" for n in range(TOPICS)] + ["/image"]
+        async with AsyncExitStack() as stack:
+            recorder = None
+            if folder is not None:
+                recorder = bag.Recorder(folder, topics=wanted, context=context)
+                await stack.enter_async_context(recorder)
+            gc.collect()
+            loop = asyncio.get_running_loop()
+            cpu, began = time.process_time(), loop.time()
+            sent = pictures = 0
+            gap, last = 0.0, began
+            while (now := loop.time()) < began + seconds:
+                gap = max(gap, now - last)
+                due = int((now - began) * RATE_HZ)
+                if image and now - began > pictures / IMAGE_HZ:
+                    pictures += 1
+                    camera.publish(picture)
+                for _ in range(min(due - sent, 5)):
+                    sent += 1
+                    for publisher in publishers:
+                        publisher.publish(String(data=texts[sent % len(texts)]))
+                last = loop.time()  # what this program itself does is none of the loop's gaps
+                await asyncio.sleep(0.001 if sent >= due else 0)
+            cpu = (time.process_time() - cpu) / seconds
             await asyncio.sleep(0.2)
-            seen["stats"] = recorder.stats
-            await recorder.__aexit__(None, None, None)
-    return seen
+            if recorder is not None:
+                await recorder.stop()
+            stats = {} if recorder is None else recorder.stats
+    return Seen(sent, cpu, gap * 1e3, stats)
 
 
-def measure_recorder(seconds: float, *, image: bool) -> None:
-    """Print what a recorder records and costs."""
-    control = asyncio.run(publish(seconds, image=image, folder=None))
+def verdict(text: str, *, holds: bool) -> None:
+    """Print a figure, and whether it is as it should be."""
+    print(f"{'holds' if holds else 'FAILS'}: {text}", flush=True)
+
+
+def measure_recorder(seconds: float) -> None:
+    """Print what a recorder records and costs, and whether that is as promised."""
     folder = Path(tempfile.mkdtemp(prefix="bag-benchmark-"))
-    seen = asyncio.run(publish(seconds, image=image, folder=folder / "run"))
-    with bag.open(folder / "run") as run:
-        counts = run.counts
+    print(
+        f"{TOPICS} topics of {RATE_HZ} Hz, 1 kB each, {seconds:g} s; load {os.getloadavg()[0]:.1f}"
+    )
+    control = run(publish(seconds, image=False, folder=None))
+    seen = run(publish(seconds, image=False, folder=folder / "run"))
+    with bag.open(folder / "run") as opened:
+        counts = opened.counts
     wrong = [
         name
-        for name in (f"/t{n}" for n in range(TOPICS))
-        if counts[name] + sum(seen["stats"][name][1:]) != seen["sent"]
+        for name, each in seen.stats.items()
+        if name != "/image"
+        and seen.sent != counts[name] + each.lost_in_transport + each.lost_in_recorder
     ]
-    lost = sum(sum(each[1:]) for each in seen["stats"].values())
+    lost = sum(each.lost_in_transport + each.lost_in_recorder for each in seen.stats.values())
     size = sum(file.stat().st_size for file in (folder / "run").iterdir())
-    print(f"load {os.getloadavg()[0]:.1f}; {TOPICS} topics, {seen['sent']} messages of each")
-    print(f"recorded {sum(counts.values())}, lost {lost}; topics that do not add up: {wrong}")
-    print(f"processor: {seen['cpu']:.2f} of a core, {control['cpu']:.2f} without the recorder")
-    print(f"longest gap: {seen['gap_ms']:.1f} ms, {control['gap_ms']:.1f} ms without")
-    print(f"{size / 1e6 / seconds:.1f} MB a second on the disk")
+    total, recorded = seen.sent * TOPICS, sum(counts.values())
+    wanted = int(seconds * RATE_HZ) * TOPICS
+    verdict(
+        f"published {total} of {wanted} wanted = recorded {recorded} + lost {lost}; "
+        f"wrong topics: {wrong or 'none'}",
+        holds=not wrong and total == recorded + lost,
+    )
+    verdict(f"lost {lost}, has to be 0 at a load up to 2", holds=lost == 0)
+    verdict(
+        f"processor: the recorder takes {seen.cpu - control.cpu:.0%} of a core, at most 35%; with "
+        f"the publishers {seen.cpu:.0%}, which take {control.cpu:.0%} alone",
+        holds=seen.cpu - control.cpu <= 0.35,
+    )
+    print(f"the disk got {size / 1e6 / seconds:.1f} MB a second")
+    images = run(publish(seconds, image=True, folder=None))
+    both = run(publish(seconds, image=True, folder=folder / "images"))
+    lost = sum(each.lost_in_transport + each.lost_in_recorder for each in both.stats.values())
+    verdict(
+        f"with images of 6 MB at 30 Hz: longest gap {both.gap_ms:.1f} ms, {images.gap_ms:.1f} ms "
+        f"without the recorder, may be 5 ms longer; lost {lost}, "
+        f"{both.cpu - images.cpu:.0%} of a core",
+        holds=both.gap_ms <= images.gap_ms + 5,
+    )
+    shutil.rmtree(folder / "images")
+    measure_player(folder / "run")
     shutil.rmtree(folder)
+
+
+def measure_player(path: Path) -> None:
+    """Print how late a player publishes, beside a task that only sleeps."""
+    late, sleeper, count = run(play(path))
+    player_ms, sleeper_ms = (p99(each) * 1e3 for each in (late, sleeper))
+    verdict(
+        f"play: p99 of {count} messages {player_ms:.2f} ms late, a bare sleeper beside it "
+        f"{sleeper_ms:.2f} ms; may be 1 ms later",
+        holds=player_ms <= sleeper_ms + 1,
+    )
+
+
+async def play(path: Path) -> tuple[list[float], list[float], int]:
+    """Play a bag, and return how late its messages and the wake-ups of a sleeper were."""
+    late: list[float] = []
+    sleeper: list[float] = []
+    loop = asyncio.get_running_loop()
+
+    async def sleep() -> None:
+        due = loop.time()
+        while True:
+            due = max(due + 0.001, loop.time())
+            await asyncio.sleep(due - loop.time())
+            sleeper.append(loop.time() - due)
+
+    async with (
+        Context(transport="local") as context,
+        bag.Player(path, context=context, delay_sec=0.5) as player,
+        asyncio.TaskGroup() as tasks,
+    ):
+        plain = player._publish  # noqa: SLF001  # to see when it publishes
+
+        def publish(record: bag.Record) -> None:
+            steady_ns, bag_ns = player._anchor or (0, 0)  # noqa: SLF001  # to see when it publishes
+            late.append((perf_ns() - steady_ns - (record.time_ns - bag_ns)) / 1e9)
+            plain(record)
+
+        player._publish = publish  # type: ignore[method-assign]  # noqa: SLF001  # as above
+        sleeping = tasks.create_task(sleep())
+        await player.play()
+        sleeping.cancel()
+    return late, sleeper, player.played
+
+
+def p99(values: list[float]) -> float:
+    """Return what 99 of 100 values do not exceed."""
+    return sorted(values)[int(len(values) * 0.99)]
+
+
+def run(work: Coroutine[None, None, T]) -> T:
+    """Run a coroutine in the event loop that `aionode.run` takes."""
+    with asyncio.Runner(loop_factory=best_loop_factory()) as runner:
+        return runner.run(work)
 
 
 def main() -> None:
     """Run what the command line names."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("what", choices=["writers", "recorder"])
+    parser.add_argument("what", choices=["writers", "recorder"], nargs="?", default="writers")
     parser.add_argument("--seconds", type=float, default=30.0)
-    parser.add_argument("--image", action="store_true", help="with 6 MB images at 30 Hz")
     given = parser.parse_args()
     if given.what == "writers":
         compare_writers()
     else:
-        measure_recorder(given.seconds, image=given.image)
+        measure_recorder(given.seconds)
 
 
 if __name__ == "__main__":

@@ -94,6 +94,7 @@ class WriterThread:
         self._rows: deque[Row | Callable[[], None]] = deque()
         self._put_bytes = 0
         self._taken_bytes = 0
+        self._numbers: dict[int, int] = {}  # of the topics in the bag
         self._written: dict[int, int] = {}
         self._is_dirty = False
         self._synced_ns = perf_ns()
@@ -180,9 +181,13 @@ class WriterThread:
                 self._keep(row, self._kept)
 
     def _write(self, row: Row) -> None:
-        topic, latched_depth = self._topics[row.topic]
-        number = self._writer.add_topic(topic, latched_depth=latched_depth)
-        self._written[row.topic] = self._written.get(row.topic, 0) + 1
+        number = self._numbers.get(row.topic)
+        if number is None:
+            topic, latched_depth = self._topics[row.topic]
+            number = self._writer.add_topic(topic, latched_depth=latched_depth)
+            self._numbers[row.topic] = number
+            self._written[row.topic] = 0
+        self._written[row.topic] += 1
         self._is_dirty = True
         self._writer.write(
             number,
