@@ -83,7 +83,8 @@ class SystemHealth:
         ok: Whether every member that should run is running and ready: HTTP status 200, otherwise
             503.
         ready: Whether `System.ready` would return at once.
-        problems: What is wrong, a line for each member; empty if `ok`.
+        problems: What is wrong: a line for each member, and one if the guardian is gone; empty if
+            `ok`.
         members: The state of each member, by its name.
     """
 

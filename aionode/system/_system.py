@@ -103,6 +103,7 @@ class System:
         self._changed = asyncio.Event()
         self._clock = SteadyClock()
         self._since_ns = 0
+        self._unguarded = ""  # what became of the guardian
         self.tasks: asyncio.TaskGroup
         self.guard: Guard
         self.reader: OutputReader
@@ -342,7 +343,8 @@ class System:
         """End: nothing would stop the processes any more if this one were killed as well."""
         ran_sec = (self._clock.now_ns() - self._since_ns) / S_TO_NS
         end = MemberEnd("the guardian", True, end_text(code), shell_status(code), ran_sec)
-        self.log.note(f"the guardian of the system {end.text}: the system ends")
+        self._unguarded = f"the guardian of the system {end.text}: the system ends"
+        self.log.note(self._unguarded)
         self.ends.append(end)
         if self._first_failure is None:
             self._first_failure = end
@@ -419,7 +421,7 @@ class System:
 
     def health(self) -> SystemHealth:
         """Return the health of the system now; it costs next to nothing."""
-        problems, ready = [], True
+        problems, ready = [self._unguarded] if self._unguarded else [], True
         for name, member in self._members.items():
             if member.state in {"ended", "stopped"} or member.is_running_and_ready():
                 continue

@@ -206,6 +206,7 @@ async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_kill
         await until(lambda: all(system.log.last_lines(one) for one in ("first", "second")))
         kill_guardian(system)
         await system.wait()
+        assert not system.health().ok
         with pytest.raises(NotReadyError, match="could not be started"):
             await system.process("late", FOREVER).wait_ready()
 
