@@ -118,9 +118,16 @@ class Plan:
             context = new_context(self.path, self._arguments)
             context.packages = self._packages
             steps = evaluate([self.description], context)
+            self._names, self._names_before = context.names, dict(context.names)
             check_later_steps(steps, set())
+            self._forget_names()
             self._steps = [*self._misspelt(context.declared), *steps]
         return self._steps
+
+    def _forget_names(self) -> None:
+        """Let the processes of timers and event handlers be named anew."""
+        self._names.clear()
+        self._names.update(self._names_before)
 
     def _misspelt(self, declared: set[str]) -> Iterator[Step]:
         """Yield a warning for each argument that is hardly the one that was meant.
@@ -135,7 +142,8 @@ class Plan:
 
     def records(self) -> Iterator[dict[str, Any]]:
         """Yield what is started, as plain values that can be written as JSON."""
-        return records(self.steps, self._before)
+        yield from records(self.steps, self._before)
+        self._forget_names()
 
     def lines(self) -> Iterator[str]:
         """Yield what is started, for readers."""

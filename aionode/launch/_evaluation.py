@@ -219,9 +219,9 @@ def problem_of(error: Exception) -> str:
             )
         return advice(error.name, OWN_PACKAGES) or f"no module {package}"
     text = str(error) or type(error).__name__
-    if isinstance(error, KeyError) and error.args:
-        text = str(error.args[0])
-    plain = (AionodeError, TypeError, ValueError, RuntimeError, OSError, KeyError)
+    if isinstance(error, KeyError) and type(error) is not KeyError:
+        return str(error.args[0])  # its text, and not a key
+    plain = (AionodeError, TypeError, ValueError, RuntimeError, OSError)
     if isinstance(error, plain):
         return text
     return f"{type(error).__name__}: {text}"

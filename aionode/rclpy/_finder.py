@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
@@ -27,6 +28,7 @@ from aionode.rclpy._rosidl import (
 __all__ = ["ALIASES", "install", "provide"]
 
 OWN: Final = "aionode.rclpy."
+LAUNCH: Final = ("launch", "launch_ros")
 KINDS: Final = ("msg", "srv", "action")
 
 
@@ -112,8 +114,7 @@ class AionodeFinder(MetaPathFinder):
         """Return how a module is loaded; None if it is not one of these."""
         package, _, inside = fullname.partition(".")
         if package in ALIASES:
-            own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
-            return spec_from_loader(fullname, AliasLoader(own)) if exists(own) else None
+            return of_alias(fullname, package, inside)
         kind, _, module = inside.partition(".")
         if package == "aionode" or package in sys.stdlib_module_names or kind not in ("", *KINDS):
             return load_with_names(fullname, path)
@@ -154,6 +155,27 @@ def of_workspace(package: str) -> ModuleSpec | None:
     return spec_from_loader(package, EmptyLoader(), is_package=True) if is_found else None
 
 
+def of_alias(fullname: str, package: str, inside: str) -> ModuleSpec | None:
+    """Return how a module of a package is loaded that is aionode's."""
+    own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
+    if exists(own):
+        return spec_from_loader(fullname, AliasLoader(own))
+    return of_one_name(fullname) if package in LAUNCH else None
+
+
+def of_one_name(fullname: str) -> ModuleSpec | None:
+    """Return how a module such as ``launch.actions.execute_process`` is loaded.
+
+    ROS's launch has one for each class. Programs may import a class from there.
+    """
+    parent, _, last = fullname.rpartition(".")
+    package = import_module(parent)
+    names = (re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower() for name in package.__all__)
+    if last.removesuffix("_action") not in names:
+        return None
+    return spec_from_loader(fullname, NamesLoader(package))
+
+
 def exists(module: str) -> bool:
     """Return whether there is a module of aionode of this name."""
     try:
@@ -173,6 +195,8 @@ class AliasLoader(Loader):
         """Return the module of aionode."""
         module = import_module(self.own)
         self.spec = module.__spec__
+        if self.own.startswith("aionode.launch."):
+            vars(module).setdefault("__path__", [])  # see `of_one_name`
         return module
 
     def exec_module(self, module: ModuleType) -> None:
@@ -182,6 +206,17 @@ class AliasLoader(Loader):
         if self.own == ALIASES["rclpy"]:  # what was loaded before `install`; the rest has its names
             for found in [each for name, each in sys.modules.items() if f"{name}.".startswith(OWN)]:
                 take_names(found)
+
+
+class NamesLoader(Loader):
+    """Loads a module that has the names of its package."""
+
+    def __init__(self, package: ModuleType) -> None:
+        self.package = package
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Give the module the names."""
+        vars(module).update({name: getattr(self.package, name) for name in self.package.__all__})
 
 
 def load_with_names(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:

@@ -209,6 +209,21 @@ def test_loops_make_actions_for_each_number_and_each_set_of_values(files: Files)
     assert [argv[1:] for argv in commands(records)] == [["0"], ["1"], ["a", "1"], ["b", "0"]]
 
 
+def test_a_class_is_in_a_module_of_its_own_as_well(files: Files) -> None:
+    """As in ROS's launch, where editors find it first."""
+    records = files.python(
+        "ExecuteProcess(cmd=['echo', Joined(['/a', 'b'])], on_exit=Shutdown()),",
+        imports="""
+        from launch.actions.shutdown_action import Shutdown
+        from launch.event_handlers.on_shutdown import OnShutdown
+        from launch.substitutions.path_join_substitution import PathJoinSubstitution as Joined
+        from launch_ros.actions.composable_node_container import ComposableNodeContainer
+        """,
+    )
+
+    assert records[-1]["argv"] == ["echo", "/a/b"]
+
+
 def test_a_parameter_has_the_type_that_yaml_gives_its_text(files: Files) -> None:
     """Unless `ParameterValue` says which one it has."""
     records = files.python(
@@ -314,6 +329,7 @@ def test_the_arguments_of_a_file_can_be_listed(files: Files) -> None:
 
 BAD = {
     "from launch.actions import Nonsense": (1, "launch.actions has no Nonsense; it has: Action"),
+    "import os\nos.environ['NOT_THERE']": (2, "KeyError: 'NOT_THERE'"),
     "import not_there_at_all": (1, "no module not_there_at_all"),
     "import launch.frontend": (1, "launch is from aionode here, which does not have launch.fronte"),
     "def generate_launch_description(:": (1, "not valid Python"),
@@ -392,10 +408,13 @@ def test_what_is_done_later_is_checked_and_printed_without_doing_it(files: Files
     )
 
     assert [step.name for step in plan.steps if isinstance(step, Process)] == ["now-1"]
-    assert [record["calls"] for record in plan.records() if "calls" in record] == [
+    records = list(plan.records())
+    assert [record["name"] for record in records if "name" in record] == ["later-2", "now-1"]
+    assert [record["calls"] for record in records if "calls" in record] == [
         "Command()",
         "OpaqueFunction(<lambda>)",
     ]
+    assert list(plan.records()) == records
 
 
 def test_an_event_handler_that_registers_itself_is_checked_once(files: Files) -> None:

@@ -77,8 +77,7 @@ class LaunchContext:
         later.locals = SimpleNamespace(**vars(self.locals))
         later.load_file = self.load_file
         later.packages = self.packages
-        # One count for the whole description.
-        later.names = dict(self.names) if ahead else self.names
+        later.names = self.names  # one count for the whole description
         later.declared = self.declared
         later.ahead = ahead or self.ahead
         if ahead:
