@@ -118,7 +118,7 @@ def serve_player(node: Node, player: Playing) -> None:  # noqa: C901  # a handle
         length = Duration.from_msg(request.playback_duration)
         until = request.playback_until_timestamp
         response.success = await player.play(
-            Duration.from_msg(request.start_offset),
+            Duration(nanoseconds=Time.from_msg(request.start_offset).nanoseconds),  # not a Duration
             length if length.nanoseconds > 0 else None,
             Time.from_msg(until) if until.sec >= 0 and (until.sec or until.nanosec) else None,
         )

@@ -18,7 +18,7 @@ from aionode.errors import BagError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rosbag2_interfaces.msg import ReadSplitEvent
-from aionode.interfaces.rosbag2_interfaces.srv import Burst, GetRate, PlayNext, SetRate
+from aionode.interfaces.rosbag2_interfaces.srv import Burst, GetRate, Play, PlayNext, SetRate
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
@@ -217,6 +217,24 @@ async def test_a_rate_that_is_not_positive_is_refused(tmp_path: Path) -> None:
         assert not (await client.call(SetRate.Request(rate=-1.0))).success
         asked = node.create_client(GetRate, "/rosbag2_player/get_rate")
         assert (await asked.call(GetRate.Request())).rate == 1
+
+
+async def test_the_service_plays_from_an_offset(tmp_path: Path) -> None:
+    """Its request has the offset as a time, as rosbag2 defined it."""
+    record(tmp_path / "run", "a", "b", "c")
+    heard: list[str] = []
+    async with (
+        local_context() as context,
+        Node("user", context=context) as node,
+        bag.Player(tmp_path / "run", context=context, rate=1000) as player,
+    ):
+        node.create_subscription(String, "/words", lambda msg: heard.append(msg.data), 50)
+        client = node.create_client(Play, f"/{player.node.get_name()}/play")
+        response = await client.call(Play.Request(start_offset=at(1).to_msg()))
+        await settle()
+
+    assert response.success
+    assert heard == ["b", "c"]
 
 
 async def test_requests_are_sent_as_by_their_client(tmp_path: Path) -> None:

@@ -16,11 +16,13 @@ from websockets.typing import Subprotocol
 
 from aionode import bag
 from aionode.bag._writer import topic_info
+from aionode.clock import Time
 from aionode.gateway import Gateway, Identity, Policy, Session
 from aionode.gateway._audit import Audit
 from aionode.gateway._foxglove_client import serve_frames
 from aionode.gateway._robot import Robot
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
+from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.std_srvs.srv import SetBool
 from aionode.node import Node
@@ -444,6 +446,48 @@ async def test_a_player_follows_the_timeline(tmp_path: Path, context: Context) -
         assert abs(struct.unpack_from("<BIQ", message)[2] - seek_ns) < 5e9
         assert struct.unpack("<BQ", told)[1] >= seek_ns
         assert paused
+
+
+async def test_a_recording_that_has_ended_is_played_again(tmp_path: Path, context: Context) -> None:
+    """The client is told of the end, and begins where it wants."""
+    with bag.BagWriter(tmp_path / "run") as out:
+        number = out.add_topic(topic_info("/words", String, []))
+        for at in range(3):
+            out.write(number, (100 + at) * 10**9, cdr.encode(String(data=str(at))))
+    heard: asyncio.Queue[String] = asyncio.Queue()
+    async with (
+        bag.Player(tmp_path / "run", context=context, rate=1000) as player,
+        Node("gateway", context=context) as node,
+        client_of(node, player=player) as client,
+    ):
+        await player.play()
+        await client.until(lambda frame: isinstance(frame, bytes) and frame[:2] == b"\x05\x03")
+        node.create_subscription(String, "/words", heard.put_nowait, 10)
+        client.send(struct.pack("<BBfBQI", 3, 0, 1000.0, 1, 101 * 10**9, 5) + b"again")
+        await client.until(lambda frame: isinstance(frame, bytes) and b"again" in frame)
+
+        assert [(await heard.get()).data, (await heard.get()).data] == ["1", "2"]
+
+
+async def test_a_client_is_told_of_simulated_time(context: Context) -> None:
+    """If the gateway goes by it; messages have its times as well."""
+    async with Node(
+        "gateway", context=context, parameter_overrides=[Parameter("use_sim_time", value=True)]
+    ) as node:
+        clock = node.create_publisher(Clock, "/clock", 1)
+        words = node.create_publisher(String, "/words", 1)
+        async with client_of(node) as client:
+            channel = await client.channel("/words")
+            client.send("subscribe", subscriptions=[{"id": 5, "channelId": channel["id"]}])
+            while not (words.get_subscription_count() and clock.get_subscription_count() > 1):
+                await node.graph.changed()
+            clock.publish(Clock(clock=Time(seconds=77).to_msg()))
+            told = await client.binary(2)
+            words.publish(String())
+            message = await client.binary(1)
+
+    assert struct.unpack("<BQ", told) == (2, 77 * 10**9)
+    assert struct.unpack_from("<BIQ", message)[2] == 77 * 10**9
 
 
 async def test_a_client_that_may_call_nothing_does_not_control_the_player(
