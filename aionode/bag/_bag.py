@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import heapq
 from copy import copy
-from itertools import count, islice
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self, TypeVar
 
 from aionode._concurrency import run_in_thread
 from aionode.bag._losses import LOSSES, losses_from
 from aionode.bag._metadata import FILE_NAME, read_metadata, topics_in
+from aionode.bag._order import in_order
 from aionode.bag._record import MOST_NS, Record, TopicInfo, time_of
 from aionode.bag._source import McapSource, RosbagsSource
 from aionode.clock import Duration, Time
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from aionode.bag._source import Source
 
-__all__ = ["Bag", "Records", "in_order", "open"]
+__all__ = ["Bag", "Records", "open"]
 
 T = TypeVar("T")
 
@@ -211,34 +211,6 @@ def next_batch(records: Iterator[T], size_of: Callable[[T], int]) -> list[T]:
         if size >= BATCH_BYTES:
             break
     return batch
-
-
-def in_order(streams: list[tuple[int, Iterator[Record]]]) -> Iterator[Record]:
-    """Yield the records of several streams in order of time.
-
-    A stream is read only once its start has come, so that few files are in work at a time.
-
-    Args:
-        streams: Each stream, in order by itself, and a time before which it has no record.
-    """
-    waiting = sorted(streams, key=lambda stream: stream[0], reverse=True)
-    numbers = count()
-    heads: list[tuple[int, int, Record, Iterator[Record]]] = []
-    while waiting or heads:
-        while waiting and (not heads or waiting[-1][0] <= heads[0][0]):
-            _, stream = waiting.pop()
-            first = next(stream, None)
-            if first is not None:
-                heapq.heappush(heads, (first.time_ns, next(numbers), first, stream))
-        if not heads:
-            continue
-        _, number, record, stream = heads[0]
-        yield record
-        following = next(stream, None)
-        if following is None:
-            heapq.heappop(heads)
-        else:
-            heapq.heapreplace(heads, (following.time_ns, number, following, stream))
 
 
 def listed_topics(metadata: dict[str, Any]) -> list[TopicInfo]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
-from aionode.bag._bag import Bag, in_order, open  # noqa: A004  # as in `bag.open(path)`
+from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._losses import LOSSES, added_losses, losses_text
+from aionode.bag._order import in_order
 from aionode.bag._selection import Selection
 from aionode.bag._writer import BagWriter
 

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import struct
-import zlib
 from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
-import lz4.frame
-import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
@@ -17,6 +13,7 @@ from mcap.records import Channel, Chunk, ChunkIndex, MessageIndex, MetadataIndex
 from mcap.records import Metadata as MetadataRecord
 
 from aionode.bag._bag import merged_topics, source_of
+from aionode.bag._chunks import HEAD, MESSAGE, checked_content
 from aionode.bag._mcap_writer import MAGIC, McapWriter, Span, index_record
 from aionode.bag._metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
 from aionode.bag._source import DAMAGE
@@ -27,15 +24,11 @@ if TYPE_CHECKING:
 
 __all__ = ["Checked", "check", "reindex"]
 
-HEAD: Final = struct.Struct("<BQ")
-MESSAGE: Final = struct.Struct("<HIQQ")
 FIRST: Final = len(MAGIC) + HEAD.size
 LONGEST_HEADER: Final = 64
 """The first record of a file is the header, which is shorter than this, in bytes."""
 
 END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
-MOST_CHUNK: Final = 1 << 32
-"""A chunk that claims to be larger, in bytes, is damaged."""
 
 
 class Checked(NamedTuple):
@@ -222,13 +215,7 @@ class Scan:
 
     def _take_chunk(self, chunk: Chunk, length: int) -> None:
         """Take a chunk that is whole."""
-        if chunk.uncompressed_size > MOST_CHUNK:
-            raise McapError("the chunk is too large")
-        content = decompressed(chunk)
-        if len(content) != chunk.uncompressed_size or (
-            chunk.uncompressed_crc and zlib.crc32(content) != chunk.uncompressed_crc
-        ):
-            raise McapError("the chunk is damaged")
+        content = checked_content(chunk)
         entries: dict[int, list[int]] = {}
         schemas, channels = dict(self.schemas), dict(self.channels)
         at = 0
@@ -280,20 +267,6 @@ class Scan:
             index.message_index_length = self.end - chunk_end
         counts = {channel: len(entries) // 2 for channel, entries in self._entries.items()}
         self.spans.append(Span(index, counts))
-
-
-def decompressed(chunk: Chunk) -> bytes:
-    """Return the records of a chunk."""
-    if chunk.compression == "zstd":
-        return zstandard.ZstdDecompressor().decompress(
-            chunk.data, max_output_size=chunk.uncompressed_size
-        )
-    if chunk.compression == "lz4":
-        plain: bytes = lz4.frame.decompress(chunk.data)
-        return plain
-    if chunk.compression:
-        raise McapError(f"unknown compression {chunk.compression}")
-    return chunk.data
 
 
 def reindex(path: str | PathLike[str]) -> None:

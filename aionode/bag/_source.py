@@ -14,6 +14,8 @@ import zstandard
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 
+from aionode.bag._chunks import rows_of
+from aionode.bag._order import in_order
 from aionode.bag._qos import profiles_from
 from aionode.bag._record import MOST_NS, Record, TopicInfo
 from aionode.errors import BagError
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from collections.abc import Set as AbstractSet
 
-    from mcap.records import Channel, Schema
+    from mcap.records import Channel, ChunkIndex, Schema
 
 __all__ = ["McapSource", "RosbagsSource", "Source", "topic_of"]
 
@@ -118,6 +120,7 @@ class McapSource:
         except BaseException:
             self._open.close()
             raise
+        self._chunks = summary.chunk_indexes
         self.topics = list(self._channels.values())
         has_messages = summary.statistics.message_count > 0
         self.start_ns = summary.statistics.message_start_time if has_messages else MOST_NS
@@ -131,7 +134,39 @@ class McapSource:
         Raises:
             BagError: the file is damaged.
         """
+        wanted = None
+        if topics is not None:
+            wanted = {number for number, each in self._channels.items() if each.name in topics}
+        chunks = [
+            chunk
+            for chunk in self._chunks
+            if chunk.message_start_time < end_ns
+            and chunk.message_end_time >= start_ns
+            and has_any(chunk, wanted)
+        ]
+        if not self._chunks:
+            return self._without_chunks(topics, start_ns, end_ns)
+        return in_order(
+            [
+                (chunk.message_start_time, self._in_chunk(chunk, wanted, start_ns, end_ns))
+                for chunk in chunks
+            ]
+        )
+
+    def _in_chunk(
+        self, chunk: ChunkIndex, wanted: AbstractSet[int] | None, start_ns: int, end_ns: int
+    ) -> Iterator[Record]:
         channels = self._channels
+        try:
+            content, rows = rows_of(self._file, chunk, wanted, start_ns, end_ns)
+            for time_ns, channel, sequence, publish_ns, begin, end in rows:
+                yield Record(channels[channel], time_ns, publish_ns, sequence, content[begin:end])
+        except DAMAGE as error:
+            raise damaged(self.path, error) from error
+
+    def _without_chunks(
+        self, topics: AbstractSet[str] | None, start_ns: int, end_ns: int
+    ) -> Iterator[Record]:
         found = self._reader.iter_messages(
             topics=None if topics is None else sorted(topics),
             starting_at=start_ns,
@@ -140,7 +175,7 @@ class McapSource:
         try:
             for _, channel, message in found:
                 yield Record(
-                    channels[channel.id],
+                    self._channels[channel.id],
                     message.log_time,
                     message.publish_time,
                     message.sequence,
@@ -152,6 +187,12 @@ class McapSource:
     def close(self) -> None:
         """Close the file."""
         self._open.close()
+
+
+def has_any(chunk: ChunkIndex, wanted: AbstractSet[int] | None) -> bool:
+    """Return whether a chunk may have messages of some channels, as far as its index tells."""
+    offsets = chunk.message_index_offsets
+    return wanted is None or not offsets or not wanted.isdisjoint(offsets)
 
 
 def plain_file(path: Path, stack: ExitStack) -> IO[bytes]:

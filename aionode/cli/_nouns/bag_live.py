@@ -204,7 +204,7 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
             f"--compression-mode {values['compression_mode']}: chunks are compressed, by "
             "--compression-format"
         )
-    latched: bool | dict[str, int] = {
+    latched: dict[str, int] = {
         f"/{name.removeprefix('/')}": int(depth or 0)
         for name, _, depth in (each.partition("=") for each in values["repeat_transient_local"])
     }
