@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         Who,
     )
     from aionode.gateway._session import Session
+    from aionode.gateway._typescript import typescript
 
 __all__ = [
     "Credentials",
@@ -48,6 +49,7 @@ __all__ = [
     "Tls",
     "Verb",
     "Who",
+    "typescript",
 ]
 
 PLACES: Final = {
@@ -56,6 +58,7 @@ PLACES: Final = {
     "GatewayStats": "_clients",
     "Identity": "_identity",
     "Session": "_session",
+    "typescript": "_typescript",
 }
 """The module of each public name that is not in that of the policy."""
 

@@ -10,8 +10,9 @@ import httpx
 import pytest
 
 from aionode.cli._main import main
-from aionode.cli._nouns.gateway import serving
+from aionode.cli._nouns.gateway import serving, types
 from aionode.errors import CommandError, ConfigurationError
+from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from tests.cli.conftest import Running, Screen
 from tests.support.waiting import until
@@ -54,3 +55,24 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["gateway", "--policy", str(tmp_path / "none.toml")]) == 1
     assert main(["gateway", "--policy", str(wrong), "--allow-write"]) == 2
     assert "say it there" in capsys.readouterr().err
+
+
+async def test_types_writes_what_is_in_use(
+    tool: Node, screen: Screen, node_factory: Callable[..., Node]
+) -> None:
+    """The maps have the names of the robot, so that a page names a topic and has its type."""
+    node_factory("robot").create_publisher(String, "/chatter", 10)
+
+    await types(tool, screen.output)
+
+    assert '  "/chatter": std_msgs.msg.String;' in screen.text
+    request = '  "/robot/get_parameters": { request: rcl_interfaces.srv.GetParameters_Request'
+    assert request in screen.text
+
+
+async def test_types_writes_a_type_that_is_named(tool: Node, screen: Screen) -> None:
+    """Without a robot."""
+    await types(tool, screen.output, type_names=["geometry_msgs/msg/Twist"])
+
+    assert '  "geometry_msgs/msg/Twist": geometry_msgs.msg.Twist;' in screen.text
+    assert "std_msgs" not in screen.text

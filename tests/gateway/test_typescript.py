@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aionode.gateway._typescript import typescript
+from aionode.gateway import typescript
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticStatus
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts

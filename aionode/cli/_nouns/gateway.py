@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from contextlib import AsyncExitStack
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
+from aionode.cli._support.completion import complete_interfaces
+from aionode.cli._support.options import interfaces_option
 from aionode.cli._support.session import run_verb
-from aionode.errors import CommandError
+from aionode.errors import CommandError, InterfaceNotFoundError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Coroutine
+    from collections.abc import Callable, Coroutine, Iterable, Sequence
 
     from aionode.cli._support.output import Output
     from aionode.node import Node
 
-__all__ = ["gateway_command"]
+__all__ = ["gateway_command", "types"]
 
 PORT = 9090
 """The port of rosbridge, which its clients try first."""
@@ -84,3 +87,44 @@ def serving(
         return None
 
     return serve
+
+
+@gateway_command.command("types")
+@click.argument("type_names", metavar="[TYPE]...", nargs=-1, shell_complete=complete_interfaces())
+@interfaces_option
+def types_command(type_names: tuple[str, ...]) -> None:
+    """Write TypeScript types of the messages in use, or of each TYPE.
+
+    Print a module of declarations, for a file such as robot.d.ts.
+    """
+    run_verb(partial(types, type_names=type_names))
+
+
+async def types(node: Node, output: Output, *, type_names: Sequence[str] = ()) -> None:
+    """Print the TypeScript types of the messages, services and actions in use, or of some types.
+
+    Raises:
+        InterfaceNotFoundError: nobody knows a type that was named.
+    """
+    from aionode.gateway import typescript
+
+    if type_names:
+        output.raw(typescript([await node.find_type(name) for name in type_names]))
+        return
+    used = {
+        "topics": first_types(node.get_topic_names_and_types(include_hidden=False)),
+        "services": first_types(node.get_service_names_and_types(include_hidden=False)),
+        "actions": first_types(node.get_action_names_and_types()),
+    }
+    classes = []
+    for name in sorted({name for names in used.values() for name in names.values()}):
+        try:
+            classes.append(await node.find_type(name))
+        except InterfaceNotFoundError as error:
+            output.warn(f"WARNING: {error}")
+    output.raw(typescript(classes, **used))
+
+
+def first_types(names_and_types: Iterable[tuple[str, list[str]]]) -> dict[str, str]:
+    """Return the type of each name; the first of several."""
+    return {name: types[0] for name, types in names_and_types}
