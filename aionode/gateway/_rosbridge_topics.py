@@ -129,8 +129,7 @@ class Topics:
         """Make a publisher for the client."""
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type"), "msg")
-        self._refuse_other_type(topic, type_name)
-        await self._session.advertise(topic, type_name, publisher_profile(op))
+        await self._advertise(topic, type_name, op)
         self._advertised.setdefault(topic, set()).add(optional_text(op, "id"))
 
     async def unadvertise(self, op: Op) -> None:
@@ -149,21 +148,22 @@ class Topics:
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type", ""), "msg") or None
         if topic not in self._advertised:
-            await self._session.advertise(topic, type_name, publisher_profile(op))
+            await self._advertise(topic, type_name, op)
             self._advertised[topic] = {None}
         message = values(op, "msg")
         await self._session.publish(topic, message, type_name, arrived_ns=arrived_ns)
 
-    def _refuse_other_type(self, topic: str, type_name: str) -> None:
-        """Refuse a publisher that no subscription of the topic would hear.
+    async def _advertise(self, topic: str, type_name: str | None, op: Op) -> None:
+        """Make a publisher, unless no subscription of the topic would hear it.
 
         Raises:
             MessageError: the topic has another type.
         """
-        types = self._session.topics(hidden=True).get(topic, [type_name])
-        if type_name not in types:
+        types = self._session.topics(hidden=True).get(topic, [])
+        if types and type_name is not None and type_name not in types:
             problem = f"{topic} has the type {', '.join(types)}, not {type_name}"
-            raise MessageError("advertise.type", problem)
+            raise MessageError(f"{op['op']}.type", problem)
+        await self._session.advertise(topic, type_name, publisher_profile(op))
 
     async def subscribe(self, op: Op) -> None:
         """Send the client the messages of a topic.

@@ -303,14 +303,15 @@ async def test_a_goal_can_be_canceled_before_it_is_accepted(
     client: RosbridgeClient, node: Node
 ) -> None:
     """Then it is withdrawn, and its client is told that no result comes."""
-    is_asked = asyncio.Event()
+    is_asked, may_decide = asyncio.Event(), asyncio.Event()
+    executed: list[object] = []
 
     async def decide(goal: object) -> GoalResponse:
         is_asked.set()
-        await asyncio.Event().wait()
+        await may_decide.wait()
         return GoalResponse.ACCEPT
 
-    ActionServer(node, Fibonacci, "/fibonacci", count, goal_callback=decide)
+    ActionServer(node, Fibonacci, "/fibonacci", executed.append, goal_callback=decide)
     await settle()
     client.send("send_action_goal", **goal_of(3))
     await is_asked.wait()
@@ -319,6 +320,36 @@ async def test_a_goal_can_be_canceled_before_it_is_accepted(
 
     result = await client.receive()
     assert (result["op"], result["result"], result["id"]) == ("action_result", False, "g1")
+    may_decide.set()
+    await settle()
+    assert not executed
+
+
+async def test_a_rejected_goal_is_answered(client: RosbridgeClient, node: Node) -> None:
+    """The client does not wait for a result that never comes."""
+    ActionServer(node, Fibonacci, "/fibonacci", count, goal_callback=lambda _: GoalResponse.REJECT)
+    await settle()
+
+    client.send("send_action_goal", **goal_of(3))
+
+    result = await client.receive()
+    assert (result["op"], result["result"], result["id"]) == ("action_result", False, "g1")
+    assert "rejected" in result["values"]
+
+
+async def test_goals_of_one_client_have_their_own_ids(client: RosbridgeClient, node: Node) -> None:
+    """One is canceled, and the other, and everything else, goes on; an id in use is refused."""
+    ActionServer(node, Fibonacci, "/fibonacci", count, cancel_callback=accept)
+    await settle()
+    for order, message_id in ((99, "long"), (99, "long"), (3, "short")):
+        client.send("send_action_goal", **goal_of(order) | {"id": message_id, "feedback": False})
+
+    refused, short = await client.receive(), await client.receive()
+    assert (refused["id"], refused["result"]) == ("long", False)
+    assert (short["id"], short["status"]) == ("short", 4)
+    client.send("cancel_action_goal", action="/fibonacci", id="long")
+    canceled = await client.receive()
+    assert (canceled["id"], canceled["status"]) == ("long", 5)
 
 
 # Actions that a client serves
@@ -393,7 +424,10 @@ async def test_the_client_is_told_of_a_canceled_goal(client: RosbridgeClient, no
     assert (result.status, result.result.sequence.tolist()) == (GoalStatus.CANCELED, [7])
 
 
-async def test_the_goals_of_a_client_that_goes_are_aborted(robot: Robot, node: Node) -> None:
+@pytest.mark.parametrize("way", ["leave", "unadvertise"])
+async def test_the_goals_of_a_client_that_goes_are_aborted(
+    robot: Robot, node: Node, way: str
+) -> None:
     """Nobody executes them any more."""
     caller, goal = served(node)
     async with rosbridge_client(robot) as client:
@@ -401,5 +435,8 @@ async def test_the_goals_of_a_client_that_goes_are_aborted(robot: Robot, node: N
         await caller.wait_for_server()
         handle = await caller.send_goal(goal)
         await client.receive()
+        if way == "unadvertise":
+            client.send("unadvertise_action", action="/count")
+            assert (await handle.result()).status is GoalStatus.ABORTED
 
     assert (await handle.result()).status is GoalStatus.ABORTED

@@ -305,10 +305,13 @@ async def test_a_page_may_subscribe_to_very_many_topics_at_once(
     assert len([topic for topic in topics if topic.startswith("/t")]) == 60
 
 
-async def test_a_publisher_of_another_type_is_refused(client: RosbridgeClient, node: Node) -> None:
+@pytest.mark.parametrize("op", ["advertise", "publish"])
+async def test_a_publisher_of_another_type_is_refused(
+    client: RosbridgeClient, node: Node, op: str
+) -> None:
     """No subscription would hear it, and its author would look for the reason in vain."""
     node.create_subscription(Int32, "/count", print)
-    client.send("advertise", topic="/count", type="std_msgs/String", id="a")
+    client.send(op, topic="/count", type="std_msgs/String", id="a", msg={})
 
     status = await client.receive()
 

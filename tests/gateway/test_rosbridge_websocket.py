@@ -120,6 +120,10 @@ async def test_clients_come_and_go_while_messages_flow(connect: Connect, node: N
         async with asyncio.TaskGroup() as tasks:
             for number in range(10):
                 tasks.create_task(visit(number))
+    async with connect() as client:
+        await subscribe(client, "/count", type="std_msgs/Int32")
+        publisher.publish(Int32(data=1))
+        assert json.loads(await client.recv())["msg"] == {"data": 1}
     while node.count_subscribers("/count") or node.count_services("/s1"):
         await node.graph.changed()
 
