@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import reprlib
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -44,6 +45,9 @@ POLICIES: Final[dict[str, Mapping[str, Any]]] = {
     },
 }
 
+LONGEST_NAME: Final = 1000
+"""The longest name, id or word in an op, in characters: they are remembered, and told back."""
+
 MOST_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
@@ -74,23 +78,33 @@ def with_infinities(frame: str | bytes, error: Exception) -> object:
     sought: tuple[Any, ...] = ("NaN", "Infinity") if isinstance(frame, str) else (b"NaN", b"Inf")
     try:
         if any(word in frame for word in sought):
-            return json.loads(frame)
+            decoded = json.loads(frame)
+            json.dumps(decoded, ensure_ascii=False).encode()  # halves of surrogate pairs raise
+            return decoded
     except (ValueError, RecursionError):
         pass  # the error of the first attempt is told
     raise MessageError("frame", f"invalid JSON: {error}") from None
 
 
-def text(op: Op, name: str, default: str | None = None) -> str:
+def text(op: Op, name: str, default: str | None = None, most: int | None = LONGEST_NAME) -> str:
     """Return a field of text.
 
+    Args:
+        op: The op.
+        name: The name of the field.
+        default: What a missing field is; None if it has to be there.
+        most: The longest text, in characters.
+
     Raises:
-        MessageError: the field is missing and has no default, or is no text.
+        MessageError: the field is missing and has no default, is no text, or is too long.
     """
     value = op.get(name)
     if value is None and default is not None:
         return default
     if not isinstance(value, str):
         raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs text")
+    if most is not None and len(value) > most:
+        raise MessageError(f"{op['op']}.{name}", f"{len(value)} characters, at most {most} fit")
     return value
 
 
@@ -131,8 +145,15 @@ def given(op: Op, name: str) -> str:
     """Return how an error describes the value of a field."""
     if name not in op:
         return "missing"
-    shown = repr(op[name])
-    return f"{shown[:60]}{'…' if len(shown) > 60 else ''} ({type(op[name]).__name__})"
+    return f"{shown(op[name])} ({type(op[name]).__name__})"
+
+
+def shown(value: object) -> str:
+    """Return a value, shortened: it may be nested deeper than Python's repr can follow."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # Python writes no numbers of thousands of digits
+        return "a huge number"
 
 
 def full_name(name: str) -> str:
@@ -178,11 +199,11 @@ def policy(name: str, value: object, path: str) -> Any:
         options = POLICIES[name]
         found = options.get(value.lower()) if isinstance(value, str) else None
         if found is None:
-            raise MessageError(path, f"{value!r}, needs one of {', '.join(options)}")
+            raise MessageError(path, f"{shown(value)}, needs one of {', '.join(options)}")
         return found
     if name == "depth":
         if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= 10_000:
-            raise MessageError(path, f"{value!r}, needs a number of messages from 0 to 10000")
+            raise MessageError(path, f"{shown(value)}, needs a number of messages from 0 to 10000")
         return value
     if name in {"deadline", "lifespan"}:
         return duration(value, path)
@@ -202,7 +223,9 @@ def duration(value: object, path: str) -> Duration:
         secs, nsecs = value, 0
     for part in (secs, nsecs):
         if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part <= 1e9:
-            raise MessageError(path, f"{value!r}, needs seconds, secs and nsecs, or 'infinite'")
+            raise MessageError(
+                path, f"{shown(value)}, needs seconds, secs and nsecs, or 'infinite'"
+            )
     return Duration(nanoseconds=int(secs * 1e9) + int(nsecs))
 
 
@@ -228,7 +251,7 @@ class FragmentStore:
         Raises:
             MessageError: the fragment is invalid, or too much is kept; then all of it is forgotten.
         """
-        message_id, data = text(op, "id"), text(op, "data")
+        message_id, data = text(op, "id"), text(op, "data", most=None)
         num, total = op.get("num"), op.get("total")
         if type(total) is not int or not 0 < total <= MOST_FRAGMENTS:
             raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MOST_FRAGMENTS}")
