@@ -150,7 +150,9 @@ class Gateway(Clients):
         is_foxglove = _foxglove.SUBPROTOCOL in websocket.scope["subprotocols"]
         kind = "foxglove" if is_foxglove else "rosbridge"
         async with self.session_of(websocket.scope, kind) as session:
-            session.connection = websocket.scope["state"]["aionode_connection"]
+            connection = websocket.scope["state"]["aionode_connection"]
+            session.connection = connection
+            session.outbox.direct = connection.send_now
             bucket = Bucket(self._policy.limits.frames_per_sec, self.robot.time_base.steady_ns)
             websocket._receive = paced(websocket._receive, bucket, self.robot.clock, session)
             if is_foxglove:

@@ -100,6 +100,21 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         if message["type"] == "websocket.http.response.body":
             self.handshake_complete = True
 
+    def send_now(self, frame: bytes | str) -> bool:
+        """Send a frame, if its client has read enough of the earlier ones; return whether."""
+        if not (self.handshake_complete and self.writable.is_set()) or self.close_sent:
+            return False
+        if self.transport.is_closing():
+            return False
+        if type(frame) is bytes:
+            self.conn.send_binary(frame)
+        elif type(frame) is str:
+            self.conn.send_text(frame.encode())
+        else:  # a frame in parts
+            return False
+        self.transport.write(b"".join(self.conn.data_to_send()))
+        return True
+
     def silent_sec(self) -> float:
         """Return how long nothing has arrived, in seconds."""
         return self.loop.time() - self._heard_s

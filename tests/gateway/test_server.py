@@ -24,6 +24,7 @@ from aionode.context import Context
 from aionode.errors import ConfigurationError, RefusedError
 from aionode.gateway import Gateway, Identity, Policy
 from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import local_context
 from tests.support.waiting import until
@@ -338,3 +339,26 @@ async def context() -> AsyncIterator[Context]:
     """A context of its own."""
     async with local_context() as made:
         yield made
+
+
+async def test_a_client_that_reads_nothing_slows_nobody() -> None:
+    """The others get every message; what it lacks is counted, and not kept."""
+    async with serving() as gateway:
+        words = gateway.node.create_publisher(String, "/words", 10)
+        subscribing = json.dumps({"op": "subscribe", "topic": "/words", "queue_length": 5})
+        async with (
+            raw_connect(gateway, "/", {}, []) as idle,
+            raw_connect(gateway, "/", {}, []) as reader,
+        ):
+            for websocket in (idle, reader):
+                await websocket.send(subscribing)
+            await until(lambda: len([s for s in gateway._sessions if s._subscribed]) == 2)
+            idle.transport.pause_reading()
+            for number in range(300):
+                words.publish(String(data=f"{number}:" + "x" * 100_000))
+                got = json.loads(await reader.recv())
+                assert got["msg"]["data"].startswith(f"{number}:")
+            assert gateway.stats.dropped["/words"] > 100
+            waiting = [session.outbox.waiting_bytes for session in gateway._sessions]
+            assert max(waiting) <= 5 * 101_000
+            idle.transport.abort()
