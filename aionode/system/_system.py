@@ -207,6 +207,8 @@ class System:
         ready: Fact | Sequence[Fact] | None = None,
         env: Mapping[str, str] | None = None,
         cwd: str | os.PathLike[str] | None = None,
+        memory_bytes: int | None = None,
+        cpu_cores: float | None = None,
         **options: Unpack[MemberOptions],
     ) -> Member:
         """Add a node, as tasks of this process or as a process of its own.
@@ -226,6 +228,8 @@ class System:
             ready: What is awaited before it is ready.
             env: Variables of the environment of a process of its own.
             cwd: Its working folder; as above.
+            memory_bytes: How much memory it may have in a process of its own; as for `process`.
+            cpu_cores: How many cores it may use; as above.
             options: The rest; see `MemberOptions`.
 
         Returns:
@@ -245,10 +249,20 @@ class System:
         if processes:
             argv = [*program_of(node, name), *arguments]
             return self.process(
-                name, argv, env=env, cwd=cwd, restart=restart, ready=facts, **options
+                name,
+                argv,
+                env=env,
+                cwd=cwd,
+                restart=restart,
+                ready=facts,
+                memory_bytes=memory_bytes,
+                cpu_cores=cpu_cores,
+                **options,
             )
-        if env is not None or cwd is not None:
-            raise ValueError(f"{name}: env and cwd are for nodes with processes=True")
+        if any(one is not None for one in (env, cwd, memory_bytes, cpu_cores)):
+            raise ValueError(
+                f"{name}: env, cwd, memory_bytes and cpu_cores are for nodes with processes=True"
+            )
         shared = options_of(restart, facts, options, name)
         make_node = maker_of(node)
         return self._add(NodeMember(name, self, shared, make_node, self.context, arguments))

@@ -440,8 +440,10 @@ async def test_a_node_runs_as_tasks_with_its_parameters_and_name(system: System)
 async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system: System) -> None:
     """As tasks of this process, and as the command line of one of its own."""
     shared: dict[str, Any] = {"remappings": {"/cmd_vel": "/left/speed"}, "namespace": "robot"}
-    apart = system.node("apart", "tests.system.robot:Wheels", processes=True, **shared)
+    wheels = "tests.system.robot:Wheels"
+    apart = system.node("apart", wheels, processes=True, cpu_cores=0.5, **shared)
     assert isinstance(apart, ProcessMember)
+    assert apart.process.limits.cpu_cores == 0.5
     words = " ".join(apart.process.argv[1:])
     assert words == (
         "-m aionode run tests.system.robot:Wheels --ros-args "
@@ -456,7 +458,7 @@ async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system:
 
     inside = System("inside", context=system.context, log=system.log)
     async with inside:
-        inside.node("wheels", "tests.system.robot:Wheels", **shared)
+        inside.node("wheels", wheels, **shared)
         await inside.ready()
         assert inside.graph_node.count_subscribers("/left/speed") == 1
 
@@ -600,6 +602,8 @@ async def test_mistakes_in_a_description_are_refused_with_what_fits(system: Syst
         system.process("a", FOREVER, after="driver")
     with pytest.raises(ValueError, match="cannot be imported by a process of its own"):
         system.node("a", lambda: Beacon(), processes=True)  # noqa: PLW0108  # has no name
+    with pytest.raises(ValueError, match="are for nodes with processes=True"):
+        system.node("a", Beacon, cpu_cores=0.5)
     system.process("a", FOREVER)
     with pytest.raises(ValueError, match="this name is taken"):
         system.process("a", FOREVER)
