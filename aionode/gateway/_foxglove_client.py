@@ -146,7 +146,7 @@ class Client:
             case frames.ClientMessage():
                 await self._put(("publish", asked.channel_id), self._publish, asked)
             case frames.ServiceCall():
-                await self._start(self._call, asked)
+                self._start(self._call, asked)
             case frames.PlaybackRequest():
                 await self._put("playback", self.playback.control, self._start, asked)
             case frames.Subscribe() | frames.Unsubscribe():
@@ -159,8 +159,8 @@ class Client:
     ) -> None:
         await self._lanes.put(lane, partial(self._attempt, work, *arguments))
 
-    async def _start(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
-        await self._lanes.start(partial(self._attempt, work, *arguments))
+    def _start(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
+        self._lanes.start(partial(self._attempt, work, *arguments))
 
     async def _attempt(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
         """Await work, and tell the client if it fails."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Playback"]
 
-Begin: TypeAlias = Callable[..., Awaitable[None]]
+Begin: TypeAlias = Callable[..., None]
 
 PERIOD_SEC: Final = 0.05
 """How often the time is told while a player plays."""
@@ -109,7 +109,7 @@ class Playback:
             offset_ns = (request.seek_ns or start_ns) - start_ns
             sec, nanosec = divmod(offset_ns, S_TO_NS)
             again = {"start_offset": {"sec": sec, "nanosec": nanosec}}
-            await begin(self._call, player, "play", again)  # which ends with the recording
+            begin(self._call, player, "play", again)  # which ends with the recording
         self._tell(player, request)
 
     async def _call(self, player: Player, name: str, values: dict[str, Any]) -> None:

@@ -274,6 +274,28 @@ async def test_a_service_answers_in_the_encoding_of_its_request(
         assert frame == head + encoding + response_data
 
 
+async def test_a_call_that_waits_holds_up_no_other(node: Node) -> None:
+    """Neither calls nor other ops wait for it."""
+    may_answer = asyncio.Event()
+
+    async def wait(_: SetBool.Request) -> SetBool.Response:
+        await may_answer.wait()
+        return SetBool.Response(message="late")
+
+    node.create_service(SetBool, "/slow", wait)
+    node.create_service(SetBool, "/power", answer)
+    async with client_of(node) as client:
+        slow, power = await client.service("/slow"), await client.service("/power")
+        client.call(slow["id"], b"json", b'{"data":true}')
+        client.call(power["id"], b"json", b'{"data":true}')
+        first = await client.binary(3)
+        may_answer.set()
+        second = await client.binary(3)
+
+    assert b'"on"' in first
+    assert b'"late"' in second
+
+
 async def test_a_call_that_fails_says_why(node: Node) -> None:
     """Whether the handler has failed, the request is malformed, or there is no such service."""
     node.create_service(SetBool, "/power", answer, on_error="log")

@@ -26,6 +26,21 @@ pytestmark = [
 ]
 
 
+def driving(ttl_sec: float = 30.0) -> Policy:
+    """Return a policy by which a page drives, also where a busy machine lets it wait."""
+    return Policy.parse(f"""
+        [[who]]
+        name = "operator"
+        loopback = true
+        [[allow]]
+        subscribe = "/**"
+        [[allow]]
+        publish = "/cmd_vel"
+        lease = {{ ttl_sec = {ttl_sec}, max_age_sec = 30 }}
+        fields = {{ "linear.x" = {{ min = -0.5, max = 0.5, outside = "clamp" }} }}
+    """)
+
+
 class Scene(NamedTuple):
     """The page in a browser, and the robot behind it."""
 
@@ -124,7 +139,7 @@ async def test_the_page_sets_parameters_and_calls_services(context: Context) -> 
 
 async def test_letting_go_stops(context: Context) -> None:
     """The page sends while the pad is held, within the limits of the policy."""
-    async with scene(context) as (page, robot, _, commands):
+    async with scene(context, driving()) as (page, robot, _, commands):
         await connected(page)
         await page.write("#teleop .speed", "5")
         await hold(page)
@@ -138,7 +153,7 @@ async def test_letting_go_stops(context: Context) -> None:
 
 async def test_the_stop_button_ends_driving(context: Context) -> None:
     """Also while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
-    async with scene(context) as (page, robot, _, commands):
+    async with scene(context, driving()) as (page, robot, _, commands):
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -155,7 +170,7 @@ async def test_the_stop_button_ends_driving(context: Context) -> None:
 
 async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
     """Nobody lets the pad go: the gateway ends the lease of a client that has left."""
-    async with scene(context) as (page, robot, gateway, commands):
+    async with scene(context, driving()) as (page, robot, gateway, commands):
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -167,7 +182,7 @@ async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
 
 async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
     """A script that never ends sends nothing: the gateway sends the stop after the time to live."""
-    async with scene(context) as (page, robot, gateway, commands):
+    async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands):
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -179,7 +194,7 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
 
 async def test_a_second_page_is_told_who_drives(context: Context) -> None:
     """Its pad is let go, as its commands have no effect."""
-    async with scene(context) as (page, robot, _, commands), chromium() as other:
+    async with scene(context, driving()) as (page, robot, _, commands), chromium() as other:
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
