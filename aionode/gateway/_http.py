@@ -222,6 +222,7 @@ async def send_goal(asked: Asked) -> Response:
     The goal ends with the connection.
     """
     values, type_name = asked.json(), asked.type_name
+    asked.lose_silent_client()
     if "application/json" in asked.accept:
         async with asked.session.goal(asked.name, values, type_name=type_name) as goal:
             return json_response(outcome_of(goal, await goal.result()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import socket
 import sys
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -16,6 +17,7 @@ from aionode import image
 from aionode.action import CancelResponse, GoalResponse, ServerGoalHandle
 from aionode.context import Context
 from aionode.gateway import Gateway, Policy
+from aionode.gateway._server import HttpConnection
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist
@@ -214,6 +216,27 @@ async def test_a_body_that_is_no_message_is_refused(
     )
 
     assert (answer.status_code, answer.json()["code"]) == (status, code)
+
+
+async def test_a_body_that_does_not_come_has_an_end(aionode_context: Context) -> None:
+    """A caller that sends one byte a minute takes no place for ever."""
+    policy = """
+        [[who]]
+        name = "local"
+        loopback = true
+        [[allow]]
+        publish = "/**"
+        [limits]
+        handshake_sec = 0.05
+    """
+    async with client_of(aionode_context, policy) as client:
+        reader, writer = await asyncio.open_connection("127.0.0.1", client.base_url.port)
+        host = f"Host: 127.0.0.1:{client.base_url.port}\r\n"
+        writer.write(f"POST /topics/chatter HTTP/1.1\r\n{host}Content-Length: 9\r\n\r\n".encode())
+        answer = await reader.readline()
+        writer.close()
+
+    assert answer.split()[1] == b"408"
 
 
 # Images
@@ -451,6 +474,29 @@ async def test_a_rejected_goal_has_no_stream(client: httpx.AsyncClient, robot: N
     answer = await client.post("/actions/count", json={"order": -1})
 
     assert (answer.status_code, answer.json()["code"]) == (409, "rejected")
+
+
+@pytest.mark.skipif(not hasattr(socket, "TCP_USER_TIMEOUT"), reason="needs Linux")
+async def test_a_caller_of_a_goal_is_lost_when_its_host_is_silent(
+    client: httpx.AsyncClient, robot: Node, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A cable that is pulled ends no connection by itself: the kernel is told to ask."""
+    Counter(robot)
+    limits_ms: list[int] = []
+
+    def lose_after(self: HttpConnection, seconds: float) -> None:
+        original(self, seconds)
+        connected = self.transport.get_extra_info("socket")
+        limits_ms.append(connected.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT))
+        limits_ms.append(connected.getsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE))
+
+    original = HttpConnection.lose_after
+    monkeypatch.setattr(HttpConnection, "lose_after", lose_after)
+
+    async with client.stream("POST", "/actions/count", json={"order": 7}) as answer:
+        await anext(answer.aiter_lines())
+
+    assert limits_ms == [3000, 1]
 
 
 # Parameters
