@@ -96,6 +96,10 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     _pings: int = 0
     _on_pong: tuple[bytes, Callable[[], None]] | None = None
 
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.conn.debug = False  # it would write the tokens of addresses and headers into the log
+
     def handle_connect(self, event: Any) -> None:
         """Have the application find this connection."""
         self.app_state = {**self.app_state, "aionode_connection": self}

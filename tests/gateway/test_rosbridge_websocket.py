@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import hashlib
 import json
+import logging
 from collections.abc import AsyncIterator, Callable
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import cbor2
@@ -148,3 +151,28 @@ async def test_a_subprotocol_of_the_client_is_answered(connect: Connect) -> None
     assert subprotocol(["bearer.t", "rosbridge"]) == "rosbridge"
     assert subprotocol(["bearer.t"]) == "bearer.t"
     assert subprotocol([]) is None
+
+
+async def test_no_token_reaches_a_log(
+    node_factory: Callable[..., Node], tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Not even one that is wrong, and not at the lowest level: logs are kept, and shown around."""
+    policy = tmp_path / "policy.toml"
+    known = hashlib.sha256(b"hush").hexdigest()
+    policy.write_text(f'[[who]]\nname = "me"\ntoken_sha256 = "{known}"\n')
+    caplog.set_level(logging.WARNING, "websockets.client")  # the other end, here in one process
+    caplog.set_level(logging.DEBUG)  # last, as it also is the level of what is caught
+    gateway_node = node_factory("gateway")
+    await settle()
+    async with Gateway(gateway_node, Policy.load(policy), port=0) as gateway:
+        url = f"ws://127.0.0.1:{gateway.port}/"
+        headers = {"Authorization": "Bearer hush"}
+        async with websockets.connect(f"{url}?token=hush"):
+            pass
+        async with websockets.connect(url, additional_headers=headers):
+            pass
+        with pytest.raises(websockets.InvalidStatus):
+            await websockets.connect(f"{url}?token=hushhush")
+
+    assert "uvicorn" in {record.name.split(".")[0] for record in caplog.records}
+    assert "hush" not in caplog.text
