@@ -563,7 +563,7 @@ async def test_a_server_answers_for_those_without_a_buffer(
     async with node_factory("server") as server, node_factory("client") as asker:
         buffer = Buffer(server)
         BufferServer(buffer, server)
-        client = BufferClient(asker)
+        client = BufferClient(asker, timeout_padding=30.0)
         put(buffer, transform("map", "base", 1.0), transform("other", "x", 1.0))
 
         assert parts(await client.lookup_transform("map", "base"))[0] == 1.0

@@ -20,7 +20,7 @@ async def test_the_stop_passes_a_full_socket() -> None:
         (send_queue,) = writer_of(numbers.publisher)._send_queues.values()
         loop, other = asyncio.get_running_loop(), link_of(nodes.b)
         loop.remove_reader(other._fd)  # as a process that reads nothing
-        async with numbers.publisher.lease(stop=STOP) as lease:
+        async with numbers.publisher.lease(stop=STOP, ttl_sec=60.0) as lease:
             for number in range(20_000):
                 lease.publish(Int32(data=number))
             assert send_queue.waits

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import partial
@@ -168,10 +169,12 @@ async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_de
 ) -> None:
     """Zenoh would drop what it has no room for, and tell nobody: a thread waits for it instead."""
     in_thread: list[bytes] = []
+    all_published = threading.Event()  # else the thread might keep pace
     send_patiently = ZenohWriter._send_patiently
 
     def note(self: ZenohWriter, publisher: Any, payload: bytes, extra: bytes) -> None:
         in_thread.append(extra)
+        assert all_published.wait(30)
         send_patiently(self, publisher, payload, extra)
 
     monkeypatch.setattr(ZenohWriter, "_send_patiently", note)
@@ -183,6 +186,7 @@ async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_de
         await publisher.wait_for_subscribers()
         for number in range(5000):
             publisher.publish(String(data=str(number)))
+        all_published.set()
         heard = []
         while "4999" not in heard:
             heard.append((await subscription.receive()).data)
