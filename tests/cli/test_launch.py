@@ -42,6 +42,40 @@ def test_an_argument_without_its_colon_is_no_file_of_a_package(
     assert "'speed=0.8': expected NAME:=VALUE" in capsys.readouterr().err
 
 
+def test_it_prints_what_happens_later(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """When it happens, what containers get, and what is only known then."""
+    path = tmp_path / "a.launch.yaml"
+    path.write_text(
+        """
+launch:
+- unset_env: {name: HOME}
+- timer:
+    period: 2.0
+    children:
+    - executable: {cmd: later, cwd: /tmp}
+    - shutdown: {reason: over}
+- log: {message: hello}
+- load_composable_node:
+    target: /c
+    composable_node:
+    - {pkg: p, plugin: 'p::Eye', name: eye, namespace: /a, param: [{name: x, value: 1}],
+       remap: [{from: b, to: c}]}
+"""
+    )
+    assert main(["launch", str(path), "--print"]) == 0
+
+    assert capsys.readouterr().out.splitlines() == [
+        "after 2 s: later-1: later",
+        "    in /tmp",
+        "    HOME is not set",
+        "after 2 s: event launch.events.Shutdown",
+        "log: hello",
+        "/c gets p::Eye of p as /a/eye",
+        "    b:=c",
+        "    x: 1",
+    ]
+
+
 def test_it_prints_records(file: str, capsys: pytest.CaptureFixture[str]) -> None:
     """For programs."""
     assert main(["launch", "--print", "--json", file]) == 0

@@ -100,10 +100,22 @@ def test_only_the_process_gets_a_variable(files: Files, monkeypatch: pytest.Monk
         ("Command(['printf hello'])", "hello"),
         ("TextSubstitution(text='t')", "t"),
         ("StringJoinSubstitution(['a', 'b'], delimiter='-')", "a-b"),
+        ("FileContent([ThisLaunchFileDir(), '/text'])", "content"),
+        ("[FindExecutable(name='no'), '']", "/bin/no"),
+        ("LaunchLogDir()", "/logs"),
+        ("EqualsSubstitution(AnonName('a'), AnonName('a'))", "true"),
+        ("IfElseSubstitution(EqualsSubstitution(None, ''), if_value='a')", "a"),
+        ("EnvironmentVariable('HOME_OF_LOGS')", "/logs"),
     ],
 )
-def test_a_substitution_becomes_a_text(files: Files, substitution: str, text: str) -> None:
+def test_a_substitution_becomes_a_text(
+    files: Files, substitution: str, text: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Each kind, as ROS's launch evaluates it."""
+    monkeypatch.setenv("ROS_LOG_DIR", "/logs")
+    monkeypatch.setenv("HOME_OF_LOGS", "/logs")
+    monkeypatch.setattr("shutil.which", lambda name, path: f"/bin/{name}")
+    files.write("text", "content")
     records = files.python(
         f"SetLaunchConfiguration('x', '5'), ExecuteProcess(cmd=['echo', {substitution}]),"
     )
@@ -281,6 +293,48 @@ def test_an_executable_of_a_workspace_is_found_without_a_build(files: Files) -> 
     assert "robot.driver:main" in records[0]["argv"]
     assert records[1]["argv"][-2:] == ["robot.driver:main", "-v"]
     assert records[2]["argv"][1] == str(files.folder / "src" / "robot")
+
+
+def test_parameter_files_are_handed_over_or_read_for_a_component(
+    files: Files, package: Path
+) -> None:
+    """A node reads its files itself; a container is told what they have for its node."""
+    files.write(
+        "a.yaml",
+        """
+        /**: {ros__parameters: {all: 1, rate: 1.0}}
+        robot:
+          eye: {ros__parameters: {rate: 2.0, lens: {size: 3}}}
+        other: {ros__parameters: {rate: 4.0}}
+        """,
+    )
+    files.write("b.yaml", "{eye: {ros__parameters: {robot: $(var robot)}}}")
+    records = files.python(
+        """
+        SetLaunchConfiguration('robot', 'r1'),
+        SetParametersFromFile([ThisLaunchFileDir(), '/a.yaml']),
+        SetParameter('shared', 5),
+        Node(executable='n', name='eye', parameters=[
+            ParameterFile([ThisLaunchFileDir(), '/b.yaml'], allow_substs=True),
+            Parameter('own', 'word'), '/nope.yaml']),
+        LoadComposableNodes(target_container='c', composable_node_descriptions=[
+            ComposableNode(package='robot', plugin='robot::Eye', name='eye', namespace='robot',
+                           parameters=[{'rate': 3.0}])]),
+        LogInfo(msg=Shared('shared')),
+        """,
+        imports="from launch_ros.substitutions import Parameter as Shared\n"
+        "from launch_ros.descriptions import Parameter",
+    )
+
+    folder = str(files.folder)
+    assert records[0]["log"] == "no parameter file /nope.yaml: the node starts without"
+    assert records[1]["argv"][4:] == [
+        "--params-file", f"{folder}/a.yaml", "-p", "shared:=5",
+        "--params-file", {"eye": {"ros__parameters": {"robot": "r1"}}},
+        "-p", "own:=word\n...\n",  # as PyYAML writes it, in ROS, too
+    ]  # fmt: skip
+    assert records[2]["parameters"] == {"all": 1, "rate": 3.0, "lens.size": 3, "shared": 5}
+    assert records[3]["log"] == "5"
 
 
 def test_components_of_a_container_have_their_parameters(files: Files, package: Path) -> None:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode import Context
+from aionode import Context, Node
 from aionode.errors import LaunchFileError
+from aionode.interfaces.composition_interfaces.srv import LoadNode
 from aionode.launch import Plan, run_plan
 from aionode.lifecycle import LifecycleNode
 from aionode.system import System, SystemLog
@@ -157,7 +158,7 @@ async def test_a_managed_node_may_be_activated_as_it_starts(robot: Robot) -> Non
     """With `autostart`, once it answers."""
     plan = robot.plan(
         """
-        LifecycleNode(executable='sleep', arguments=['1000'], name='arm', namespace='/',
+        LifecycleNode(executable='sh', arguments=['-c', 'sleep 1000'], name='arm', namespace='/',
                       autostart=True),
         """
     )
@@ -166,6 +167,68 @@ async def test_a_managed_node_may_be_activated_as_it_starts(robot: Robot) -> Non
         async with LifecycleNode("arm", context=system.context) as arm:  # in the program's place
             await until(lambda: arm.lifecycle_state.label == "active")
         running.cancel()
+
+
+async def test_the_states_of_a_managed_node_are_events(robot: Robot) -> None:
+    """As in ROS's lifecycle demo: it is configured, and activated once it is inactive."""
+    plan = robot.plan(
+        """
+        arm := LifecycleNode(executable='sh', arguments=['-c', 'sleep 1000'], name='arm',
+                             namespace='/'),
+        RegisterEventHandler(OnStateTransition(target_lifecycle_node=arm, goal_state='inactive',
+            entities=[LogInfo(msg='is inactive'), EmitEvent(event=ChangeState(
+                lifecycle_node_matcher=matches_action(arm),
+                transition_id=Transition.TRANSITION_ACTIVATE))])),
+        RegisterEventHandler(OnStateTransition(target_lifecycle_node=arm, goal_state='active',
+            entities=[Shutdown(reason='it moves')])),
+        LifecycleTransition(lifecycle_node_names=['/arm'],
+                            transition_ids=[Transition.TRANSITION_CONFIGURE]),
+        """,
+        imports="""
+        from launch_ros.event_handlers import OnStateTransition
+        from launch_ros.events.lifecycle import ChangeState
+        from lifecycle_msgs.msg import Transition
+        """,
+    )
+    async with robot.system as system, LifecycleNode("arm", context=system.context):
+        await run_plan(plan, system)
+
+    lines = robot.lines()
+    assert lines.index("is inactive") < lines.index("shutdown: it moves")
+
+
+async def test_a_container_of_another_program_is_asked_to_load_its_nodes(robot: Robot) -> None:
+    """By the service of ROS's containers, one after the other; the log has what it answers."""
+    plan = robot.plan(
+        """
+        LoadComposableNodes(target_container='/c', composable_node_descriptions=[
+            ComposableNode(package='robot', plugin='robot::Camera', name='eye', namespace='head',
+                           parameters=[{'rate': 5.0}], remappings=[('image', 'picture')]),
+            ComposableNode(package='robot', plugin='robot::Nothing')]),
+        """
+    )
+    asked = []
+
+    def load(request: LoadNode.Request, response: LoadNode.Response) -> LoadNode.Response:
+        asked.append(request)
+        response.success = request.plugin_name == "robot::Camera"
+        response.full_node_name = "/head/eye" if response.success else ""
+        response.error_message = "" if response.success else "no such plugin"
+        return response
+
+    async with robot.system as system, Node("c", context=system.context) as container:
+        container.create_service(LoadNode, "/c/_container/load_node", load)
+        await run_plan(plan, system)
+
+    assert [(one.node_name, one.node_namespace) for one in asked] == [("eye", "/head"), ("", "")]
+    assert (list(asked[0].remap_rules), asked[0].parameters[0].value.double_value) == (
+        ["image:=picture"],
+        5.0,
+    )
+    assert robot.lines()[:2] == [
+        "/c: loaded /head/eye",
+        "/c: cannot load robot::Nothing: no such plugin",
+    ]
 
 
 async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
