@@ -127,6 +127,7 @@ class Client:
             asked = frames.op_of(frame) if isinstance(frame, str) else frames.binary_of(frame)
         except MessageError as error:
             self.malformed += 1
+            self._session.refused += 1
             self._refuse(error)
             return
         try:

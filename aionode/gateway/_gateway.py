@@ -31,12 +31,14 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
     from aionode.bag import Player
-    from aionode.clock import Clock
     from aionode.gateway._robot import Ask
     from aionode.gateway._session import Session
     from aionode.node import Node
 
 __all__ = ["Gateway"]
+
+REFUSALS_PER_SEC: Final = 50.0
+"""How many frames a second are read of a client whose frames are refused."""
 
 RELOAD_SEC: Final = 1.0
 """How often the policy file is looked at, in seconds."""
@@ -153,8 +155,9 @@ class Gateway(Clients):
             connection = websocket.scope["state"]["aionode_connection"]
             session.connection = connection
             session.outbox.direct = connection.send_now
-            bucket = Bucket(self._policy.limits.frames_per_sec, self.robot.time_base.steady_ns)
-            websocket._receive = paced(websocket._receive, bucket, self.robot.clock, session)
+            websocket._receive = paced(
+                websocket._receive, self._policy.limits.frames_per_sec, self.robot, session
+            )
             if is_foxglove:
                 serving = _foxglove.serve(websocket, session, self._player)
             else:
@@ -196,13 +199,23 @@ class Gateway(Clients):
             self.use_policy(policy)
 
 
-def paced(receive: Any, bucket: Bucket, clock: Clock, session: Session) -> Any:
+def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
     """Return a `receive` of WebSockets that takes no more frames than a rate allows.
 
-    A client that sends faster is not read meanwhile, and so has to wait.
+    A client that sends faster is not read meanwhile, and so has to wait. One whose frames are
+    refused has to wait longer: what comes to nothing must cost the robot next to nothing.
     """
+    clock = robot.clock
+    bucket = Bucket(rate_hz, robot.time_base.steady_ns)
+    refusals = Bucket(REFUSALS_PER_SEC, robot.time_base.steady_ns)
+    seen = session.refused
 
     async def receive_paced() -> Any:
+        nonlocal seen
+        while seen < session.refused:
+            while wait_sec := refusals.wait_sec():
+                await clock.sleep(wait_sec)
+            seen += 1
         message = await receive()
         if message["type"] == "websocket.receive":
             session.note_frame()

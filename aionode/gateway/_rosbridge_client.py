@@ -106,6 +106,7 @@ class Client:
             op = op_of(frame)
         except MessageError as error:
             self.malformed += 1
+            self._link.session.refused += 1
             self._link.status("error", str(error))
         else:
             await self._begin(op)

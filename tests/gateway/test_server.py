@@ -362,3 +362,18 @@ async def test_a_client_that_reads_nothing_slows_nobody() -> None:
             waiting = [session.outbox.waiting_bytes for session in gateway._sessions]
             assert max(waiting) <= 5 * 101_000
             idle.transport.abort()
+
+
+@pytest.mark.parametrize("frame", ["garbage{{{", DRIVE])
+async def test_a_client_whose_frames_are_refused_is_read_slowly(frame: str) -> None:
+    """What comes to nothing must cost the robot next to nothing: it has to wait meanwhile."""
+    async with serving() as gateway, raw_connect(gateway, "/", {}, []) as websocket:
+        await websocket.send(frame)
+        await until(lambda: gateway.stats.refused)
+        (session,) = gateway._sessions
+        with contextlib.suppress(TimeoutError, ConnectionClosed):
+            async with asyncio.timeout(0.5):
+                while True:
+                    await websocket.send(frame)
+        assert session.refused < 150
+        websocket.transport.abort()
