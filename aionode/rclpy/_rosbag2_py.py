@@ -13,6 +13,14 @@ from aionode.bag._types import definition_of, known_class
 from aionode.clock import Time as PlainTime
 from aionode.errors import AionodeError, BagError, InterfaceNotFoundError
 from aionode.qos import QoSProfile
+from aionode.rclpy._rosbag2_live import (
+    MessageOrder,
+    Player,
+    PlayOptions,
+    Recorder,
+    RecordOptions,
+    ServiceRequestsSource,
+)
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
 from aionode.wire.typehash import type_hash
@@ -23,11 +31,18 @@ __all__ = [
     "FileInformation",
     "Info",
     "MessageDefinition",
+    "MessageOrder",
+    "PlayOptions",
+    "Player",
     "ReadOrder",
     "ReadOrderSortBy",
+    "RecordOptions",
+    "Recorder",
+    "Reindexer",
     "SequentialCompressionReader",
     "SequentialReader",
     "SequentialWriter",
+    "ServiceRequestsSource",
     "StorageFilter",
     "StorageOptions",
     "TopicInformation",
@@ -538,6 +553,21 @@ def definition_by_name(typename: str) -> MessageDefinition:
     except InterfaceNotFoundError:
         return MessageDefinition(topic_type=typename)
     return MessageDefinition(typename, "ros2msg", definition_of(cls), type_hash(cls))
+
+
+class Reindexer:
+    """Writes the metadata of bags anew."""
+
+    def reindex(self, storage_options: StorageOptions) -> None:
+        """Write ``metadata.yaml`` from the files of a bag.
+
+        Raises:
+            RuntimeError: there are no files, or one is damaged.
+        """
+        try:
+            bag.reindex(storage_options.uri)
+        except (AionodeError, OSError) as error:
+            raise RuntimeError(str(error)) from error
 
 
 # What there is

@@ -1,0 +1,132 @@
+"""`rosbag2_py.Recorder`, `Player` and `Reindexer`, as programs use them."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+from collections.abc import AsyncIterator
+from pathlib import Path
+
+import pytest
+
+from aionode import Context, Node, bag
+from aionode.clock import Time
+from aionode.interfaces.std_msgs.msg import String
+from aionode.rclpy import _rosbag2_py as rosbag2_py
+from tests.support.peers import isolated_environment, quiet_node
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.one_loop
+
+
+@pytest.fixture(autouse=True)
+def alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nothing else on the machine is heard."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+
+
+@pytest.fixture
+async def node(alone: None) -> AsyncIterator[Node]:
+    """A node of aionode, in the loop of the test."""
+    async with Context() as context, quiet_node("robot", context) as node:
+        yield node
+
+
+def options_of(path: Path) -> rosbag2_py.StorageOptions:
+    """Return where a bag is."""
+    return rosbag2_py.StorageOptions(uri=str(path), storage_id="mcap")
+
+
+def write(path: Path, count: int, step_ns: int = 10**6) -> None:
+    """Write numbered texts."""
+    with bag.BagWriter(path) as out:
+        for number in range(count):
+            text = String(data=str(number))
+            out.write_message("/words", text, Time(nanoseconds=1 + number * step_ns))
+
+
+async def test_a_recorder_records_in_its_thread_until_it_is_stopped(
+    node: Node, tmp_path: Path
+) -> None:
+    """The program goes on meanwhile, which rosbag2's first recorder did not allow."""
+    words = node.create_publisher(String, "words", 10)
+    record = rosbag2_py.RecordOptions()
+    record.topics = ["/words"]
+    recorder = rosbag2_py.Recorder(options_of(tmp_path / "run"), record, "error")
+    await asyncio.to_thread(recorder.record)
+    await words.wait_for_subscribers()
+    words.publish(String(data="hello"))
+    await asyncio.to_thread(recorder.pause)
+    assert await asyncio.to_thread(recorder.is_paused)
+    await asyncio.to_thread(recorder.stop)
+    with bag.open(tmp_path / "run") as run:
+        assert set(run.counts) == {"/words"}
+
+
+async def test_the_older_form_records_until_it_is_cancelled(node: Node, tmp_path: Path) -> None:
+    """Programs of Jazzy call it in a thread."""
+    words = node.create_publisher(String, "words", 10)
+    recorder = rosbag2_py.Recorder("error")
+    record = rosbag2_py.RecordOptions(all_topics=True)
+    place = options_of(tmp_path / "run")
+    thread = threading.Thread(target=recorder.record, args=(place, record), daemon=True)
+    thread.start()
+    await words.wait_for_subscribers()
+    words.publish(String(data="hello"))
+    await asyncio.to_thread(rosbag2_py.Recorder.cancel)
+    await asyncio.to_thread(thread.join)
+    with bag.open(tmp_path / "run") as run:
+        assert "/words" in run.counts
+
+
+async def test_a_player_plays_in_its_thread(node: Node, tmp_path: Path) -> None:
+    """It is paused, stepped, and plays to the end."""
+    write(tmp_path / "run", 5)
+    heard: list[str] = []
+    words = node.create_subscription(String, "words", lambda msg: heard.append(msg.data), 10)
+    play = rosbag2_py.PlayOptions(start_paused=True)
+    player = rosbag2_py.Player(options_of(tmp_path / "run"), play, "error")
+    await asyncio.to_thread(player.start_spin)
+    await until(words.get_publisher_count)
+    await asyncio.to_thread(player.play)
+    assert await asyncio.to_thread(player.is_paused)
+    assert await asyncio.to_thread(player.play_next)
+    assert await asyncio.to_thread(player.burst, 2) == 2
+    assert player.get_starting_time() == 1
+    assert player.get_playback_duration() == 4 * 10**6
+    assert not await asyncio.to_thread(player.wait_for_playback_to_finish, 0.01)
+    await asyncio.to_thread(player.resume)
+    assert await asyncio.to_thread(player.wait_for_playback_to_finish)
+    await until(lambda: len(heard) == 5)
+    await asyncio.to_thread(player.stop_spin)
+    assert heard == [str(number) for number in range(5)]
+
+
+def test_the_older_form_plays_to_the_end(tmp_path: Path) -> None:
+    """And a burst returns how many messages it has sent."""
+    write(tmp_path / "run", 5)
+    player = rosbag2_py.Player("error")
+    player.play(options_of(tmp_path / "run"), rosbag2_py.PlayOptions(rate=100))
+    assert player.burst(options_of(tmp_path / "run"), rosbag2_py.PlayOptions(), 3) == 3
+
+
+def test_what_cannot_begin_is_a_runtime_error(tmp_path: Path) -> None:
+    """As in rosbag2_py."""
+    with pytest.raises(RuntimeError, match="no such file"):
+        rosbag2_py.Player(options_of(tmp_path / "no"), rosbag2_py.PlayOptions()).play()
+    with pytest.raises(RuntimeError, match="already exists"):
+        rosbag2_py.Recorder(options_of(tmp_path), rosbag2_py.RecordOptions()).record()
+    with pytest.raises(RuntimeError, match="storage options"):
+        rosbag2_py.Recorder().record()
+
+
+def test_metadata_are_written_anew(tmp_path: Path) -> None:
+    """By its `Reindexer`."""
+    write(tmp_path / "run", 2)
+    (tmp_path / "run" / "metadata.yaml").unlink()
+    rosbag2_py.Reindexer().reindex(options_of(tmp_path / "run"))
+    with bag.open(tmp_path / "run") as run:
+        assert run.message_count == 2
+    with pytest.raises(RuntimeError, match="only a folder"):
+        rosbag2_py.Reindexer().reindex(options_of(tmp_path / "none"))
