@@ -224,7 +224,6 @@ class LiveThread:
         Raises:
             RuntimeError: it failed, or the thread has ended.
         """
-
         awaited(self._entered)
 
         async def run() -> Any:

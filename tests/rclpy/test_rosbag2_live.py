@@ -13,6 +13,7 @@ from aionode import Context, Node, bag
 from aionode.clock import Time
 from aionode.interfaces.std_msgs.msg import String
 from aionode.rclpy import _rosbag2_py as rosbag2_py
+from aionode.rclpy._rosbag2_live import LiveThread
 from tests.support.peers import isolated_environment, quiet_node
 from tests.support.waiting import until
 
@@ -46,6 +47,12 @@ def write(path: Path, count: int, step_ns: int = 10**6) -> None:
             out.write_message("/words", text, Time(nanoseconds=1 + number * step_ns))
 
 
+def recorded() -> bool:
+    """Whether a recorder of this process has got a text."""
+    stats = [thread.entity.stats for thread in LiveThread.running if thread.entity is not None]
+    return any("/words" in each and each["/words"].recorded for each in stats)
+
+
 async def test_a_recorder_records_in_its_thread_until_it_is_stopped(
     node: Node, tmp_path: Path
 ) -> None:
@@ -57,11 +64,12 @@ async def test_a_recorder_records_in_its_thread_until_it_is_stopped(
     await asyncio.to_thread(recorder.record)
     await words.wait_for_subscribers()
     words.publish(String(data="hello"))
+    await until(recorded)
     await asyncio.to_thread(recorder.pause)
     assert await asyncio.to_thread(recorder.is_paused)
     await asyncio.to_thread(recorder.stop)
     with bag.open(tmp_path / "run") as run:
-        assert set(run.counts) == {"/words"}
+        assert run.counts == {"/words": 1}
 
 
 async def test_the_older_form_records_until_it_is_cancelled(node: Node, tmp_path: Path) -> None:
@@ -74,10 +82,11 @@ async def test_the_older_form_records_until_it_is_cancelled(node: Node, tmp_path
     thread.start()
     await words.wait_for_subscribers()
     words.publish(String(data="hello"))
+    await until(recorded)
     await asyncio.to_thread(rosbag2_py.Recorder.cancel)
     await asyncio.to_thread(thread.join)
     with bag.open(tmp_path / "run") as run:
-        assert "/words" in run.counts
+        assert run.counts["/words"] == 1
 
 
 async def test_a_player_plays_in_its_thread(node: Node, tmp_path: Path) -> None:
