@@ -236,7 +236,8 @@ class LiveThread:
             raise RuntimeError(str(error)) from error
 
     def begin(self, work: Coroutine[Any, Any, Any]) -> concurrent.futures.Future[Any]:
-        """Have a coroutine run in the loop."""
+        """Have a coroutine run in the loop, once that runs."""
+        awaited(self._entered)
         return asyncio.run_coroutine_threadsafe(work, self._loop)
 
     def stop(self) -> None:
@@ -557,6 +558,11 @@ def cancel_all(kind: type[Any]) -> None:
     """End everything of a kind that runs in this process."""
     for thread in [each for each in LiveThread.running if each.kind is kind]:
         if kind is bag.Player:
-            thread.call(lambda thread=thread: thread.entity.stop())
+            awaited(thread.begin(stopped(thread)))
         else:
             thread.stop()
+
+
+async def stopped(thread: LiveThread) -> None:
+    """Stop the player of a thread."""
+    thread.entity.stop()
