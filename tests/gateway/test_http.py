@@ -39,7 +39,7 @@ async def client_of(context: Context, policy: str | Policy) -> AsyncIterator[htt
     async with (
         Node("gateway", context=context) as node,
         Gateway(node, found, port=0) as gateway,
-        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}") as client,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}", trust_env=False) as client,
     ):
         yield client
 
@@ -168,6 +168,26 @@ async def test_a_closed_stream_leaves_no_subscription(
         assert publisher.get_subscription_count() == 1
 
     await robot.graph.until(lambda: publisher.get_subscription_count() == 0)
+
+
+async def test_a_stream_ends_with_the_rights_of_its_caller(
+    aionode_context: Context, robot: Node, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As with the gateway itself: the stream is complete, and the log has no error."""
+    robot.create_publisher(String, "/chatter", 10)
+    async with (
+        Node("gateway", context=aionode_context) as node,
+        Gateway(node, port=0) as gateway,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}", trust_env=False) as client,
+        client.stream("GET", "/topics/chatter", headers={"Accept": "text/event-stream"}) as answer,
+    ):
+        lines = answer.aiter_lines()
+        assert await anext(lines) == ": alive"
+
+        gateway.use_policy(Policy.parse(""))
+
+        assert [line async for line in lines] == [""]
+    assert [record for record in caplog.records if record.levelname == "ERROR"] == []
 
 
 async def test_a_message_is_published(client: httpx.AsyncClient, robot: Node) -> None:
@@ -572,8 +592,11 @@ async def test_metrics_count_what_the_endpoints_count(
     labels = '{node="/robot",entity="publisher",name="/chatter"}'
     assert f"aionode_published_total{labels} 2" in text.splitlines()
     assert 'aionode_gateway_sessions{way="http"} 1' in text.splitlines()
-    samples = [line.rpartition(" ")[0] for line in text.splitlines() if not line.startswith("#")]
-    assert len(samples) == len(set(samples))
+    samples = [line.rpartition(" ") for line in text.splitlines() if not line.startswith("#")]
+    names = [name for name, _, _ in samples]
+    assert len(names) == len(set(names))
+    assert all(float(value) >= 0 for _, _, value in samples)
+    assert 'aionode_node_running{node="/robot"} 1' in text.splitlines()
 
 
 async def test_the_health_is_told_to_everyone(aionode_context: Context) -> None:

@@ -50,7 +50,7 @@ async def robot_and_client(
         Robot(context) as robot,
         Node("gateway", context=context) as node,
         Gateway(node, Policy.parse(policy), port=0) as gateway,
-        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}") as client,
+        httpx.AsyncClient(base_url=f"http://127.0.0.1:{gateway.port}", trust_env=False) as client,
     ):
         yield robot, client
 
