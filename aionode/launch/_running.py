@@ -9,7 +9,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Coroutine, Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import yaml
 
@@ -52,6 +52,11 @@ if TYPE_CHECKING:
     from aionode.system import Member, System
 
 __all__ = ["RunningLaunch", "first_of", "run_service"]
+
+
+NODE_LIMIT_SEC: Final = 30.0
+"""How long after the start of a process its node may take to be in the graph, in seconds. A process
+that ends before that is noticed at once; one that needs long may run on a busy machine."""
 
 
 class RunningLaunch:
@@ -194,7 +199,7 @@ class RunningLaunch:
             restart="always" if step.respawn else "never",
             min_delay_sec=step.respawn_delay_sec or 0.5,
             max_restarts=None if retries < 0 else retries,
-            ready=NodeExists(name) if is_awaited and name is not None else None,
+            ready=NodeExists(name, NODE_LIMIT_SEC) if is_awaited and name is not None else None,
             term_after_sec=step.term_after_sec,
             kill_after_sec=step.kill_after_sec,
         )

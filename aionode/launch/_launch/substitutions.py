@@ -99,10 +99,11 @@ class LaunchConfiguration(Substitution):
         return perform_substitutions(context, self.default)
 
 
-class EnvironmentVariable(Substitution):
-    """The value of an environment variable."""
+class WithDefault(Substitution):
+    """The value that a name has, or a default."""
 
     second_word = "default_value"
+    problem = "'{}' does not exist"
 
     def __init__(
         self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
@@ -110,15 +111,29 @@ class EnvironmentVariable(Substitution):
         self.name = normalize_to_list_of_substitutions(name)
         self.default_value = default_value
 
+    def find(self, context: LaunchContext, name: str) -> str | None:
+        """Return the value, if there is one."""
+        raise NotImplementedError(f"{type(self).__name__}.find")
+
     def perform(self, context: LaunchContext) -> str:
         """Return the value, or the default."""
         name = perform_substitutions(context, self.name)
-        value = context.environment.get(name)
+        value = self.find(context, name)
         if value is not None:
             return value
         if self.default_value is None:
-            raise SubstitutionFailure(f"environment variable '{name}' does not exist")
+            raise SubstitutionFailure(self.problem.format(name))
         return text_of(context, self.default_value)
+
+
+class EnvironmentVariable(WithDefault):
+    """The value of an environment variable."""
+
+    problem = "environment variable '{}' does not exist"
+
+    def find(self, context: LaunchContext, name: str) -> str | None:
+        """Return the value, if there is one."""
+        return context.environment.get(name)
 
 
 class PathJoinSubstitution(Substitution):
@@ -195,31 +210,19 @@ class LocalSubstitution(Substitution):
             raise
 
 
-class ForEachVar(Substitution):
+class ForEachVar(WithDefault):
     """A value of the set that a ``for_each`` of a file is at."""
 
-    second_word = "default_value"
-
-    def __init__(
-        self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
-    ) -> None:
-        self.name = normalize_to_list_of_substitutions(name)
-        self.default_value = default_value
+    problem = "no loop around this has '{}', and there is no default"
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
         """Return under which name `locals` has the value."""
         return f"ForEachVar__{name}"
 
-    def perform(self, context: LaunchContext) -> str:
-        """Return the value, or the default."""
-        name = perform_substitutions(context, self.name)
-        value = context.get_locals_as_dict().get(self.get_local_arg_name(name))
-        if value is not None:
-            return str(value)
-        if self.default_value is None:
-            raise SubstitutionFailure(f"no loop around this has '{name}', and there is no default")
-        return text_of(context, self.default_value)
+    def find(self, context: LaunchContext, name: str) -> str | None:
+        """Return the value, if there is one."""
+        return context.get_locals_as_dict().get(self.get_local_arg_name(name))
 
 
 class ForLoopIndex(ForEachVar):
