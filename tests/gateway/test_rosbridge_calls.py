@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Coroutine
 from typing import Any, TypeVar
 
@@ -61,6 +62,19 @@ async def test_a_call_is_answered(
         "result": True,
         "id": "c1",
     }
+
+
+async def test_an_answer_is_in_fragments_if_the_client_asks(client: RosbridgeClient) -> None:
+    """For this call only: another one is answered whole."""
+    service = "/rosapi/interfaces"
+    client.send("call_service", service=service, id="c1", fragment_size=10_000)
+    client.send("call_service", service=service, id="c2")
+
+    parts, whole = await client.receive(), await client.receive()
+
+    assert {part["id"] for part in parts} == {"c1"}
+    answer = json.loads("".join(part["data"] for part in parts))
+    assert answer["values"] == whole["values"]
 
 
 async def test_the_id_may_be_part_of_the_name(client: RosbridgeClient, node: Node) -> None:

@@ -128,6 +128,21 @@ async def test_the_queue_of_a_client_keeps_the_newest(client: RosbridgeClient, n
     assert [(await client.receive())["msg"]["data"] for _ in range(2)] == [48, 49]
 
 
+async def test_a_client_may_ask_for_fewer_messages(client: RosbridgeClient, node: Node) -> None:
+    """The fastest of its ids decides: ``throttle_rate`` is the least time between two, in ms."""
+    publisher = node.create_publisher(Int32, "/count", 100)
+    client.send("subscribe", topic="/count", id="slow", throttle_rate=10_000_000)
+    await settle()
+    for number in range(5):
+        publisher.publish(Int32(data=number))
+    assert (await client.receive())["msg"] == {"data": 0}
+    client.send("subscribe", topic="/count", id="all")
+    await settle()
+    publisher.publish(Int32(data=7))
+
+    assert (await client.receive())["msg"] == {"data": 7}
+
+
 async def test_a_message_is_in_fragments_only_if_the_client_asks(
     client: RosbridgeClient, node: Node
 ) -> None:
