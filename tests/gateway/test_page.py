@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
 import pytest
 
 from aionode.gateway import Gateway, Policy
-from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.image import compress, from_numpy
+from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
 from aionode.node import Node
 from examples.web_page_robot import POLICY, Robot
 from tests.support.chromium import CHROMIUM, chromium
@@ -190,6 +192,56 @@ async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
         await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
 
         assert commands[-1] == Twist()
+
+
+async def test_a_key_drives_while_it_is_held(context: Context) -> None:
+    """Also with commands that have a stamp, which the gateway sets by the robot's clock."""
+    policy = Policy.default(allow_write=True)
+    stamped: list[TwistStamped] = []
+    async with scene(context, policy) as (page, robot, _, _):
+        robot.create_subscription(TwistStamped, "/base/cmd_vel", stamped.append, 100)
+        await connected(page)
+        await page.write("#teleop .topic", "/base/cmd_vel")
+        await page.until("document.querySelectorAll('#command-topics option').length === 2")
+        await page.click("#teleop .armed")
+        key = {"code": "ArrowUp", "key": "ArrowUp"}
+        await page.do("Input.dispatchKeyEvent", type="keyDown", **key)
+        await until(robot, lambda: len(stamped) >= 3)
+        await page.do("Input.dispatchKeyEvent", type="keyUp", **key)
+        await until(robot, lambda: not stamped[-1].twist.linear.x)
+
+        assert stamped[0].twist.linear.x == 0.3
+        assert stamped[0].header.stamp.sec > 0
+
+
+async def test_pictures_have_their_colours(context: Context) -> None:
+    """Raw in the usual encodings, and compressed."""
+    red = np.full((60, 80, 3), (200, 30, 0), np.uint8)
+    grey = np.full((60, 80), 200, np.uint8)
+    pictures: dict[str, Any] = {
+        "/bgr8": from_numpy(red[:, :, ::-1].copy(), "bgr8"),
+        "/mono8": from_numpy(grey, "mono8"),
+        "/mono16": from_numpy(grey.astype(np.uint16) << 8, "mono16"),
+        "/png": compress(from_numpy(red, "rgb8"), "png"),
+    }
+    async with scene(context) as (page, robot, _, _):
+        outlets = {name: robot.create_publisher(type(pictures[name]), name, 1) for name in pictures}
+
+        def show() -> None:
+            for name, outlet in outlets.items():
+                outlet.publish(pictures[name])
+
+        robot.create_timer(0.1, show)
+        await connected(page)
+        for name, colour in zip(
+            pictures, ["200,30,0", "200,200,200", "200,200,200", "200,30,0"], strict=True
+        ):
+            await page.choose("#camera select", name)
+            await page.until(
+                "document.querySelector('#camera .caption').textContent && document"
+                ".querySelector('#camera canvas').getContext('2d').getImageData(9, 9, 1, 1)"
+                f".data.slice(0, 3).join() === '{colour}'"
+            )
 
 
 async def test_a_second_page_is_told_who_drives(context: Context) -> None:
