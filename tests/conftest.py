@@ -30,11 +30,11 @@ settings.register_profile(
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
     print_blob=True,
-    max_examples=40,
+    max_examples=20,
 )
 settings.load_profile("tests")
-# `.ci/run` and `make stress` use "thorough", `make fuzz` uses "fuzz". Tests that set a number of
-# examples of their own take it as a part of that of the profile.
+# `.ci/run` and `make stress` use "thorough", for the same properties once more; `make fuzz` uses
+# "fuzz". Tests that set a number of examples of their own take it as a part of the profile's.
 settings.register_profile("thorough", settings.get_profile("tests"), max_examples=100)
 settings.register_profile("fuzz", settings.get_profile("tests"), max_examples=2000)
 

@@ -68,7 +68,7 @@ rows = st.lists(
 
 
 @settings(
-    max_examples=25,
+    max_examples=settings().max_examples * 3 // 4,
     phases=(Phase.explicit, Phase.reuse, Phase.generate),  # files are too slow to look for less
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

@@ -189,7 +189,7 @@ def test_no_length_makes_more_memory_than_the_data_could_fill() -> None:
 def peaks_of_damaged(cls: type[Message]) -> tuple[int, int]:
     """Return the peak of memory in bytes with wrong lengths, and that with the right ones."""
     encoded = cdr.encode(cls())
-    words = range(4, min(len(encoded) - 3, 64), 4)
+    words = range(4, min(len(encoded) - 3, 48), 4)
     outcome(cdr.decode, cls, encoded)  # what is made once for a type does not count
 
     tracemalloc.start()
@@ -198,7 +198,7 @@ def peaks_of_damaged(cls: type[Message]) -> tuple[int, int]:
         _, usual = tracemalloc.get_traced_memory()
         tracemalloc.reset_peak()
         for place in words:
-            for claimed in (0xFFFFFFFF, 0x7FFFFFFF, 0x00FFFFFF):
+            for claimed in (0xFFFFFFFF, 0x00FFFFFF):
                 damaged = encoded[:place] + claimed.to_bytes(4, "little") + encoded[place + 4 :]
                 outcome(cdr.decode, cls, damaged)
         _, peak = tracemalloc.get_traced_memory()
