@@ -5,6 +5,7 @@ from __future__ import annotations
 from copy import copy
 from itertools import islice
 from pathlib import Path
+from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
 from typing import TYPE_CHECKING, Any, Final, Self, TypeVar
 
 from aionode._concurrency import run_in_thread
@@ -30,6 +31,9 @@ T = TypeVar("T")
 
 BATCH: Final = 256
 """How many records an async iteration reads at once, in a thread."""
+
+TURN: Final = 64
+"""How many records are read before other threads get their turn."""
 
 BATCH_BYTES: Final = 8 << 20
 """A batch ends with the record that makes it this large."""
@@ -201,12 +205,17 @@ class Records:
                 yield record
 
 
-def next_batch(records: Iterator[T], size_of: Callable[[T], int]) -> list[T]:
-    """Return the next records, as many as one call should read, by their sizes in bytes."""
+def next_batch(records: Iterator[T], size_of: Callable[[T], int], most: int = BATCH) -> list[T]:
+    """Return the next records, as many as one call should read, by their sizes in bytes.
+
+    In between it lets other threads run: the event loop may wait for its turn.
+    """
     batch: list[T] = []
     size = 0
-    for record in islice(records, BATCH):
+    for record in islice(records, most):
         batch.append(record)
+        if not len(batch) % TURN:
+            sleep(0)
         size += size_of(record)
         if size >= BATCH_BYTES:
             break

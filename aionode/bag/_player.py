@@ -36,6 +36,13 @@ if TYPE_CHECKING:
 __all__ = ["Player"]
 
 DEFAULT_DEPTH: Final = 10
+READ_AHEAD: Final = 1024
+"""How many messages are read at once, while those before them are published."""
+
+EARLY_NS: Final = 100_000
+"""A message is published so early, in nanoseconds, rather than that the loop sleeps for it alone:
+waking up takes as long as publishing several messages."""
+
 CLOCK_TOPIC: Final = "/clock"
 
 
@@ -443,7 +450,7 @@ class Player:
                 continue
             steady_ns, bag_ns = self._anchor or (0, 0)
             due_ns = steady_ns + int((time_ns - bag_ns) / self._rate)
-            if self._steady_ns() >= due_ns:
+            if self._steady_ns() >= due_ns - EARLY_NS:
                 return True
             await self._sleep_until(due_ns)
 
@@ -502,6 +509,6 @@ class Player:
 def batch_or_error(records: Iterator[tuple[int, Record]]) -> list[tuple[int, Record]] | BagError:
     """Return the next records, or why they cannot be read."""
     try:
-        return next_batch(records, lambda item: len(item[1].raw))
+        return next_batch(records, lambda item: len(item[1].raw), READ_AHEAD)
     except BagError as error:
         return error

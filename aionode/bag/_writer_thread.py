@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections import deque
+from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from aionode.bag._writer import BagWriter
@@ -29,6 +30,9 @@ SYNC_NS: Final = 250_000_000
 """How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
 the last second, and writing takes time as well, on a busy machine most of it."""
 
+
+TURN: Final = 32
+"""How many rows are taken before other threads get their turn."""
 
 LEAST_WAITING: Final = 16 << 20
 """How many bytes may wait for the thread in snapshot mode, however few are kept."""
@@ -167,7 +171,11 @@ class WriterThread:
 
     def _take_all(self) -> None:
         rows = self._rows
+        taken = 0
         while rows:
+            taken += 1
+            if not taken % TURN:
+                sleep(0)  # the event loop may wait for its turn
             row = rows.popleft()
             if not isinstance(row, Row):
                 row()
