@@ -159,10 +159,17 @@ class Calls:
             raise MessageError("cancel_action_goal.id", problem)
         for goal in goals:
             if goal.handle is not None:
-                await goal.handle.cancel()
+                self._lanes.start(partial(self._cancel, op, goal.handle))
             elif goal.task is not None:
                 goal.is_withdrawn = True
                 goal.task.cancel()
+
+    async def _cancel(self, op: Op, handle: ClientGoalHandle[Any, Any]) -> None:
+        """Cancel a goal; the next op about the action does not wait for the answer."""
+        try:
+            await handle.cancel()
+        except (AionodeError, TimeoutError) as error:
+            self._link.status("error", f"cancel_action_goal: {error}", op)
 
 
 def same_name(name: str, other: str) -> bool:

@@ -16,7 +16,7 @@ from aionode.errors import AionodeError, MessageError
 from aionode.gateway._rosbridge_calls import Calls
 from aionode.gateway._rosbridge_link import Lanes, Link
 from aionode.gateway._rosbridge_offers import Offers
-from aionode.gateway._rosbridge_request import FragmentStore, op_of, text
+from aionode.gateway._rosbridge_request import FragmentStore, full_name, op_of, text
 from aionode.gateway._rosbridge_topics import Topics
 
 if TYPE_CHECKING:
@@ -80,24 +80,25 @@ class Client:
             "action_feedback": offers.action_feedback,
             "action_result": offers.action_result,
             "auth": self._auth,
-            "call_service": calls.call_service,
             "fragment": self._fragment,
-            "send_action_goal": calls.send_action_goal,
             "service_response": offers.service_response,
             "set_level": self._set_level,
         }
-        # In order for each name, but one name does not wait for another.
+        # In order for each name, but one name does not wait for another. Calls and goals begin in
+        # their turn, so that a client finds the service that it has just advertised.
         self._in_order: dict[str, tuple[str, str, Handler]] = {
-            "advertise": ("publish", "topic", topics.advertise),
+            "advertise": ("topic", "topic", topics.advertise),
             "advertise_action": ("serve", "action", offers.advertise_action),
             "advertise_service": ("serve", "service", offers.advertise_service),
-            "cancel_action_goal": ("cancel", "action", calls.cancel_action_goal),
-            "publish": ("publish", "topic", topics.publish),
-            "subscribe": ("subscribe", "topic", topics.subscribe),
-            "unadvertise": ("publish", "topic", topics.unadvertise),
+            "call_service": ("serve", "service", calls.call_service),
+            "cancel_action_goal": ("serve", "action", calls.cancel_action_goal),
+            "publish": ("topic", "topic", topics.publish),
+            "send_action_goal": ("serve", "action", calls.send_action_goal),
+            "subscribe": ("topic", "topic", topics.subscribe),
+            "unadvertise": ("topic", "topic", topics.unadvertise),
             "unadvertise_action": ("serve", "action", offers.unadvertise_action),
             "unadvertise_service": ("serve", "service", offers.unadvertise_service),
-            "unsubscribe": ("subscribe", "topic", topics.unsubscribe),
+            "unsubscribe": ("topic", "topic", topics.unsubscribe),
         }
 
     async def take(self, frame: str | bytes) -> None:
@@ -130,7 +131,8 @@ class Client:
         kind, field, handler = self._in_order[op["op"]]
         if op["op"] == "publish":  # it may wait for an earlier one, and be too old then
             handler = partial(handler, arrived_ns=self._link.session.arrival_ns())
-        await self._lanes.put((kind, text(op, field)), partial(self._attempt, op, handler))
+        name = full_name(text(op, field).partition("#")[0])  # what follows is an id
+        await self._lanes.put((kind, name), partial(self._attempt, op, handler))
 
     async def _attempt(self, op: Op, handler: Handler) -> None:
         """Tell the client if an op fails."""

@@ -33,6 +33,8 @@ CANCEL_SEC: Final = 5.0
 """How long a goal that is canceled waits for the result of the client."""
 
 
+GONE: Final = "the client that served it has gone, or serves it no more"
+
 TURNS: Final = 10
 """How many turns of the loop an error takes at most, from the client to whoever called."""
 
@@ -45,6 +47,7 @@ class Offer:
         name: Its name, as the client has it.
         type_class: Its class.
         served: What the session serves for it.
+        is_closed: Whether it has ended; a request that comes then fails.
         count: How many requests there were.
         pending: The requests that the client has not answered, by id.
         goals: The goals that it executes, by id.
@@ -53,6 +56,7 @@ class Offer:
     name: str
     type_class: Any
     served: Served | None = None
+    is_closed: bool = False
     count: int = 0
     pending: dict[str, asyncio.Future[Op]] = field(default_factory=dict)
     goals: dict[str, ServerGoalHandle[Any, Any, Any]] = field(default_factory=dict)
@@ -63,6 +67,8 @@ class Offer:
         Raises:
             ServiceError: too many are unanswered.
         """
+        if self.is_closed:
+            raise ServiceError(self.name, GONE)
         if len(self.pending) >= MOST_PENDING:
             problem = f"its client in a browser or program leaves {MOST_PENDING} unanswered"
             raise ServiceError(self.name, problem)
@@ -74,9 +80,8 @@ class Offer:
 
     async def close(self) -> None:
         """End the service or action; requests and goals that are open fail."""
-        problem = ServiceError(
-            self.name, "the client that served it has gone, or serves it no more"
-        )
+        self.is_closed = True
+        problem = ServiceError(self.name, GONE)
         for answer in self.pending.values():
             if not answer.done():
                 answer.set_exception(problem)

@@ -204,6 +204,21 @@ async def test_a_request_to_a_client_that_goes_fails(robot: Robot, node: Node, w
             await call
 
 
+async def test_a_client_finds_the_service_that_it_has_just_advertised(
+    client: RosbridgeClient, node: Node
+) -> None:
+    """Its ops about one name are done in order, also if it advertised the name before."""
+    for number in range(3):
+        client.send("advertise_service", service="/sum", type=ADD)
+        client.send("call_service", service="/sum", args=[number, 2], id=f"c{number}")
+        request = await client.receive()
+        assert request["args"]["a"] == number
+        answer = {"service": "/sum", "id": request["id"], "values": {"sum": number + 2}}
+        client.send("service_response", result=True, **answer)
+        assert (await client.receive())["values"] == {"sum": number + 2}
+        client.send("unadvertise_service", service="/sum")
+
+
 async def test_one_client_cannot_answer_for_another(robot: Robot, node: Node) -> None:
     """The ids of requests are easy to guess; each client has its own."""
     caller = node.create_client(AddTwoInts, "/sum")
