@@ -155,6 +155,7 @@ class Member:
         self.clock = SteadyClock()
         self.run: Run  # from `start` on, as a member may be added before there is an event loop
         self._stop = asyncio.Event()
+        self._restarting = False
         self._work: asyncio.Task[None] | None = None
         self._watch: asyncio.Task[None] | None = None
         self._manager: LifecycleManager | None = None
@@ -194,7 +195,12 @@ class Member:
 
     async def restart(self) -> None:
         """Stop it and start it again; return when it is starting."""
-        await self.stop()
+        self._restarting = True
+        try:
+            await self.stop()
+        finally:
+            self._restarting = False
+            self.host.note_change()
         self.restarts += 1
         self.start()
 
@@ -204,8 +210,8 @@ class Member:
         self.host.note_change()
 
     def is_over(self) -> bool:
-        """Return whether it has ended for good, or was stopped."""
-        return self.state in {"stopped", "ended", "failed"}
+        """Return whether it has ended for good, or was stopped, and is not started again now."""
+        return not self._restarting and self.state in {"stopped", "ended", "failed"}
 
     # Supervision
 

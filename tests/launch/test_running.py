@@ -231,6 +231,23 @@ async def test_a_container_of_another_program_is_asked_to_load_its_nodes(robot: 
     ]
 
 
+async def test_a_launch_goes_on_while_its_only_process_is_restarted(robot: Robot) -> None:
+    """On request; the event handlers hear of both runs."""
+    plan = robot.plan(
+        """
+        only := ExecuteProcess(cmd=['sleep', '1000'], name='only'),
+        RegisterEventHandler(OnProcessStart(target_action=only, on_start=[LogInfo(msg='begun')])),
+        """
+    )
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(plan, system))
+        await until(lambda: robot.lines().count("begun") == 1)
+        await system.restart("only-1")
+        await until(lambda: robot.lines().count("begun") == 2 or running.done())
+        assert not running.done()
+        running.cancel()
+
+
 async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
     """With `watch`; also one that has ended, such as one that was saved half written."""
     programs = [Path(robot.files.write(name, "exit 3")) for name in ("ends.sh", "stays.sh")]
