@@ -120,8 +120,10 @@ class ChunkWriter:
             raw,
         )
         self.size += MESSAGE_HEADER.size + size
-        self.start_ns = min(self.start_ns, log_ns)
-        self.end_ns = max(self.end_ns, log_ns)
+        if log_ns < self.start_ns:  # noqa: PLR1730  # for each message: a call takes longer
+            self.start_ns = log_ns
+        if log_ns > self.end_ns:  # noqa: PLR1730  # as above
+            self.end_ns = log_ns
         if size >= LARGE_BYTES:
             self.largest = raw
 

@@ -98,6 +98,7 @@ class BagWriter:
         self.custom_data = dict(custom_data or {})
         self._compression = compression
         self._limits = (max_bytes, max_duration_ns, max_messages)
+        self._has_limits = any(self._limits)
         self._max_files = max_files
         self._on_split = on_split
         self._closed: list[tuple[FilePart, dict[int, int]]] = []
@@ -183,10 +184,10 @@ class BagWriter:
         Raises:
             BagWriteError: the disk is full, or fails.
         """
-        if self._is_full(time_ns):
+        if self._has_limits and self._is_full(time_ns):
             self.split(time_ns)
         sent_ns = time_ns if publish_time_ns is None else publish_time_ns
-        latched = self._latched.get(topic)
+        latched = self._latched.get(topic) if self._latched else None
         if latched is not None:
             latched.append(Record(self.topics[topic], time_ns, sent_ns, sequence, raw))
         channel = self._channels.get(topic)
