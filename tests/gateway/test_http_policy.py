@@ -10,7 +10,7 @@ import httpx
 import pytest
 
 from aionode.context import Context
-from aionode.gateway import Gateway, Policy
+from aionode.gateway import Gateway, Identity, Policy
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist
@@ -176,6 +176,27 @@ async def test_what_needs_a_person_is_refused_without_one(aionode_context: Conte
         answer = await ask(client, "call")
 
     assert (answer.status_code, answer.json()["code"]) == (403, "not_confirmed")
+
+
+async def test_what_a_person_has_said_yes_to_is_done(aionode_context: Context) -> None:
+    """The person is told who asks for what."""
+    asked: list[tuple[str, str, str]] = []
+
+    async def ask_person(identity: Identity, verb: str, name: str, message: object) -> bool:
+        asked.append((identity.name, verb, name))
+        return True
+
+    policy = Policy.parse(f'{WHO}[[allow]]\ncall = "/add"\nask = true\n')
+    async with (
+        Robot(aionode_context),
+        Node("gateway", context=aionode_context) as node,
+        Gateway(node, policy, port=0, ask=ask_person) as gateway,
+        http_client(gateway.port) as client,
+    ):
+        answer = await ask(client, "call")
+
+    assert answer.json() == {"sum": 1}
+    assert asked == [("local", "call", "/add")]
 
 
 COMMANDS = f"""
