@@ -184,6 +184,7 @@ class McapWriter:
         self._metadata: list[MetadataIndex] = []
         self._chunk = ChunkWriter()
         self._offset = 0
+        self._failure: BagWriteError | None = None
         self._fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         try:
             self._write([MAGIC, record_bytes(Header("ros2", LIBRARY))])
@@ -211,7 +212,7 @@ class McapWriter:
         for span in scan.spans:
             for channel, count in span.counts.items():
                 writer.counts[channel] = writer.counts.get(channel, 0) + count
-        writer._offset = scan.end
+        writer._offset, writer._failure = scan.end, None
         writer._fd = os.open(path, os.O_WRONLY | os.O_CLOEXEC)
         os.ftruncate(writer._fd, scan.end)
         os.lseek(writer._fd, scan.end, os.SEEK_SET)
@@ -300,7 +301,8 @@ class McapWriter:
         Raises:
             BagWriteError: the file cannot grow.
         """
-        self.flush()
+        if self._failure is None:
+            self.flush()
         data = record_bytes(Metadata(name=name, metadata=values))
         index = MetadataIndex(offset=self._offset, length=len(data), name=name)
         self._write([data])
@@ -312,6 +314,8 @@ class McapWriter:
         Raises:
             BagWriteError: the file cannot grow; it ends with the chunk before.
         """
+        if self._failure is not None:
+            raise self._failure  # the space that is left is for the summary and the metadata
         chunk = self._chunk
         if not chunk.size:
             return
@@ -472,9 +476,10 @@ class McapWriter:
             with contextlib.suppress(OSError):
                 os.ftruncate(self._fd, self._offset)
                 os.lseek(self._fd, self._offset, os.SEEK_SET)
-            raise BagWriteError(
+            self._failure = BagWriteError(
                 str(self.path), os.strerror(error.errno or 0), is_full=error.errno in FULL
-            ) from error
+            )
+            raise self._failure from error
         self._offset += sum(map(len, pieces))
 
 

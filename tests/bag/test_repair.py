@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import errno
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 from mcap.reader import make_reader
 
 from aionode import bag
+from aionode.bag import _mcap_writer
 from aionode.bag._writer import topic_info
-from aionode.clock import Duration
-from aionode.errors import BagError
+from aionode.clock import Duration, Time
+from aionode.errors import BagError, BagWriteError
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.wire import cdr
 
@@ -148,3 +151,25 @@ def test_a_bag_is_converted_to_another_compression(tmp_path: Path) -> None:
     wanted = bag.Selection(topics=["/numbers"])
     bag.convert([tmp_path / "run"], tmp_path / "plain", selection=wanted, compression="none")
     assert numbers(tmp_path / "plain") == [0, 1, 2]
+
+
+def test_what_did_not_fit_does_not_take_the_space_of_the_metadata(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A full disk has a reserve for the summary and the metadata, and for nothing else."""
+    writes = _mcap_writer.write_all
+    full = [True]
+
+    def write_all(fd: int, pieces: Sequence[bytes]) -> None:
+        if full.pop() if full else False:
+            raise OSError(errno.ENOSPC, "no space")
+        writes(fd, pieces)
+
+    out = bag.BagWriter(tmp_path / "run")
+    out.write_message("/words", String(data="x"), Time(seconds=1))
+    monkeypatch.setattr(_mcap_writer, "write_all", write_all)
+    for end in (out.flush, out.close):
+        with pytest.raises(BagWriteError, match="free some space"):
+            end()
+    with bag.open(tmp_path / "run") as run:
+        assert (run.message_count, run.metadata["message_count"]) == (0, 0)
