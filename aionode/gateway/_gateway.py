@@ -127,6 +127,8 @@ class Gateway(Clients):
         traceback: TracebackType | None,
     ) -> None:
         """Disconnect the clients: the stops of their leases are sent, and their goals cancelled."""
+        if isinstance(error, Exception):
+            kind = error = traceback = None  # the group of tasks would wrap the program's error
         await to_the_end(self._stack.__aexit__(kind, error, traceback))
 
     async def _stop(self, server: Server, serving: asyncio.Task[None]) -> None:

@@ -181,6 +181,13 @@ async def test_a_token_is_taken_from_each_place_and_is_in_no_log(
     assert log.stat().st_mode & 0o777 == 0o600
 
 
+async def test_an_error_of_the_program_comes_out_as_it_is() -> None:
+    """Not in a group: `except` finds it."""
+    with pytest.raises(LookupError, match="of the program"):
+        async with serving():
+            raise LookupError("of the program")
+
+
 async def test_another_interface_needs_a_secret() -> None:
     """A gateway that anybody on the network could use does not start."""
     async with local_context() as context, Node("gateway", context=context) as node:
