@@ -80,6 +80,7 @@ class Program:
         self.stopping = False
         self._steps: list[tuple[str, float]] = []
         self._due = 0.0
+        self._doubted = 0.0
 
     def stop(self) -> None:
         """Begin with the first signal, unless a stop is under way."""
@@ -99,6 +100,20 @@ class Program:
             self.stopping = False
             self.stop()
 
+    def is_left(self, *, strangers: bool) -> bool:
+        """Return whether a process may be left although none was found.
+
+        A process that becomes another program has no environment for a moment, and so no token.
+
+        Args:
+            strangers: Whether there are processes of which it is not known whose they are.
+        """
+        if not strangers:
+            return False
+        now = time.monotonic()
+        self._doubted = self._doubted or now
+        return now < self._doubted + LOOK_S / 2
+
     def advance(self, rest: list[int]) -> None:
         """Send the signal that is due, if any.
 
@@ -108,6 +123,7 @@ class Program:
         Args:
             rest: The processes of the program.
         """
+        self._doubted = 0.0
         now = time.monotonic()
         if now < self._due:
             return
@@ -311,10 +327,14 @@ class Guardian:
         stopping = [one for one in self._programs.values() if one.stopping and not one.gone]
         if not stopping:
             return
-        owned = owned_by(self._programs.values(), descendants(os.getpid()))
+        processes = descendants(os.getpid())
+        owned = owned_by(self._programs.values(), processes)
+        strangers = sum(map(len, owned.values())) < len(processes)
         for program in stopping:
             rest = owned.get(program.number, [])
             if program.ended and not rest:
+                if program.is_left(strangers=strangers):
+                    continue
                 program.gone = True
                 remove_cgroup(program.cgroup)
                 self._forget(program)

@@ -100,6 +100,24 @@ async def test_what_a_program_leaves_behind_ends_with_it(system: System, tmp_pat
         assert not alive(int(orphan.read_text()))
 
 
+async def test_what_becomes_another_program_meanwhile_is_not_lost(
+    system: System, tmp_path: Path
+) -> None:
+    """In that moment it has no environment, and so no token by which to know it."""
+    changing = tmp_path / "changing"
+    changing.write_text(f"#!/bin/sh\n[ $1 = 0 ] || exec {changing} $(($1 - 1))\nexec sleep 999\n")
+    changing.chmod(0o755)
+    orphans = [tmp_path / f"orphan{number}" for number in range(10)]
+    async with system:
+        for orphan in orphans:
+            becomes = f"echo $$ >{orphan}; exec {changing} 300"
+            script = f"(setsid sh -c '{becomes}' &); while ! [ -s {orphan} ]; do :; done"
+            system.process(orphan.name, ["sh", "-c", script], term_after_sec=0.1)
+        await system.wait()
+
+        assert not any(alive(int(orphan.read_text())) for orphan in orphans)
+
+
 async def test_a_program_has_its_environment_and_folder_and_the_domain_of_its_system(
     output: io.StringIO, tmp_path: Path
 ) -> None:
