@@ -154,12 +154,18 @@ async def test_a_subprotocol_of_the_client_is_answered(connect: Connect) -> None
 
 
 async def test_no_token_reaches_a_log(
-    node_factory: Callable[..., Node], tmp_path: Path, caplog: pytest.LogCaptureFixture
+    node_factory: Callable[..., Node],
+    tmp_path: Path,
+    caplog: pytest.LogCaptureFixture,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Not even one that is wrong, and not at the lowest level: logs are kept, and shown around."""
     policy = tmp_path / "policy.toml"
     known = hashlib.sha256(b"hush").hexdigest()
     policy.write_text(f'[[who]]\nname = "me"\ntoken_sha256 = "{known}"\n')
+    for name in ("uvicorn", "uvicorn.error"):  # which another test may have set up as uvicorn does
+        monkeypatch.setattr(logging.getLogger(name), "propagate", True)
+        caplog.set_level(logging.DEBUG, name)
     caplog.set_level(logging.WARNING, "websockets.client")  # the other end, here in one process
     caplog.set_level(logging.DEBUG)  # last, as it also is the level of what is caught
     gateway_node = node_factory("gateway")

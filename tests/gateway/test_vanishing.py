@@ -2,24 +2,30 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 import signal
 import subprocess
 import sys
 import time  # noqa: TID251  # real processes, so real time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 
 import pytest
 
+from aionode.context import Context
 from aionode.gateway import Gateway, Policy
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.node import Node
 from aionode.testing import local_context
+from tests.support.peers import free_ports, isolated_environment
 from tests.support.waiting import until
 
 TTL_SEC = 0.3
+SOON_SEC = 5.0
+"""How late it may be on a busy machine; the cases of `make motion` measure it."""
+
 POLICY = f"""
 [[who]]
 name = "local"
@@ -40,14 +46,24 @@ with connect(sys.argv[1], proxy=None) as socket:
 
 
 @contextmanager
-def driving(port: int) -> Iterator[subprocess.Popen[bytes]]:
-    """Start a client that drives, and end it in whatever state it is then."""
-    client = subprocess.Popen([sys.executable, "-c", DRIVER, f"ws://127.0.0.1:{port}"])
+def ended(process: subprocess.Popen[bytes]) -> Iterator[subprocess.Popen[bytes]]:
+    """End a process, in whatever state it is then."""
     try:
-        yield client
+        yield process
     finally:
-        client.kill()
-        client.wait()
+        process.kill()
+        process.wait()
+
+
+def driving(port: int) -> AbstractContextManager[subprocess.Popen[bytes]]:
+    """Start a client that drives, and end it."""
+    url = f"ws://127.0.0.1:{port}"
+    return ended(subprocess.Popen([sys.executable, "-c", DRIVER, url], stderr=subprocess.DEVNULL))
+
+
+def serving(*options: str) -> AbstractContextManager[subprocess.Popen[bytes]]:
+    """Start a gateway, and end it."""
+    return ended(subprocess.Popen([sys.executable, "-m", "aionode", "gateway", *options]))
 
 
 def waited_sec() -> float:
@@ -82,6 +98,39 @@ async def stops_after(how: signal.Signals, times: int = 1) -> list[float]:
 async def test_the_stop_is_sent_when_a_client_is_killed_or_frozen(how: signal.Signals) -> None:
     """Neither says goodbye; the frozen one even keeps its connection."""
     assert len(await stops_after(how)) == 1
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP])
+async def test_the_wheels_stop_when_the_gateway_is_killed_or_frozen(
+    how: signal.Signals, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Nobody sends a stop then: it is the wheels that notice the silence."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    policy = tmp_path / "policy.toml"
+    policy.write_text(POLICY)
+    (port,) = free_ports(1)
+    options = ["--port", str(port), "--policy", str(policy)]
+    got: list[float] = []
+    silent = asyncio.Event()
+    async with Context() as context, Node("wheels", context=context) as wheels:
+        wheels.create_subscription(
+            Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x), 10,
+            on_silence=silent.set, silence_sec=TTL_SEC,
+        )  # fmt: skip
+        with serving(*options) as it:
+            await until(lambda: wheels.graph.endpoints(name="/gateway/audit"))
+            with driving(port):
+                await until(lambda: len(got) > 2)
+                began, waited = time.monotonic(), waited_sec()
+                os.kill(it.pid, how)
+                await silent.wait()
+                late_sec = time.monotonic() - began - (waited_sec() - waited) - TTL_SEC
+                moved = len(got)
+                await wheels.get_clock().sleep(1.0)
+
+    assert late_sec < SOON_SEC
+    assert len(got) == moved
 
 
 @pytest.mark.stress
