@@ -3,14 +3,11 @@
 Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
 """
 
+from typing import Annotated
+
 from aionode.message import DEFAULT, Message, Sequence, uint64
 
-__all__ = [
-    "MessagesLostEvent",
-    "MessagesLostEventTopicStat",
-    "ReadSplitEvent",
-    "WriteSplitEvent",
-]
+__all__ = ["MessagesLostEvent", "MessagesLostEventTopicStat", "ReadSplitEvent", "WriteSplitEvent"]
 
 
 class MessagesLostEventTopicStat(
@@ -32,7 +29,9 @@ class MessagesLostEvent(Message, typename="rosbag2_interfaces/msg/MessagesLostEv
     """A recorder has lost messages, topic by topic."""
 
     node_name: str = ""
-    messages_lost_statistics: Sequence[MessagesLostEventTopicStat] = DEFAULT
+    messages_lost_statistics: Annotated[
+        list[MessagesLostEventTopicStat], Sequence[MessagesLostEventTopicStat]
+    ] = DEFAULT
 
 
 class ReadSplitEvent(Message, typename="rosbag2_interfaces/msg/ReadSplitEvent"):
