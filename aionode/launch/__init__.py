@@ -234,7 +234,12 @@ async def run_once_ready(system: System, command: str) -> None:
     """Run a command for the shell when all members are ready, and note how it ended."""
     await system.ready()
     process = await asyncio.create_subprocess_shell(command)
-    status = await process.wait()
+    try:
+        status = await process.wait()
+    finally:
+        if process.returncode is None:  # the launch ends, and leaves nothing behind
+            process.kill()
+            await process.wait()
     if status:
         system.log.note(f"{command!r} ended with status {status}")
 

@@ -276,6 +276,20 @@ async def test_a_command_runs_once_all_is_ready(robot: Robot) -> None:
         running.cancel()
 
 
+async def test_the_command_ends_with_the_launch(robot: Robot) -> None:
+    """Nothing is left behind."""
+    mark = robot.files.folder / "ready"
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        plan = robot.plan("ExecuteProcess(cmd=['sleep', '1000']),")
+        command = f"echo $$ > {mark}; exec sleep 1000"
+        running = tasks.create_task(run_plan(plan, system, once_ready=command))
+        await until(lambda: mark.exists() and mark.read_text().strip())
+        running.cancel()
+
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(mark.read_text()), 0)
+
+
 async def test_what_a_process_writes_is_an_event(robot: Robot) -> None:
     """The two streams are known apart, all of it comes before the exit, and the log has it."""
     lines = await robot.run(
