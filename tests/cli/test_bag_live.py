@@ -16,7 +16,7 @@ from click.testing import CliRunner
 
 from aionode import bag
 from aionode.bag._writer import topic_info
-from aionode.cli._main import main
+from aionode.cli._main import main, root
 from aionode.cli._nouns.bag_live import record_command, recorder_options
 from aionode.cli._nouns.bag_yaml import chunk_compression, outputs_in, static_topics_in
 from aionode.interfaces.std_msgs.msg import String
@@ -154,6 +154,6 @@ def test_a_recording_ends_with_a_record_of_what_was_lost(tmp_path: Path) -> None
 
 def test_help_names_every_option() -> None:
     """It is how users find them."""
-    text = CliRunner().invoke(record_command, ["--help"]).output
+    text = CliRunner().invoke(root, ["bag", "record", "--help"]).output
     for option in ("--repeat-transient-local", "--storage-preset-profile", "--static-topics-path"):
         assert option in text
