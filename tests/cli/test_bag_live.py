@@ -38,7 +38,7 @@ def run(tmp_path: Path) -> str:
 
 def settings(*line: str) -> dict[str, Any]:
     """Return the settings of the recorder that a command line makes."""
-    context = record_command.make_context("record", list(line))
+    context = record_command.make_context("record", list(line), help_option_names=["-h", "--help"])
     return recorder_options(context.params)
 
 
