@@ -73,7 +73,8 @@ class Audit:
             more: Further keys.
         """
         now = self._node.get_clock().now().nanoseconds
-        if result != "ok" and self._are_too_many(now // 1_000_000_000):
+        is_refusal = "code" in more
+        if is_refusal and self._are_too_many(now // 1_000_000_000):
             self.lost += 1
             return
         line: dict[str, Any] = {
@@ -81,8 +82,8 @@ class Audit:
             "who": identity.name,
             "address": identity.address,
             "action": action,
-            "name": name,
-            "result": result,
+            "name": name[:MOST_TEXT],
+            "result": result[:MOST_TEXT],
         }
         if arguments is not None:
             line["arguments"] = repr(arguments)[:MOST_TEXT]

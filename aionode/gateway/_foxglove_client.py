@@ -46,6 +46,9 @@ SETTLING_SEC: Final = 0.1
 MOST_MALFORMED: Final = 100
 """How many frames that are no ops a client may send before it is disconnected."""
 
+MOST_CHANNELS: Final = 1000
+"""How many channels a client may advertise, of all topics together."""
+
 ERROR: Final = 2
 """The level of a status, of which 0 is an information and 1 a warning."""
 
@@ -202,6 +205,8 @@ class Client:
         if channel.encoding not in ENCODINGS:
             problem = f"{channel.encoding!r}; use one of {', '.join(ENCODINGS)}"
             raise MessageError(f"advertise {channel.topic}: encoding", problem)
+        if len(self._published) >= MOST_CHANNELS:
+            raise MessageError("advertise", f"there are {MOST_CHANNELS} channels, the limit")
         await self._session.advertise(channel.topic, channel.schema_name)
         self._published[channel.id] = channel
 

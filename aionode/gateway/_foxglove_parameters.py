@@ -23,6 +23,8 @@ EVENTS: Final = "/parameter_events"
 EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 
 MOST_QUESTIONS: Final = 8
+MOST_FOLLOWED: Final = 10_000
+MOST_CHARACTERS: Final = 1000
 """How many nodes are asked at a time."""
 
 
@@ -104,12 +106,16 @@ class Parameters:
         Raises:
             RefusedError: the policy refuses to subscribe to the events of parameters.
         """
-        self._follows_all = self._follows_all or not names
-        self._followed.update(names)
+        if len(self._followed) + len(names) > MOST_FOLLOWED or any(
+            len(name) > MOST_CHARACTERS for name in names
+        ):
+            raise MessageError("subscribeParameterUpdates", "too many names, or too long ones")
         if self._events is None:
             self._events = await self._session.subscribe(
                 EVENTS, EVENT_TYPE, frame=self._frame, key="parameterValues", depth=100
             )
+        self._follows_all = self._follows_all or not names
+        self._followed.update(names)
 
     def unfollow(self, names: Iterable[str]) -> None:
         """Send these no more; without names none."""

@@ -155,6 +155,8 @@ def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> lis
     }
     for node in nodes:
         full_name = node.get_fully_qualified_name()
+        if not sees(full_name, ""):
+            continue
         running.add(int(node.is_running), node=full_name)
         for (kind, name), stats in entities_of(node, sees).items():
             labels = {"node": full_name, "entity": kind, "name": name}

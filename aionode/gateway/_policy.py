@@ -47,6 +47,7 @@ COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
 
 MOST_REMEMBERED: Final = 4096
+MOST_CHARACTERS: Final = 1000
 """How many answers to who may do what are kept."""
 
 
@@ -392,6 +393,8 @@ class Policy(Part, frozen=True):
             type_name: The name of its type; empty for nodes and parameters.
             message: What it sends: a message or a mapping; None to ask before there is one.
         """
+        if len(name) > MOST_CHARACTERS:
+            return Decision(allowed=False, reason="the name is too long", code="too_large")
         rule = first_rule(self, identity, verb, name, type_name)
         if rule is None or rule in self.refuse:
             because = rule.because if rule is not None else ""

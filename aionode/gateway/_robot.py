@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, Final
 
@@ -102,11 +103,13 @@ class Rates:
 
     def allows(self, identity: Identity, rule: Rule, name: str) -> bool:
         """Count one more, and return whether it is within the rate."""
+        if rule.rate_hz == math.inf:
+            return True
         key = (identity.name, id(rule), name)
         bucket = self._buckets.get(key)
         if bucket is None:
             if len(self._buckets) >= MOST_RATES:
-                self._buckets.clear()
+                del self._buckets[next(iter(self._buckets))]  # the oldest, not those of others
             bucket = self._buckets[key] = Bucket(rule.rate_hz, self._now_ns)
         return bucket.wait_sec() <= 0.0
 

@@ -83,7 +83,9 @@ class Calls:
         if service.removeprefix("/") != of_rosapi:
             return await _rosapi.answer(self._session, of_rosapi, args)
         timeout = op.get("timeout")
-        limit = None if number(op, "timeout", -1) == 0 or is_negative(timeout) else timeout
+        if timeout != timeout:  # noqa: PLR0124  # NaN, which would put the loop's timers in disorder
+            raise MessageError("call_service: timeout", "NaN; it needs a number of seconds")
+        limit = None if is_negative(timeout) else number(op, "timeout") or None
         response = await self._session.call(
             service, args, timeout_sec=TIMEOUT_SEC if timeout is None else limit
         )

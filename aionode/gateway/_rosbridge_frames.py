@@ -111,8 +111,13 @@ class Fragmented(str):
         return fragments(self, self.size, self.message_id)
 
 
+MOST_FRAGMENTS: Final = 1000
+"""A frame leaves in no more parts, however small the client wants them."""
+
+
 def fragments(frame: str, size: int, message_id: str) -> list[str]:
     """Return a frame in parts of `size` characters, if it is longer."""
+    size = max(size, -(-len(frame) // MOST_FRAGMENTS))
     if len(frame) <= size:
         return [frame]
     parts = [frame[at : at + size] for at in range(0, len(frame), size)]

@@ -125,5 +125,6 @@ class Lanes:
             while waiting:
                 await waiting[0]()
                 waiting.popleft()
+                await checkpoint()  # the work of many small ops in one burst
         finally:
             del self._lanes[lane]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -42,6 +43,9 @@ DEFAULT_DEPTH: Final = 100
 """How many messages wait for a client that names no ``queue_length``, per topic."""
 
 PUBLISHER_DEPTH: Final = 100
+
+MOST_IDS: Final = 64
+"""How many ids a client may use for one topic."""
 
 LATCH_SEC: Final = 1.0
 """How long a message is kept for subscriptions that appear after it, unless it is latched: a client
@@ -130,7 +134,9 @@ class Topics:
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type"), "msg")
         await self._advertise(topic, type_name, op)
-        self._advertised.setdefault(topic, set()).add(optional_text(op, "id"))
+        ids, message_id = self._advertised.setdefault(topic, set()), optional_text(op, "id")
+        refuse_more(ids, message_id, "advertise.id")
+        ids.add(message_id)
 
     async def unadvertise(self, op: Op) -> None:
         """Take back what was advertised with one id, or with all."""
@@ -172,7 +178,9 @@ class Topics:
         that publishers keep for late ones, as the first did.
         """
         topic, message_id = text(op, "topic"), optional_text(op, "id")
-        wishes = self._wishes.get(topic, {}) | {message_id: wish_of(op)}
+        earlier = self._wishes.get(topic, {})
+        refuse_more(earlier, message_id, "subscribe.id")
+        wishes = earlier | {message_id: wish_of(op)}
         await self._open(topic, combined(list(wishes.values())))
         self._wishes[topic] = wishes
 
@@ -237,6 +245,16 @@ def frame_of(compression: str, topic: str, received: Received) -> str | bytes:
 def plain_frame(topic: str, received: Received) -> str:
     """Return a message as JSON."""
     return json_frame(topic, received.message)
+
+
+def refuse_more(ids: Collection[str | None], message_id: str | None, field: str) -> None:
+    """Refuse one more id of a topic beyond `MOST_IDS`.
+
+    Raises:
+        MessageError: there are as many.
+    """
+    if message_id not in ids and len(ids) >= MOST_IDS:
+        raise MessageError(field, f"the topic has {MOST_IDS} ids already, which is the limit")
 
 
 def publisher_profile(op: Op) -> QoSProfile:

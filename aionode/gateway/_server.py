@@ -50,6 +50,7 @@ class HttpConnection(H11Protocol):
     """
 
     _handshake: asyncio.TimerHandle | None = None
+    _is_upgraded = False
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin the time within which a request has to arrive."""
@@ -65,8 +66,24 @@ class HttpConnection(H11Protocol):
 
     def _give_up(self) -> None:
         scope: object = self.scope  # None until the head of a request has arrived
-        if scope is None:
+        cycle: Any = self.cycle  # None until the first request
+        is_answered = cycle is not None and cycle.response_complete
+        if not self._is_upgraded and (scope is None or is_answered):
             self.transport.abort()
+
+    def on_response_complete(self) -> None:
+        """Begin the time within which the next request has to arrive whole."""
+        super().on_response_complete()
+        if self._handshake is not None:
+            self._handshake.cancel()
+        if not self.transport.is_closing():
+            limits = self.config.policy().limits  # type: ignore[attr-defined]  # a ServerConfig
+            self._handshake = self.loop.call_later(limits.handshake_sec, self._give_up)
+
+    def handle_websocket_upgrade(self, event: Any) -> None:
+        """Let a WebSocket have all the time."""
+        self._is_upgraded = True
+        super().handle_websocket_upgrade(event)
 
     def lose_after(self, seconds: float) -> None:
         """Have a client whose host acknowledges nothing for some seconds count as disconnected.
@@ -138,11 +155,12 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         """Return how long nothing has arrived, in seconds."""
         return self.loop.time() - self._heard_s
 
-    def ping(self, answered: Callable[[], None] = lambda: None) -> None:
+    def ping(self, answered: Callable[[], None] | None = None) -> None:
         """Ask the client for a sign, and call `answered` with it: what comes then is no older."""
         self._pings += 1
         payload = b"aionode%d" % self._pings
-        self._on_pong = (payload, answered)
+        if answered is not None:  # a mere sign of life takes no answer from who waits for one
+            self._on_pong = (payload, answered)
         if not (self.close_sent or self.transport.is_closing()):
             self.conn.send_ping(payload)
             self.transport.write(b"".join(self.conn.data_to_send()))

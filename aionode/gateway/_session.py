@@ -14,6 +14,8 @@ from aionode.gateway._session_topics import SessionTopics
 if TYPE_CHECKING:
     from types import TracebackType
 
+    from aionode.gateway._policy import Verb
+
 __all__ = ["Session"]
 
 
@@ -38,6 +40,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self._served: dict[str, Served] = {}
+        self._served_types: dict[str, str] = {}
 
     async def __aenter__(self) -> Self:
         """Begin; nothing of the robot is touched yet."""
@@ -87,7 +90,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         cls = await self.service_class(type_name)
         await self._allow("advertise", service, cls.__ros_type__, None)
         made = serve(self._robot.node, service, cls, answer, self._limits.calls)
-        return self._keep(service, made)
+        return self._keep(service, cls.__ros_type__, made)
 
     async def serve_action(
         self, action: str, type_name: str, execute: Callable[[Any], Awaitable[Any]]
@@ -110,14 +113,15 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         cls = await self.action_class(type_name)
         await self._allow("advertise", action, cls.__ros_type__, None)
         made = serve_action(self._robot.node, action, cls, execute, self._limits.calls)
-        return self._keep(action, made)
+        return self._keep(action, cls.__ros_type__, made)
 
-    def _keep(self, name: str, served: Served) -> Served:
+    def _keep(self, name: str, type_name: str, served: Served) -> Served:
         """Keep what the client offers until it leaves; an older one of the same name ends."""
         older = self._served.pop(name, None)
         if older is not None:
             older.close()
         self._served[name] = served
+        self._served_types[name] = type_name
         served.on_close = lambda: (
             self._served.pop(name, None) if (self._served.get(name) is served) else None
         )
@@ -127,7 +131,11 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
     # A policy that has changed
 
     def check_again(self) -> None:
-        """End what the policy, which was read again, does not allow any more."""
+        """End what the policy, which was read again, does not allow any more.
+
+        A subscription ends by itself. For a goal, a publisher, or a service that it offers, the
+        client is disconnected, which ends them as they end with any client.
+        """
         policy = self._robot.policy
         if self.credentials is not None:
             try:
@@ -140,3 +148,11 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
                 self.identity, "subscribe", subscribed.topic, subscribed.type_name
             ).allowed:
                 subscribed.close()
+        held: list[tuple[Verb, str, str]] = [("goal", *goal) for goal in self._goals.values()]
+        held += [
+            ("publish", topic, publisher.msg_type.__ros_type__)
+            for topic, (publisher, _) in self._published.items()
+        ]
+        held += [("advertise", name, self._served_types[name]) for name in self._served]
+        if not all(policy.decide(self.identity, *each).allowed for each in held):
+            self.ended.set()  # which cancels its goals, and sends the stops of its leases

@@ -12,7 +12,7 @@ from aionode.gateway._outbox import Outbox
 from aionode.gateway._rosbridge_values import from_json
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
 from aionode.message import Message
-from aionode.names import is_hidden
+from aionode.names import is_hidden, validate_full_topic_name
 from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
@@ -133,6 +133,19 @@ class SessionBase:
         decision = self.decide("parameter", name, "", {"value": parameter.value})
         changed = decision.message["value"]
         return parameter if changed == parameter.value else Parameter(parameter.name, value=changed)
+
+    def node_name(self, node: str) -> str:
+        """Return the full name of a node, by which the policy knows it.
+
+        Raises:
+            InvalidTopicNameException: it is no full name (a ValueError).
+            RefusedError: the gateway's node would ask another node instead.
+        """
+        service = f"{node}/set_parameters"
+        validate_full_topic_name(service)
+        if self._robot.node.resolve_service_name(service) != service:
+            raise RefusedError(node, "the gateway's node remaps its services")
+        return node
 
     def _one_more(self) -> Busy:
         self._count_one("calls and goals", self._busy, self._limits.calls)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import AsyncIterator, Mapping
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.errors import AionodeError, ServiceError
+from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway._session_base import SessionBase, as_message
 from aionode.message import Message
 from aionode.parameter import Parameter
@@ -28,7 +29,7 @@ class SessionCalls(SessionBase):
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
-        self._goals: dict[Any, None] = {}
+        self._goals: dict[Any, tuple[str, str]] = {}  # the action of each, and its type
 
     # Services
 
@@ -106,9 +107,23 @@ class SessionCalls(SessionBase):
         for suffix in SETTERS:
             if service.endswith(suffix):
                 node = service.removesuffix(suffix)
-                for parameter in getattr(request, "parameters", ()):
-                    self._decide_parameter(node, Parameter.from_parameter_msg(parameter))
+                for message in getattr(request, "parameters", ()):
+                    self._decide_in_a_call(node, message)
         return "call", service
+
+    def _decide_in_a_call(self, node: str, message: Any) -> None:
+        """Refuse a parameter in a call if the rule for it does more than to allow it."""
+        try:
+            given = Parameter.from_parameter_msg(message)
+        except (RuntimeError, ValueError) as error:
+            raise MessageError("parameters", str(error)) from error
+        rule = self.decide("parameter", f"{node}:{given.name}", "").rule
+        has_more = rule is not None and (rule.ask or rule.rate_hz < math.inf)
+        if has_more or self._decide_parameter(node, given) is not given:
+            raise self._refused(
+                "parameter", f"{node}:{given.name}", "set it as a parameter, not by a call",
+                "not_allowed",
+            )  # fmt: skip
 
     # Actions
 
@@ -158,7 +173,7 @@ class SessionCalls(SessionBase):
                 if not await client.wait_for_server(SERVER_SEC):
                     raise ServiceError(action, "there is no action server")
                 handle = await client.send_goal(decision.message)
-                self._goals[handle] = None
+                self._goals[handle] = (action, cls.__ros_type__)
                 try:
                     async with handle:
                         result = "left"

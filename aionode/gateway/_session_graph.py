@@ -107,6 +107,7 @@ class SessionGraph(SessionBase):
             RefusedError: the client may not see the node.
             ServiceError: the node offers no parameters.
         """
+        node = self.node_name(node)
         if not self._sees(node, []):
             raise self._refused("see", node, "the policy does not show it", "not_allowed")
         client = AsyncParameterClient(self._robot.node, node)
@@ -139,6 +140,7 @@ class SessionGraph(SessionBase):
             ServiceError: the node offers no parameters.
             TimeoutError: the node has not answered within 5 s.
         """
+        node = self.node_name(node)
         for name in names:
             if not self._sees(f"{node}:{name}", []):
                 raise self._refused(
@@ -165,6 +167,7 @@ class SessionGraph(SessionBase):
             ServiceError: the node offers no parameters.
             TimeoutError: the node has not answered within 5 s.
         """
+        node = self.node_name(node)
         changed = []
         for name, value in values.items():
             parameter = self._decide_parameter(node, Parameter(name, value=value))

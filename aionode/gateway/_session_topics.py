@@ -67,7 +67,7 @@ class Subscribed:
             self._due_ns = received.time_ns + self._min_period_ns
         try:
             frame = self._frame(received)
-        except AionodeError:
+        except (AionodeError, ValueError):
             self.failed += 1
             return
         if frame is not None:
@@ -236,5 +236,7 @@ class SessionTopics(SessionBase):
 
     def _give_back(self, topic: str) -> None:
         found = self._published.pop(topic, None)
+        self._counts.pop(topic, None)
+        self._noted_ns.pop(topic, None)
         if found is not None:
             found[1]()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 from collections.abc import Coroutine
 from typing import Any, TypeVar
 
@@ -94,6 +95,7 @@ async def test_the_id_may_be_part_of_the_name(client: RosbridgeClient, node: Nod
         ({"service": "/add", "args": {"a": "x"}}, "AddTwoInts_Request.a"),
         ({"service": "/add", "args": "x"}, "call_service.args"),
         ({"service": "/add", "timeout": "soon"}, "call_service.timeout"),
+        ({"service": "/add", "timeout": math.nan}, "call_service: timeout"),
         ({"service": "/rosapi/nothing"}, "no such service"),
         ({"service": "a b"}, "a b"),
     ],

@@ -320,6 +320,18 @@ async def test_a_page_may_subscribe_to_very_many_topics_at_once(
     assert len([topic for topic in topics if topic.startswith("/t")]) == 60
 
 
+@pytest.mark.parametrize("op", ["advertise", "subscribe"])
+async def test_the_ids_of_one_topic_are_bounded(client: RosbridgeClient, op: str) -> None:
+    """A client could have the gateway keep, and combine, any number of them."""
+    for number in range(65):
+        client.send(op, topic="/a", type="std_msgs/String", id=str(number))
+
+    refused = await client.receive()
+
+    assert (refused["op"], refused["id"]) == ("status", "64")
+    assert "64 ids" in refused["msg"]
+
+
 @pytest.mark.parametrize("op", ["advertise", "publish"])
 async def test_a_publisher_of_another_type_is_refused(
     client: RosbridgeClient, node: Node, op: str

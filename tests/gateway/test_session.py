@@ -192,6 +192,31 @@ async def test_parameters_have_no_way_in_by_their_services(furnished: Bench) -> 
     assert furnished.node.get_parameter("speed").value == 1.0
 
 
+@pytest.mark.parametrize(
+    "more", ["ask = true", "rate_hz = 1000", "fields = { value = { max = 5, outside = 'clamp' } }"]
+)
+async def test_a_call_gets_around_no_part_of_a_rule_for_parameters(
+    furnished: Bench, more: str
+) -> None:
+    """A person's yes, a rate and a limit are for those who set it as a parameter."""
+    speed = Parameter("speed", value=9.0).to_parameter_msg()
+    furnished.allow(f"[[allow]]\ncall = '/**'\n[[allow]]\nparameter = '/**'\n{more}")
+    async with furnished.session() as session:
+        with pytest.raises(RefusedError):
+            await session.call("/robot/set_parameters", SetParameters.Request(parameters=[speed]))
+    assert furnished.node.get_parameter("speed").value == 1.0
+
+
+@pytest.mark.parametrize("node", ["/r{ns}obot", "/{node}", "robot", "~", "/robot/"])
+async def test_the_name_of_a_node_is_taken_as_it_is(furnished: Bench, node: str) -> None:
+    """What is expanded later would be another node than the one that the policy was asked about."""
+    async with furnished.session() as session:
+        with pytest.raises(ValueError, match="name"):
+            await session.set_parameters(node, {"speed": 2.0})
+        with pytest.raises(ValueError, match="name"):
+            await session.parameter_names(node)
+
+
 async def test_a_relative_name_is_judged_by_what_it_stands_for(bench: Bench) -> None:
     """Clients of rosbridge leave out the slash."""
     bench.allow("[[allow]]\npublish = '/x'")
@@ -486,6 +511,20 @@ async def test_a_policy_that_is_read_again_ends_what_it_does_not_allow(bench: Be
         assert not session.ended.is_set()
 
 
+@pytest.mark.parametrize("does", [publish, serve, serve_action])
+async def test_a_client_that_may_not_publish_or_offer_any_more_is_disconnected(
+    bench: Bench, does: Callable[[Session], Awaitable[None]]
+) -> None:
+    """Which ends its leases, goals and services."""
+    async with bench.session() as session:
+        await does(session)
+        session.check_again()
+        assert not session.ended.is_set()
+        bench.allow("[[allow]]\nsubscribe = '/**'")
+        session.check_again()
+        assert session.ended.is_set()
+
+
 # The audit log
 
 
@@ -513,5 +552,9 @@ async def test_a_client_that_asks_in_vain_does_not_fill_the_audit_log(bench: Ben
             with pytest.raises(RefusedError):
                 await publish(session)
     await settle()
-    assert len(bench.lines) == 20
+    for result in ("succeeded", "failed: why"):
+        bench.robot.audit.note(session.identity, "goal", "/" + "x" * 9999, result=result)
+    await settle()
+    assert len(bench.lines) == 22  # what was done is written all the same, in short
     assert bench.robot.audit.lost == 80
+    assert len(json.dumps(bench.lines[-1])) < 5000
