@@ -77,8 +77,8 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         Args:
             service: The name of the service.
             type_name: The name of its type.
-            answer: Called with each request; returns the response message. What it raises, the
-                caller of the service gets as a ServiceError.
+            answer: Called with each request; returns the response message. An exception of it
+                reaches the caller of the service as a ServiceError.
 
         Raises:
             RefusedError: the policy does not allow it, or there are too many.
@@ -101,7 +101,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             action: The name of the action.
             type_name: The name of its type.
             execute: Called with the `ServerGoalHandle` of each goal; returns the result message.
-                It is cancelled when the goal is. What it raises aborts the goal with that text.
+                It is cancelled when the goal is. An exception aborts the goal with its text.
 
         Raises:
             RefusedError: the policy does not allow it, or there are too many.
