@@ -64,7 +64,7 @@ def transport_of(environ: Mapping[str, str]) -> str:
 
 
 def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
-    """Return whether to reach processes of this host over the ipc transport.
+    """Return whether to reach processes of this host over the link transport.
 
     Raises:
         ConfigurationError: the environment variable is neither on nor off.
@@ -76,7 +76,7 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
         asked = LINK_SETTINGS[word]
     if not asked:
         return False
-    from aionode.transport.ipc import available
+    from aionode.transport.link import available
 
     return available()
 
@@ -242,9 +242,9 @@ class Context:
             bridges = BridgeTransport(zenoh.session_state, self.time_base)
             if not wants_link(link, os.environ):
                 return (LocalTransport(), zenoh, bridges)
-            from aionode.transport.ipc import IpcTransport
+            from aionode.transport.link import LinkTransport
 
-            linked = IpcTransport(
+            linked = LinkTransport(
                 self.participant,
                 self.network.domain_id,
                 zenoh,

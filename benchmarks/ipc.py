@@ -337,7 +337,7 @@ def main() -> None:
         **tables,
         "targets": checked,
     }
-    (RESULTS / ("ipc_spinning.json" if args.spin_us else "ipc.json")).write_text(
+    (RESULTS / ("link_spinning.json" if args.spin_us else "ipc.json")).write_text(
         json.dumps(result, indent=1) + "\n"
     )
 

@@ -87,7 +87,7 @@ BOTH_LOOPS = (
     "tests/test_context.py",
     "tests/test_runner.py",
     "tests/testing/",
-    "tests/transport/ipc/",
+    "tests/transport/link/",
     "tests/transport/rcl/",
     "tests/transport/test_",
     "tests/transport/zenoh/test_services.py",

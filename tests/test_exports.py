@@ -62,7 +62,7 @@ PRESETS = [
 WITHIN = {
     "aionode.rclpy": {"provide"},  # for the distribution aionode-rclpy
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
-    "aionode.transport.ipc": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts
+    "aionode.transport.link": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts
 }
 """Names that only aionode itself uses, although their module is public."""
 FAMILIES = {"AionodeError", "ParameterException"}  # bases: caught, never raised

@@ -25,8 +25,8 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import qos_profile_sensor_data
 from aionode.transport._content_filters import ContentFilters
 from aionode.transport.base import Reader, Registration, Requester, Serve, Transport, Writer
-from aionode.transport.ipc import IpcTransport
-from aionode.transport.ipc import _protocol as protocol
+from aionode.transport.link import LinkTransport
+from aionode.transport.link import _protocol as protocol
 from aionode.transport.local import LocalTransport
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._session_state import SessionState
@@ -252,9 +252,9 @@ async def linked_nodes() -> AsyncIterator[tuple[Node, Node]]:
         made._transports = (LocalTransport(), link_of(made))  # noqa: SLF001  # with its own id
         return made
 
-    def link_of(made: Context) -> IpcTransport:
+    def link_of(made: Context) -> LinkTransport:
         introducer = Introducer(made.participant)
-        return IpcTransport(made.participant, 0, introducer, introducer)
+        return LinkTransport(made.participant, 0, introducer, introducer)
 
     async with context() as a, context() as b, node_of("a", a) as one, node_of("b", b) as two:
         yield one, two

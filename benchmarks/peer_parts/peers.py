@@ -510,7 +510,7 @@ MODULES: Final = {
     "bare queue, in process": "asyncio",
     "aionode, in process": "aionode.node",
     "bare Unix socket": "asyncio",
-    "aionode, link": "aionode.node, aionode.transport.zenoh, aionode.transport.ipc",
+    "aionode, link": "aionode.node, aionode.transport.zenoh, aionode.transport.link",
     "aionode, Zenoh": "aionode.node, aionode.transport.zenoh",
     "zenoh-python": "zenoh",
     "asyncio-for-robotics": "asyncio_for_robotics.zenoh",

@@ -16,7 +16,7 @@ from click.shell_completion import BashComplete
 from aionode.cli import main
 from aionode.cli._main import root
 from aionode.cli._support import completion
-from aionode.transport.ipc import available
+from aionode.transport.link import available
 from tests.support.peers import isolated_environment
 
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")

@@ -83,7 +83,7 @@ class GivenUp(logging.Handler):
     def __init__(self) -> None:
         super().__init__()
         self.count = 0
-        logging.getLogger("aionode.transport.ipc").addHandler(self)
+        logging.getLogger("aionode.transport.link").addHandler(self)
 
     def emit(self, record: logging.LogRecord) -> None:
         """Add the number in a warning."""

@@ -28,9 +28,9 @@ from aionode.idl import define
 from aionode.message import Message, type_name
 from aionode.names import resolve
 from aionode.transport._zenoh_config import network_from
-from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._listener import Advertisement
-from aionode.transport.ipc._protocol import BufferRef, Frame, FrameParser, Kind
+from aionode.transport.link import _protocol as protocol
+from aionode.transport.link._listener import Advertisement
+from aionode.transport.link._protocol import BufferRef, Frame, FrameParser, Kind
 from aionode.transport.zenoh._services import error_payload, parse_error
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr

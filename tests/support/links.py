@@ -15,10 +15,10 @@ import pytest
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.transport.ipc import _manager as manager
-from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._publisher import IpcWriter
-from aionode.transport.ipc._transport import IpcTransport
+from aionode.transport.link import _manager as manager
+from aionode.transport.link._connection import Connection
+from aionode.transport.link._publisher import LinkWriter
+from aionode.transport.link._transport import LinkTransport
 from tests.support.peers import quiet_node
 
 __all__ = [
@@ -54,10 +54,10 @@ class Two(NamedTuple):
     b: Node
 
 
-def transport_of(node: Node) -> IpcTransport:
+def transport_of(node: Node) -> LinkTransport:
     """Return the transport under test."""
     transport = node.context.transports[1]
-    assert isinstance(transport, IpcTransport)
+    assert isinstance(transport, LinkTransport)
     return transport
 
 
@@ -83,10 +83,10 @@ def link_of(node: Node) -> Connection:
     return connection
 
 
-def writer_of(publisher: Any) -> IpcWriter:
+def writer_of(publisher: Any) -> LinkWriter:
     """Return the publisher's end of both routes."""
     writer = publisher._writers[1]
-    assert isinstance(writer, IpcWriter)
+    assert isinstance(writer, LinkWriter)
     return writer
 
 

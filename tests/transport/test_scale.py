@@ -14,8 +14,8 @@ from aionode.graph import EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.testing import local_context
-from aionode.transport.ipc._manager import LinkManager
-from aionode.transport.ipc._protocol import Open, Opened, Switched
+from aionode.transport.link._manager import LinkManager
+from aionode.transport.link._protocol import Open, Opened, Switched
 from tests.support.links import Counting, folder, link_of, manager_of, transport_of, two_nodes
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     import pytest
 
     from aionode.graph import EndpointInfo
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._protocol import Control
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._protocol import Control
 
 __all__ = ["folder"]  # a fixture
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.node import Node
     from aionode.transport.base import LinkStatus
-    from aionode.transport.ipc import Advertisement
+    from aionode.transport.link import Advertisement
 
 __all__ = ["Pair", "link_findings", "pairs_of", "query_links"]
 
@@ -90,7 +90,7 @@ async def query_links(node: Node) -> LinkStatus:
 
 def pairs_of(endpoints: Iterable[EndpointInfo], links: LinkStatus) -> list[Pair]:
     """Return each publisher with each subscription that it reaches, sorted by topic."""
-    from aionode.transport.ipc import Advertisement
+    from aionode.transport.link import Advertisement
 
     endpoints = sorted(endpoints, key=lambda end: (end.name, end.node.fully_qualified_name))
     advertisements = {
@@ -119,7 +119,7 @@ def route(
     advertisements: Mapping[str, Advertisement],
 ) -> tuple[str, str]:
     """Return the route of messages, and the reason if it is Zenoh."""
-    from aionode.transport.ipc import can_link
+    from aionode.transport.link import can_link
 
     if publisher.node.bridged or subscription.node.bridged:
         return "bridge", ""

@@ -15,8 +15,8 @@ import pytest
 
 from aionode.errors import FrameError
 from aionode.interfaces.sensor_msgs.msg import Image
-from aionode.transport.ipc import _shared_memory as shared_memory
-from aionode.transport.ipc._shared_memory import BufferMappings, BufferPool, SharedBuffer
+from aionode.transport.link import _shared_memory as shared_memory
+from aionode.transport.link._shared_memory import BufferMappings, BufferPool, SharedBuffer
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -403,8 +403,8 @@ def test_only_the_sender_can_write_to_sealed_memory(pool: BufferPool) -> None:
 def test_numpy_is_imported_with_the_first_payload_only() -> None:
     """It takes a tenth of a second, and a process of small messages never needs it."""
     code = (
-        "import sys, aionode.transport.ipc._shared_memory as m; m.BufferPool(); m.BufferMappings();"
+        "import sys, aionode.transport.link._shared_memory as m; m.BufferPool(); m.BufferMappings()"
     )
-    code += "assert 'numpy' not in sys.modules"
+    code += "; assert 'numpy' not in sys.modules"
 
     subprocess.run([sys.executable, "-c", code], check=True)

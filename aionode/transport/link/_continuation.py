@@ -14,10 +14,10 @@ from hmac import compare_digest
 from typing import TYPE_CHECKING, Final
 
 from aionode.errors import FrameError
-from aionode.transport.ipc._protocol import FrameParser, Kind
+from aionode.transport.link._protocol import FrameParser, Kind
 
 if TYPE_CHECKING:
-    from aionode.transport.ipc._protocol import Frame
+    from aionode.transport.link._protocol import Frame
 
 __all__ = ["STOPS", "LinkSecrets", "seal"]
 

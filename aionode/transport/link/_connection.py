@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Final, Protocol
 from aionode._concurrency import SLICE_NS
 from aionode.clock import perf_ns
 from aionode.errors import FrameError
-from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._protocol import (
+from aionode.transport.link import _protocol as protocol
+from aionode.transport.link._protocol import (
     HEADER_SIZE,
     SECRET_SIZE,
     BufferRef,
@@ -26,17 +26,17 @@ from aionode.transport.ipc._protocol import (
     Release,
     decode_control,
 )
-from aionode.transport.ipc._receivers import ReceiverTable
-from aionode.transport.ipc._shared_memory import SHARED_FROM, BufferMappings
+from aionode.transport.link._receivers import ReceiverTable
+from aionode.transport.link._shared_memory import SHARED_FROM, BufferMappings
 
 if TYPE_CHECKING:
-    from aionode.transport.ipc._protocol import Control, Frame
-    from aionode.transport.ipc._shared_memory import BufferPool, SharedBuffer
+    from aionode.transport.link._protocol import Control, Frame
+    from aionode.transport.link._shared_memory import BufferPool, SharedBuffer
     from aionode.wire.cdr import Data
 
 __all__ = ["Connection", "LinkOwner", "WriteWaiter", "flush"]
 
-logger = logging.getLogger("aionode.transport.ipc")
+logger = logging.getLogger("aionode.transport.link")
 
 READ_BYTES: Final = 1 << 15
 """How much is read before the rest of the loop runs: a few hundred small messages."""

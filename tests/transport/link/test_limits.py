@@ -15,21 +15,21 @@ from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.errors import TransportError
 from aionode.interfaces.sensor_msgs.msg import Image
-from aionode.transport.ipc import (
+from aionode.transport.link import (
     _connection,
 )
-from aionode.transport.ipc import (
+from aionode.transport.link import (
     _connection as connection,
 )
-from aionode.transport.ipc import (
+from aionode.transport.link import (
     _manager as manager,
 )
-from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc import (
+from aionode.transport.link import _protocol as protocol
+from aionode.transport.link import (
     _send_queue as send_queue,
 )
-from aionode.transport.ipc._listener import Advertisement, Listener, socket_folder
-from aionode.transport.ipc._protocol import Kind
+from aionode.transport.link._listener import Advertisement, Listener, socket_folder
+from aionode.transport.link._protocol import Kind
 from tests.support.links import Counting, folder, link_of, manager_of, two_nodes, writer_of
 from tests.support.peers import DOMAIN_ID, quiet_node
 from tests.support.waiting import until

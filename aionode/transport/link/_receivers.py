@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
-    from aionode.transport.ipc._protocol import Handler
+    from aionode.transport.link._protocol import Handler
     from aionode.wire.cdr import Data
 
 __all__ = ["Receiver", "ReceiverTable"]

@@ -67,6 +67,6 @@ async def test_a_linked_subscription_is_made_of_few_objects() -> None:
         "CallbackRunner": 1,
         "SubscriptionReader": 1,
         "LocalReader": 1,
-        "IpcReader": 1,
+        "LinkReader": 1,
         "RemotePublisher": 1,
     }

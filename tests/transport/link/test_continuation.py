@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode.errors import FrameError
-from aionode.transport.ipc import _continuation as continuation
-from aionode.transport.ipc._continuation import STOPS, LinkSecrets, seal
-from aionode.transport.ipc._protocol import Kind, RetransmitDone, pack
+from aionode.transport.link import _continuation as continuation
+from aionode.transport.link._continuation import STOPS, LinkSecrets, seal
+from aionode.transport.link._protocol import Kind, RetransmitDone, pack
 
 SECRET = bytes(range(16))
 GID = b"g" * 16

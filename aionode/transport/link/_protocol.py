@@ -1,4 +1,4 @@
-"""The ipc protocol without a socket: frames on a byte stream.
+"""The link protocol without a socket: frames on a byte stream.
 
 Each frame is a header of 40 bytes, little endian, and a payload::
 

@@ -1,4 +1,4 @@
-"""Calls within the ipc transport go down, and so do the types that its modules name."""
+"""Calls within the link transport go down, and so do the types that its modules name."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 import grimp
 
 ROOT = Path(__file__).parents[3]
-PACKAGE = "aionode.transport.ipc"
+PACKAGE = "aionode.transport.link"
 
 
 def layers() -> list[str]:
-    """Return the layers of the ipc contract in pyproject.toml, from the top."""
+    """Return the layers of the link contract in pyproject.toml, from the top."""
     config: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())
     for contract in config["tool"]["importlinter"]["contracts"]:
         if contract.get("containers") == [PACKAGE]:

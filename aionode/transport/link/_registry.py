@@ -9,9 +9,9 @@ if TYPE_CHECKING:
 
     from aionode.graph import EndpointInfo, EndpointKind
     from aionode.transport._content_filters import ContentFilters
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._send_queue import IpcSendQueue
-    from aionode.transport.ipc._shared_memory import BufferPool
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._send_queue import LinkSendQueue
+    from aionode.transport.link._shared_memory import BufferPool
 
 __all__ = ["LinkRegistry", "PeerDirectory"]
 
@@ -56,7 +56,7 @@ class LinkRegistry(Protocol):
         It may be lost.
         """
 
-    def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
+    def keep(self, gid: bytes, send_queue: LinkSendQueue) -> None:
         """Keep what a destroyed publisher left to be sent or confirmed."""
 
     def remove(self, gid: bytes) -> None:

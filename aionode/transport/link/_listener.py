@@ -17,7 +17,7 @@ import xxhash
 
 from aionode.clock import S_TO_NS, MachineTime
 from aionode.errors import TransportError
-from aionode.transport.ipc._protocol import VERSION
+from aionode.transport.link._protocol import VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,34 +5,34 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from aionode.transport.base import StopSender
-from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._protocol import BufferRef, Kind
-from aionode.transport.ipc._send_queue import DATA
-from aionode.transport.ipc._shared_memory import SHARED_FROM
+from aionode.transport.link import _protocol as protocol
+from aionode.transport.link._protocol import BufferRef, Kind
+from aionode.transport.link._send_queue import DATA
+from aionode.transport.link._shared_memory import SHARED_FROM
 
 if TYPE_CHECKING:
     from aionode.transport.base import Writer
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._registry import LinkRegistry
-    from aionode.transport.ipc._send_queue import IpcSendQueue
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._registry import LinkRegistry
+    from aionode.transport.link._send_queue import LinkSendQueue
 
-__all__ = ["IpcStop"]
+__all__ = ["LinkStop"]
 
 
 class StoppableWriter(Protocol):
-    """What the stop of a lease needs of an `IpcWriter`, with that one's meaning."""
+    """What the stop of a lease needs of an `LinkWriter`, with that one's meaning."""
 
     _registry: LinkRegistry
     _gid: bytes
     _zenoh: Writer
-    _send_queues: dict[Connection, IpcSendQueue]
+    _send_queues: dict[Connection, LinkSendQueue]
     _sequence: int
     _needs_zenoh: bool
 
     def update(self) -> bool: ...
 
 
-class IpcStop(StopSender):
+class LinkStop(StopSender):
     """Sends the stop of a lease over each route that a subscription needs.
 
     Only the loop may write to the socket of a link, which may hold a part of a frame. Past the loop

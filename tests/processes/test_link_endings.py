@@ -16,15 +16,15 @@ import pytest
 
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.ipc._subscription import Route
+from aionode.transport.link._subscription import Route
 from tests.support.links import folder, manager_of
 from tests.support.peers import KEEP_ALL, quiet_node
 
 __all__ = ["folder"]  # a fixture
 
-pytestmark = pytest.mark.one_loop  # tests/transport/ipc reads ended links on both loops
+pytestmark = pytest.mark.one_loop  # tests/transport/link reads ended links on both loops
 
-ENDER = Path(__file__).with_name("ipc_ender.py")
+ENDER = Path(__file__).with_name("link_ender.py")
 
 
 @contextmanager
@@ -46,7 +46,7 @@ def publishing_process(count: int, end: str) -> Iterator[subprocess.Popen[bytes]
 async def until_linked(node: Any, subscription: Any) -> None:
     """Receive until the numbers come over the link."""
     while not any(
-        remote_publisher.route is Route.IPC
+        remote_publisher.route is Route.LINK
         for reader in manager_of(node).readers.values()
         for remote_publisher in reader.remote_publishers.values()
     ):

@@ -28,8 +28,8 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from aionode.errors import DecodeError, FrameError
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import NOT_INLINE_NS, ReaderRegistration, Registration
-from aionode.transport.ipc._endpoint_table import can_link
-from aionode.transport.ipc._protocol import Close, Credit, Kind, Open, Switched
+from aionode.transport.link._endpoint_table import can_link
+from aionode.transport.link._protocol import Close, Credit, Kind, Open, Switched
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -38,12 +38,12 @@ if TYPE_CHECKING:
     from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
     from aionode.transport.base import Reader
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._protocol import Frame
-    from aionode.transport.ipc._registry import LinkRegistry
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._protocol import Frame
+    from aionode.transport.link._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["IpcReader", "RemotePublisher", "Route", "heard_from"]
+__all__ = ["LinkReader", "RemotePublisher", "Route", "heard_from"]
 
 WINDOW: Final = 1_000
 """How many messages a KEEP_ALL subscription lets a publisher send ahead of what it has used."""
@@ -83,14 +83,14 @@ class Route(enum.Enum):
     ZENOH = "zenoh"
     BOTH = "both"
     """From Zenoh; what arrives over the link is held."""
-    IPC = "link"
+    LINK = "link"
     """From the link; what Zenoh delivers ahead of it is held."""
     RECOVERING = "recovering"
     """The next number from any route; what is further ahead is held."""
 
 
 ZENOH: Final = Route.ZENOH
-IPC: Final = Route.IPC
+LINK: Final = Route.LINK
 
 
 class Message(NamedTuple):
@@ -147,7 +147,7 @@ class RemotePublisher:
         "route",
     )
 
-    def __init__(self, registry: LinkRegistry, reader: IpcReader, publisher: EndpointInfo) -> None:
+    def __init__(self, registry: LinkRegistry, reader: LinkReader, publisher: EndpointInfo) -> None:
         self.gid = reader.gid
         self.reader = reader
         self.publisher = publisher.gid
@@ -230,7 +230,7 @@ class RemotePublisher:
         """
         self._linked = False
         self._gone = True
-        if self.route is IPC or (self.route is Route.BOTH and self.last >= self._base):
+        if self.route is LINK or (self.route is Route.BOTH and self.last >= self._base):
             self._release()
             self.route = ZENOH
         self._confirm()  # or the publisher's process keeps the messages until the link ends
@@ -263,7 +263,7 @@ class RemotePublisher:
         except DecodeError as error:
             self.reader.reject(error)
             return
-        if self.route is IPC and not self._held and not self._keep_all:
+        if self.route is LINK and not self._held and not self._keep_all:
             if sequence > self.last:
                 self.last = sequence
                 self._deliver(msg, self.publisher, sequence, source_ns, inline_deadline_ns)
@@ -288,7 +288,7 @@ class RemotePublisher:
             self._hold(message)
             if len(self._held) >= self._max_held:
                 self._switch()
-        elif before is IPC and message.sequence > self.last:
+        elif before is LINK and message.sequence > self.last:
             self._next(message, inline_deadline_ns)
             held = self._held
             while held and (oldest := next(iter(held))) <= self.last:
@@ -305,7 +305,7 @@ class RemotePublisher:
         self._progressed = True
         number = message.sequence
         if number > self.last:
-            if before is IPC or before is Route.RECOVERING:
+            if before is LINK or before is Route.RECOVERING:
                 self._hold(message)
                 self._recover()
             else:
@@ -370,7 +370,7 @@ class RemotePublisher:
         self._owed = 0
         if self.route is Route.BOTH or self.route is Route.RECOVERING:
             self._release()
-            self.route = IPC if self._linked else ZENOH
+            self.route = LINK if self._linked else ZENOH
 
     def _next(self, message: Message, inline_deadline_ns: int = NOT_INLINE_NS) -> None:
         self.last = message.sequence
@@ -386,7 +386,7 @@ class RemotePublisher:
 
     def _hold(self, message: Message) -> None:
         self._held[message.sequence] = message
-        if self.route is IPC and len(self._held) > MAX_HELD:
+        if self.route is LINK and len(self._held) > MAX_HELD:
             # A copy: it comes over the link as well, or is retransmitted if that ends.
             del self._held[next(iter(self._held))]
         elif len(self._held) > MAX_RECOVERING:
@@ -399,7 +399,7 @@ class RemotePublisher:
             self._next(self._held.pop(self.last + 1))
         if not self._owed and self.last >= self._base:
             if self._linked:  # what is held came over Zenoh, ahead of the link
-                self.route = IPC
+                self.route = LINK
             else:
                 self._finish()
 
@@ -414,7 +414,7 @@ class RemotePublisher:
 
     def _route_changed(self) -> None:
         """Tell the publisher that the link is taken, or wait for what is missing."""
-        if self.route is IPC and self.connection is not None:
+        if self.route is LINK and self.connection is not None:
             self.connection.send(Switched(self.publisher, self.gid))
             self._confirm()
         elif self.waits:
@@ -460,7 +460,7 @@ class RemotePublisher:
     def _confirm(self) -> None:
         """Confirm what was received, unless it is held or a KEEP_ALL queue has no room for it."""
         if self._used and self.connection is not None and not self.full:
-            if self.route is not IPC and not self._gone:
+            if self.route is not LINK and not self._gone:
                 return
             used, self._used, self._used_bytes = self._used, 0, 0
             # What is held when the publisher has gone is here, and is not asked for again.
@@ -468,7 +468,7 @@ class RemotePublisher:
             self.connection.send(Credit(self.publisher, self.gid, used, last))
 
 
-class IpcReader(ReaderRegistration):
+class LinkReader(ReaderRegistration):
     """A subscription that hears some of its publishers over links.
 
     Zenoh delivers to this in place of the subscription's own reader, so that what arrives over both
@@ -578,7 +578,7 @@ class IpcReader(ReaderRegistration):
 
 
 def heard_from(
-    readers: Iterable[IpcReader], participant: str
+    readers: Iterable[LinkReader], participant: str
 ) -> dict[bytes, list[RemotePublisher]]:
     """Return what subscriptions keep about the publishers of a context, by their gids."""
     heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)

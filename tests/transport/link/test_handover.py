@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile
-from aionode.transport.ipc._protocol import Frame, Kind
-from aionode.transport.ipc._subscription import MAX_HELD, IpcReader, RemotePublisher, Route
+from aionode.transport.link._protocol import Frame, Kind
+from aionode.transport.link._subscription import MAX_HELD, LinkReader, RemotePublisher, Route
 from tests.support.peers import KEEP_ALL
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class HandedOver:
         profile = QoSProfile(depth=10) if profile is None else profile
         self.registry = Registry()
         links = cast(Any, self.registry)
-        self.reader = IpcReader(links, Int32, Local(got, profile))
+        self.reader = LinkReader(links, Int32, Local(got, profile))
         publisher = endpoint(EndpointKind.PUBLISHER, GID, profile)
         self.remote = RemotePublisher(links, self.reader, publisher)
         self.reader.remote_publishers[GID] = self.remote
@@ -168,11 +168,11 @@ class Stream:
 
     def lose_unannounced(self) -> None:
         """Publish over the link alone, if the subscription has taken it."""
-        self._needs_zenoh = not (self._linked and self.handover.route is Route.IPC)
+        self._needs_zenoh = not (self._linked and self.handover.route is Route.LINK)
 
     def confirm(self) -> None:
         """Confirm what has been delivered."""
-        if self._linked and self.handover.route is Route.IPC:
+        if self._linked and self.handover.route is Route.LINK:
             self._unconfirmed = [n for n in self._unconfirmed if n > self.handover.last]
 
     def take_zenoh(self) -> None:
@@ -266,7 +266,7 @@ def test_a_publisher_that_has_sent_nothing_is_taken_from_the_link_at_once() -> N
     """Its first message has no reason to wait for Zenoh."""
     handover = HandedOver([])
     handover.opened(0)
-    assert handover.route is Route.IPC
+    assert handover.route is Route.LINK
 
 
 def test_the_last_message_before_the_link_shows_that_nothing_is_under_way() -> None:
@@ -275,7 +275,7 @@ def test_the_last_message_before_the_link_shows_that_nothing_is_under_way() -> N
     handover = HandedOver(got)
     handover.opened(5)
     handover.from_zenoh(5)
-    assert handover.route is Route.IPC
+    assert handover.route is Route.LINK
     handover.from_link(6)
     assert got == [5, 6]
 
@@ -288,7 +288,7 @@ def test_what_is_held_comes_out_when_zenoh_stays_silent() -> None:
     handover.from_link(6)
     assert handover.waits
     handover.stop_waiting()
-    assert handover.route is Route.IPC
+    assert handover.route is Route.LINK
     handover.from_zenoh(6)
     assert got == [6]
 
@@ -302,7 +302,7 @@ def test_the_number_of_held_messages_is_bounded() -> None:
         handover.from_link(number)
     assert got == []
     handover.from_link(MAX_HELD + 1)
-    assert handover.route is Route.IPC
+    assert handover.route is Route.LINK
     assert got == list(range(2, MAX_HELD + 2))
 
 
@@ -424,7 +424,7 @@ def linked(got: list[int]) -> HandedOver:
     handover = HandedOver(got)
     handover.opened(0)
     handover.from_link(1)
-    assert handover.route is Route.IPC
+    assert handover.route is Route.LINK
     return handover
 
 
@@ -468,7 +468,7 @@ def test_a_stop_ends_a_hand_over() -> None:
     handover.from_zenoh(2)
     handover.from_link(6)
     assert got == [1, 5, 6]
-    assert handover.route is Route.IPC
+    assert handover.route is Route.LINK
 
 
 def test_a_stop_that_comes_while_a_broken_link_is_made_good_is_taken() -> None:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 from aionode.graph import EndpointKind
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 from aionode.transport.base import Writer
-from aionode.transport.ipc import _protocol as protocol
-from aionode.transport.ipc._protocol import MESSAGE_HEADER, MESSAGE_MARK, BufferRef, Gone, Opened
-from aionode.transport.ipc._send_queue import DATA, IpcSendQueue, RemoteSubscription
-from aionode.transport.ipc._shared_memory import SHARED_FROM
-from aionode.transport.ipc._stop import IpcStop
+from aionode.transport.link import _protocol as protocol
+from aionode.transport.link._protocol import MESSAGE_HEADER, MESSAGE_MARK, BufferRef, Gone, Opened
+from aionode.transport.link._send_queue import DATA, LinkSendQueue, RemoteSubscription
+from aionode.transport.link._shared_memory import SHARED_FROM
+from aionode.transport.link._stop import LinkStop
 from aionode.wire import cdr
 from aionode.wire.cdr._layout import has_views
 
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 
     from aionode.graph import EndpointInfo
     from aionode.transport.base import StopSender
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._protocol import Credit, Open
-    from aionode.transport.ipc._registry import LinkRegistry
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._protocol import Credit, Open
+    from aionode.transport.link._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["IpcWriter"]
+__all__ = ["LinkWriter"]
 
 
-class IpcWriter(Writer):
+class LinkWriter(Writer):
     """A publisher, which decides the route of each message.
 
     Args:
@@ -50,11 +50,11 @@ class IpcWriter(Writer):
         self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
         # One for each process that has asked for the messages; removed when its last subscription
         # leaves, when the link ends, or when the publisher is destroyed.
-        self._send_queues: dict[Connection, IpcSendQueue] = {}
+        self._send_queues: dict[Connection, LinkSendQueue] = {}
         # The number of the last message, as far as it was encoded for anything.
         self._sequence = 0
         # The same, for `write`: one of them may prove to be broken meanwhile, and is removed.
-        self._targets: tuple[IpcSendQueue, ...] = ()
+        self._targets: tuple[LinkSendQueue, ...] = ()
         # What encodes messages that go to every process in one piece; None if there is no link, or
         # if `_write_otherwise` has to see to them.
         self._encode: Callable[[Any], bytes] | None = None
@@ -157,7 +157,7 @@ class IpcWriter(Writer):
         parts: Sequence[Data],
         sequence: int,
         source_ns: int,
-        targets: tuple[IpcSendQueue, ...],
+        targets: tuple[LinkSendQueue, ...],
     ) -> None:
         """Send what may be large: if it is, in one shared buffer for all links."""
         pool = self._registry.pool
@@ -174,7 +174,7 @@ class IpcWriter(Writer):
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
         """Return what sends the stop of a lease."""
         payload = cdr.encoder(self._msg_type)(stop)
-        return IpcStop(self, payload, self._zenoh.prepare_stop(stop, is_last))
+        return LinkStop(self, payload, self._zenoh.prepare_stop(stop, is_last))
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions of other contexts: over Zenoh, which reaches all of them."""
@@ -211,7 +211,7 @@ class IpcWriter(Writer):
         """Send to a subscription from the next message on."""
         send_queue = self._send_queues.get(connection)
         if send_queue is None:
-            send_queue = IpcSendQueue(
+            send_queue = LinkSendQueue(
                 self._gid,
                 self.endpoint.name,
                 connection,
@@ -264,7 +264,7 @@ class IpcWriter(Writer):
         self.reconsider()
         return iter(()) if send_queue is None else send_queue.unacked()
 
-    def _forget(self, connection: Connection) -> IpcSendQueue | None:
+    def _forget(self, connection: Connection) -> LinkSendQueue | None:
         send_queue = self._send_queues.pop(connection, None)
         if send_queue is not None:
             self._dropped += send_queue.dropped

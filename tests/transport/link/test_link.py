@@ -25,12 +25,12 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile, ReliabilityPolicy
-from aionode.transport.ipc import _listener as listener
-from aionode.transport.ipc import _subscription as subscription
-from aionode.transport.ipc._continuation import seal
-from aionode.transport.ipc._protocol import RetransmitDone
-from aionode.transport.ipc._subscription import IpcReader
-from aionode.transport.ipc._transport import IpcTransport
+from aionode.transport.link import _listener as listener
+from aionode.transport.link import _subscription as subscription
+from aionode.transport.link._continuation import seal
+from aionode.transport.link._protocol import RetransmitDone
+from aionode.transport.link._subscription import LinkReader
+from aionode.transport.link._transport import LinkTransport
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
 from aionode.wire.typehash import type_hash
@@ -72,7 +72,7 @@ async def test_a_message_that_is_held_has_the_time_of_its_arrival(
 ) -> None:
     """Not that of its release: rates that are measured would be those of the hand-over."""
     monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.05)
-    monkeypatch.setattr(IpcReader, "deliver", lambda *_: None)  # Zenoh brings nothing
+    monkeypatch.setattr(LinkReader, "deliver", lambda *_: None)  # Zenoh brings nothing
     async with two_nodes() as nodes:
         infos: list[MessageInfo] = []
         publisher = nodes.a.create_publisher(Int32, "n", 100)
@@ -315,7 +315,7 @@ async def test_without_a_folder_of_its_own_everything_goes_over_zenoh(
 ) -> None:
     """A warning says what is wrong with it."""
     spoil(folder)
-    with caplog.at_level(logging.WARNING, "aionode.transport.ipc"):
+    with caplog.at_level(logging.WARNING, "aionode.transport.link"):
         async with two_nodes() as nodes:
             numbers = Counting(nodes)
             await numbers.publisher.wait_for_subscribers()
@@ -604,7 +604,7 @@ def test_a_link_is_used_unless_it_was_switched_off(monkeypatch: pytest.MonkeyPat
     """The variable decides, unless the argument is given."""
 
     def linked(**options: Any) -> bool:
-        return isinstance(Context(**options).transports[1], IpcTransport)
+        return isinstance(Context(**options).transports[1], LinkTransport)
 
     monkeypatch.delenv("AIONODE_LINK", raising=False)
     assert linked()

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 from aionode.clock import perf_ns
 from aionode.errors import TransportError
 from aionode.transport.base import Transport
-from aionode.transport.ipc._endpoint_table import can_link
-from aionode.transport.ipc._listener import Advertisement, Listener, socket_folder
-from aionode.transport.ipc._manager import LinkManager
-from aionode.transport.ipc._publisher import IpcWriter
-from aionode.transport.ipc._service import IpcRequester, IpcServer
-from aionode.transport.ipc._subscription import IpcReader
+from aionode.transport.link._endpoint_table import can_link
+from aionode.transport.link._listener import Advertisement, Listener, socket_folder
+from aionode.transport.link._manager import LinkManager
+from aionode.transport.link._publisher import LinkWriter
+from aionode.transport.link._service import LinkRequester, LinkServer
+from aionode.transport.link._subscription import LinkReader
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
         Serve,
         Writer,
     )
-    from aionode.transport.ipc._registry import PeerDirectory
+    from aionode.transport.link._registry import PeerDirectory
 
-__all__ = ["IpcTransport"]
+__all__ = ["LinkTransport"]
 
-logger = logging.getLogger("aionode.transport.ipc")
+logger = logging.getLogger("aionode.transport.link")
 
 LOOK_S = 0.001
 """How often `send_rest` looks whether a full socket takes more, in seconds."""
 
 
-class IpcTransport(Transport):
+class LinkTransport(Transport):
     """Uses links to processes of this user on this host, and another transport for all others.
 
     Args:
@@ -69,7 +69,7 @@ class IpcTransport(Transport):
         self._graph: Graph | None = None
 
     def __repr__(self) -> str:
-        return f"<IpcTransport links={len(self.manager.links)} beside {self.zenoh!r}>"
+        return f"<LinkTransport links={len(self.manager.links)} beside {self.zenoh!r}>"
 
     @property
     def other_domains(self) -> frozenset[int]:
@@ -153,7 +153,7 @@ class IpcTransport(Transport):
         zenoh = self.zenoh.create_writer(endpoint, msg_type)
         if not can_link(endpoint):
             return zenoh
-        writer = IpcWriter(self.manager, endpoint, msg_type, zenoh)
+        writer = LinkWriter(self.manager, endpoint, msg_type, zenoh)
         self.manager.writers.add(endpoint.gid, writer)
         return writer
 
@@ -164,21 +164,21 @@ class IpcTransport(Transport):
         if cdr.has_buffers(msg_type):
             # Shared memory is read through it: the first message would wait for the import.
             import numpy  # noqa: F401, ICN001
-        ipc_reader = IpcReader(self.manager, msg_type, reader)
-        ipc_reader.attach(self.zenoh.create_reader(endpoint, msg_type, ipc_reader))
-        self.manager.readers.add(ipc_reader.gid, ipc_reader)
-        return ipc_reader
+        link_reader = LinkReader(self.manager, msg_type, reader)
+        link_reader.attach(self.zenoh.create_reader(endpoint, msg_type, link_reader))
+        self.manager.readers.add(link_reader.gid, link_reader)
+        return link_reader
 
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
         """Announce a server."""
         zenoh = self.zenoh.create_server(endpoint, srv_type, serve)
-        server = IpcServer(self.manager, endpoint, srv_type, serve, zenoh)
+        server = LinkServer(self.manager, endpoint, srv_type, serve, zenoh)
         self.manager.servers[endpoint.gid] = server
         return server
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
         """Announce a client."""
         zenoh = self.zenoh.create_requester(endpoint, srv_type)
-        requester = IpcRequester(self.manager, endpoint, srv_type, zenoh)
+        requester = LinkRequester(self.manager, endpoint, srv_type, zenoh)
         self.manager.requesters[endpoint.gid] = requester
         return requester

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Final
 from aionode.clock import MachineTime
 from aionode.errors import FrameError, TransportError
 from aionode.graph import EndpointKind
-from aionode.transport.ipc._connection import Connection, flush
-from aionode.transport.ipc._continuation import STOPS, LinkSecrets, seal
-from aionode.transport.ipc._endpoint_table import EndpointTable, communicate_by_link
-from aionode.transport.ipc._protocol import (
+from aionode.transport.link._connection import Connection, flush
+from aionode.transport.link._continuation import STOPS, LinkSecrets, seal
+from aionode.transport.link._endpoint_table import EndpointTable, communicate_by_link
+from aionode.transport.link._protocol import (
     VERSION,
     Cancel,
     Close,
@@ -28,25 +28,25 @@ from aionode.transport.ipc._protocol import (
     RetransmitDone,
     Switched,
 )
-from aionode.transport.ipc._publisher import IpcWriter
-from aionode.transport.ipc._service import REPLY, IpcRequester, IpcServer, server_of
-from aionode.transport.ipc._shared_memory import BufferPool
-from aionode.transport.ipc._subscription import IpcReader, heard_from
+from aionode.transport.link._publisher import LinkWriter
+from aionode.transport.link._service import REPLY, LinkRequester, LinkServer, server_of
+from aionode.transport.link._shared_memory import BufferPool
+from aionode.transport.link._subscription import LinkReader, heard_from
 
 if TYPE_CHECKING:
     import socket
     from collections.abc import Callable, Sequence
 
     from aionode.graph import EndpointInfo, Graph
-    from aionode.transport.ipc._listener import Advertisement, Listener
-    from aionode.transport.ipc._protocol import Control, Frame
-    from aionode.transport.ipc._registry import PeerDirectory
-    from aionode.transport.ipc._send_queue import IpcSendQueue
+    from aionode.transport.link._listener import Advertisement, Listener
+    from aionode.transport.link._protocol import Control, Frame
+    from aionode.transport.link._registry import PeerDirectory
+    from aionode.transport.link._send_queue import LinkSendQueue
     from aionode.wire.cdr import Data
 
 __all__ = ["LinkManager"]
 
-logger = logging.getLogger("aionode.transport.ipc")
+logger = logging.getLogger("aionode.transport.link")
 
 AGAIN_S: Final = 1.0
 """How long after a link has ended, or could not be opened, another attempt is made.
@@ -101,10 +101,10 @@ class LinkManager:
         self.pool = BufferPool()
         self.now_ns = MachineTime().system_ns
         # Endpoints: added when they are created, removed when they are closed.
-        self.writers: EndpointTable[IpcWriter] = EndpointTable()
-        self.readers: EndpointTable[IpcReader] = EndpointTable()
-        self.servers: dict[bytes, IpcServer] = {}
-        self.requesters: dict[bytes, IpcRequester] = {}
+        self.writers: EndpointTable[LinkWriter] = EndpointTable()
+        self.readers: EndpointTable[LinkReader] = EndpointTable()
+        self.servers: dict[bytes, LinkServer] = {}
+        self.requesters: dict[bytes, LinkRequester] = {}
         self._peer_directory = peer_directory
         self.content_filters = peer_directory.content_filters
         self._secrets = LinkSecrets()
@@ -126,7 +126,7 @@ class LinkManager:
         self._failures: dict[str, int] = {}
         # By connection and publisher: what a destroyed publisher left to be sent or confirmed,
         # until everything is confirmed or the connection is closed.
-        self._ending: dict[tuple[Connection, bytes], IpcSendQueue] = {}
+        self._ending: dict[tuple[Connection, bytes], LinkSendQueue] = {}
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
         self._malformed = 0  # retransmitted batches that could not be read
@@ -226,7 +226,7 @@ class LinkManager:
         """Send a STOP to the other end of a link over Zenoh; from any thread. It may be lost."""
         self._peer_directory.post(connection.participant, seal(connection.secret, STOPS, stop))
 
-    def keep(self, gid: bytes, send_queue: IpcSendQueue) -> None:
+    def keep(self, gid: bytes, send_queue: LinkSendQueue) -> None:
         """Keep what a destroyed publisher left to be sent or confirmed."""
         if not send_queue.settled:
             self._ending[send_queue.connection, gid] = send_queue
@@ -291,7 +291,7 @@ class LinkManager:
         self,
         participant: str,
         endpoint: EndpointInfo | None = None,
-        readers: Sequence[IpcReader] = (),
+        readers: Sequence[LinkReader] = (),
     ) -> None:
         """Use the link to a context, or dial it if it has a match.
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.ipc import _subscription as subscriptions
+from aionode.transport.link import _subscription as subscriptions
 from tests.support.links import folder, manager_of, two_nodes, writer_of
 from tests.support.peers import KEEP_ALL
 

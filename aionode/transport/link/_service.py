@@ -12,18 +12,18 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.errors import DecodeError, FrameError, ServiceError
 from aionode.graph import EndpointKind
 from aionode.transport.base import Registration, Request, Requester, SampleInfo
-from aionode.transport.ipc._protocol import GID_SIZE, Cancel, End, Fail, Kind
+from aionode.transport.link._protocol import GID_SIZE, Cancel, End, Fail, Kind
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.transport.base import Call, ReplyTo, Serve
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._protocol import Frame
-    from aionode.transport.ipc._registry import LinkRegistry
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._protocol import Frame
+    from aionode.transport.link._registry import LinkRegistry
     from aionode.wire.cdr import Data
 
-__all__ = ["REPLY", "IpcCall", "IpcRequester", "IpcServer", "server_of"]
+__all__ = ["REPLY", "LinkCall", "LinkRequester", "LinkServer", "server_of"]
 
 REQUEST: Final = int(Kind.REQUEST)
 REPLY: Final = int(Kind.REPLY)
@@ -32,7 +32,7 @@ REPLY: Final = int(Kind.REPLY)
 # Servers
 
 
-class IpcServer(Registration):
+class LinkServer(Registration):
     """A server.
 
     Args:
@@ -57,7 +57,7 @@ class IpcServer(Registration):
     ) -> None:
         self.endpoint = endpoint
         self.srv_type = srv_type
-        self.unanswered: dict[tuple[bytes, int], IpcRequest] = {}
+        self.unanswered: dict[tuple[bytes, int], LinkRequest] = {}
         self.now_ns = registry.now_ns
         self._serve = serve
         self._zenoh = zenoh
@@ -73,7 +73,7 @@ class IpcServer(Registration):
         except DecodeError as error:
             connection.send(Fail(frame.gid, frame.sequence, "DecodeError", str(error)))
             return
-        request = IpcRequest(message, sample_info, connection, self)
+        request = LinkRequest(message, sample_info, connection, self)
         self.unanswered[sample_info.gid, sample_info.sequence] = request
         self._serve(request, inline_deadline_ns)
 
@@ -98,11 +98,11 @@ class IpcServer(Registration):
             request.drop()
 
 
-class IpcRequest(Request):
+class LinkRequest(Request):
     """One request that came over a link."""
 
     def __init__(
-        self, message: Any, sample_info: SampleInfo, connection: Connection, server: IpcServer
+        self, message: Any, sample_info: SampleInfo, connection: Connection, server: LinkServer
     ) -> None:
         self.message = message
         self.sample_info = sample_info
@@ -139,7 +139,7 @@ class IpcRequest(Request):
 # Clients
 
 
-class IpcRequester(Requester):
+class LinkRequester(Requester):
     """A client.
 
     Args:
@@ -159,7 +159,7 @@ class IpcRequester(Requester):
         self.endpoint = endpoint
         self.srv_type = srv_type
         self.over_zenoh: set[ForwardedCall] = set()
-        self.calls: dict[int, IpcCall] = {}
+        self.calls: dict[int, LinkCall] = {}
         self._registry = registry
         self._zenoh = zenoh
         # The registry's `changes` when the next three were computed; -1 to compute them again: how
@@ -197,7 +197,7 @@ class IpcRequester(Requester):
         if not self._reaches_all or self.over_zenoh:
             return ForwardedCall(self, request, sample_info, reply_to, self._zenoh)
         payload = cdr.encode(request)
-        call = IpcCall(self, sample_info.sequence, reply_to)
+        call = LinkCall(self, sample_info.sequence, reply_to)
         for server, route in self._connections:
             call.routes.append(route)
             route.send_data(
@@ -218,11 +218,11 @@ class IpcRequester(Requester):
 
 
 class ForwardedCall:
-    """A call over Zenoh, which is in `IpcRequester.over_zenoh` while it is under way."""
+    """A call over Zenoh, which is in `LinkRequester.over_zenoh` while it is under way."""
 
     def __init__(
         self,
-        requester: IpcRequester,
+        requester: LinkRequester,
         request: Any,
         sample_info: SampleInfo,
         reply_to: ReplyTo,
@@ -258,14 +258,14 @@ class ForwardedCall:
         self._call.cancel()
 
 
-class IpcCall:
+class LinkCall:
     """A call over one or more links.
 
     Attributes:
         routes: The links over which an answer may still come.
     """
 
-    def __init__(self, requester: IpcRequester, sequence: int, reply_to: ReplyTo) -> None:
+    def __init__(self, requester: LinkRequester, sequence: int, reply_to: ReplyTo) -> None:
         self.routes: list[Connection] = []
         self._requester = requester
         self._sequence = sequence

@@ -23,15 +23,15 @@ from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
-from aionode.transport.ipc._connection import Connection
-from aionode.transport.ipc._publisher import IpcWriter
-from aionode.transport.ipc._subscription import Route
-from aionode.transport.ipc._transport import IpcTransport
-from tests.processes.ipc_member import STREAMED_BYTES
+from aionode.transport.link._connection import Connection
+from aionode.transport.link._publisher import LinkWriter
+from aionode.transport.link._subscription import Route
+from aionode.transport.link._transport import LinkTransport
+from tests.processes.link_member import STREAMED_BYTES
 from tests.support.peers import isolated_environment, quiet_node
 from tests.support.spies import returns_of
 
-MEMBER = Path(__file__).with_name("ipc_member.py")
+MEMBER = Path(__file__).with_name("link_member.py")
 
 
 @pytest.fixture(autouse=True)
@@ -72,14 +72,14 @@ class Pings:
     def links(self) -> list[str]:
         """The linked contexts."""
         transport = self.node.context.transports[1]
-        assert isinstance(transport, IpcTransport)
+        assert isinstance(transport, LinkTransport)
         return transport.manager.links
 
     @property
-    def writer(self) -> IpcWriter:
+    def writer(self) -> LinkWriter:
         """The publisher's end of both routes."""
         writer = self.there._writers[1]
-        assert isinstance(writer, IpcWriter)
+        assert isinstance(writer, LinkWriter)
         return writer
 
     async def go(self) -> None:
@@ -168,7 +168,7 @@ class Stream:
     async def until_linked(self) -> None:
         """Go on until the arrays come over the link."""
         while not any(
-            remote_publisher.route is Route.IPC
+            remote_publisher.route is Route.LINK
             for reader in self.node.context.transports[1].manager.readers.values()
             for remote_publisher in reader.remote_publishers.values()
         ):

@@ -6,17 +6,17 @@ from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
-from aionode.transport.ipc._connection import whole
-from aionode.transport.ipc._protocol import Kind
+from aionode.transport.link._connection import whole
+from aionode.transport.link._protocol import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-    from aionode.transport.ipc._connection import Connection
-    from aionode.transport.ipc._protocol import Credit
-    from aionode.transport.ipc._shared_memory import SharedBuffer
+    from aionode.transport.link._connection import Connection
+    from aionode.transport.link._protocol import Credit
+    from aionode.transport.link._shared_memory import SharedBuffer
 
-__all__ = ["DATA", "IpcSendQueue", "RemoteSubscription"]
+__all__ = ["DATA", "LinkSendQueue", "RemoteSubscription"]
 
 MAX_READERS: Final = 1_000
 """How many subscriptions to one topic a process may have."""
@@ -50,7 +50,7 @@ class RemoteSubscription:
         self.switched = False
 
 
-class IpcSendQueue:
+class LinkSendQueue:
     """Sends the messages of one publisher to the subscriptions of one other process.
 
     A message waits here while the socket is full, or while the window of a KEEP_ALL subscription is
