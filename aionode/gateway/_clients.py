@@ -102,7 +102,7 @@ class Clients:
     def session_of(
         self, scope: MutableMapping[str, Any], kind: str
     ) -> contextlib.AbstractAsyncContextManager[Session]:
-        """Return the session of a request, whose client the guard has identified."""
+        """Return the session of a request, whose client the door has identified."""
         return self.session(scope["aionode.identity"], kind, scope["aionode.credentials"])
 
     @property

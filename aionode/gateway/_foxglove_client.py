@@ -17,7 +17,7 @@ from aionode.gateway import _foxglove_frames as frames
 from aionode.gateway._foxglove_channels import Channels
 from aionode.gateway._foxglove_parameters import Parameters
 from aionode.gateway._foxglove_playback import Playback
-from aionode.gateway._rosbridge_link import Lanes
+from aionode.gateway._lanes import Lanes
 from aionode.gateway._rosbridge_values import json_of
 from aionode.wire import cdr
 

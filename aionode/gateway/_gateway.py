@@ -18,7 +18,7 @@ from aionode.errors import ConfigurationError, PolicyFileError
 from aionode.gateway import _foxglove, _http, _page_files, _rosbridge
 from aionode.gateway._audit import Audit
 from aionode.gateway._clients import Clients
-from aionode.gateway._guard import Guard
+from aionode.gateway._door import Door
 from aionode.gateway._identity import parsed_address
 from aionode.gateway._policy import Policy
 from aionode.gateway._robot import Bucket, Robot
@@ -111,7 +111,7 @@ class Gateway(Clients):
             stack.callback(self._robot.close)
             for work in (audit.run(), self._follow_policy()):
                 stack.callback(tasks.create_task(work).cancel)
-            app = Guard(self._application(), self)
+            app = Door(self._application(), self)
             server = Server(server_config(app, lambda: self._policy))
             serving = tasks.create_task(server.serve(sockets=[listener]))
             stack.push_async_callback(self._stop, server, serving)

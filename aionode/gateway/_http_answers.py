@@ -16,7 +16,7 @@ from starlette.responses import Response
 from aionode import errors
 from aionode.errors import AionodeError, RefusedError
 from aionode.fastapi import watching
-from aionode.gateway._guard import STATUS
+from aionode.gateway._door import STATUS
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
@@ -136,7 +136,7 @@ def error_response(error: Exception) -> Response:
 
 
 async def body_of(request: Request, timeout_sec: float) -> bytes:
-    """Return the body of a request, whose size the guard has limited.
+    """Return the body of a request, whose size the door has limited.
 
     Args:
         request: The request.

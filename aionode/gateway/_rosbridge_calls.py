@@ -22,7 +22,8 @@ from aionode.gateway._rosbridge_values import json_of
 
 if TYPE_CHECKING:
     from aionode.action import ClientGoalHandle
-    from aionode.gateway._rosbridge_link import Lanes, Link
+    from aionode.gateway._lanes import Lanes
+    from aionode.gateway._rosbridge_link import Link
 
 __all__ = ["Calls"]
 

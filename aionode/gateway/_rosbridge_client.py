@@ -13,8 +13,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import AionodeError, MessageError
+from aionode.gateway._lanes import Lanes
 from aionode.gateway._rosbridge_calls import Calls
-from aionode.gateway._rosbridge_link import Lanes, Link
+from aionode.gateway._rosbridge_link import Link
 from aionode.gateway._rosbridge_offers import Offers
 from aionode.gateway._rosbridge_request import FragmentStore, full_name, op_of, text
 from aionode.gateway._rosbridge_topics import Topics

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import AsyncIterator, Mapping
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Callable, Iterator, Mapping
+from contextlib import asynccontextmanager, contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import AionodeError, MessageError, ServiceError
@@ -65,27 +66,13 @@ class SessionCalls(SessionBase):
         verb, name = self._decide_call(service, cls.__ros_type__, request)
         decision = await self._allow(verb, name, cls.__ros_type__, request)
         self._check_size(verb, name, decision, request)
-        client, give_back = self._robot.shared.take(
-            ("client", service, cls), lambda: self._robot.node.create_client(cls, service)
-        )
-        began_ns = self._robot.time_base.steady_ns()
-        result = "cancelled"
-        try:
-            with self._one_more():
-                if not await client.wait_for_service(SERVER_SEC):
-                    raise ServiceError(service, "there is no server")
-                response = await client.call(decision.message, timeout_sec)
-                result = "ok"
-                return response
-        except AionodeError as error:
-            result = f"failed: {error}"
-            raise
-        finally:
-            give_back()
-            self._robot.audit.note(
-                self.identity, "call", service, arguments=decision.message, result=result,
-                duration_ns=self._robot.time_base.steady_ns() - began_ns, way=self.kind,
-            )  # fmt: skip
+        make = partial(self._robot.node.create_client, cls, service)
+        with self._attempt("call", service, cls, decision.message, make) as attempt:
+            if not await attempt.client.wait_for_service(SERVER_SEC):
+                raise ServiceError(service, "there is no server")
+            response = await attempt.client.call(decision.message, timeout_sec)
+            attempt.result = "ok"
+            return response
 
     def _decide_call(self, service: str, type_name: str, request: Any = None) -> tuple[Verb, str]:
         """Return about what the policy is asked for a call, which may be a goal or a parameter.
@@ -163,30 +150,57 @@ class SessionCalls(SessionBase):
         goal = as_message(cls.Goal, values, self._robot.node.get_clock())
         decision = await self._allow("goal", action, cls.__ros_type__, goal)
         self._check_size("goal", action, decision, goal)
-        client, give_back = self._robot.shared.take(
-            ("action", action, cls), lambda: self._robot.node.create_action_client(cls, action)
-        )
-        began_ns = self._robot.time_base.steady_ns()
-        result = "not sent"
+        make = partial(self._robot.node.create_action_client, cls, action)
+        with self._attempt("goal", action, cls, decision.message, make) as attempt:
+            if not await attempt.client.wait_for_server(SERVER_SEC):
+                raise ServiceError(action, "there is no action server")
+            handle = await attempt.client.send_goal(decision.message)
+            self._goals[handle] = (action, cls.__ros_type__)
+            try:
+                async with handle:
+                    yield handle
+            finally:
+                self._goals.pop(handle, None)
+                attempt.result = handle.status.name.lower()
+
+    @contextmanager
+    def _attempt(
+        self, verb: Verb, name: str, cls: Any, message: Any, make: Callable[[], Any]
+    ) -> Iterator[Attempt]:
+        """Count a call or goal while the block lasts, and write down what became of it.
+
+        Args:
+            verb: What it is.
+            name: The service or action.
+            cls: Its type.
+            message: The request or goal.
+            make: Makes the client that sends it, which sessions share.
+        """
+        client, give_back = self._robot.shared.take((verb, name, cls), make)
+        attempt = Attempt(client)
+        began_ns = self.steady_ns()
         try:
             with self._one_more():
-                if not await client.wait_for_server(SERVER_SEC):
-                    raise ServiceError(action, "there is no action server")
-                handle = await client.send_goal(decision.message)
-                self._goals[handle] = (action, cls.__ros_type__)
-                try:
-                    async with handle:
-                        result = "left"
-                        yield handle
-                finally:
-                    self._goals.pop(handle, None)
-                    result = handle.status.name.lower()
+                yield attempt
         except AionodeError as error:
-            result = f"failed: {error}"
+            attempt.result = f"failed: {error}"
             raise
         finally:
             give_back()
             self._robot.audit.note(
-                self.identity, "goal", action, arguments=decision.message, result=result,
-                duration_ns=self._robot.time_base.steady_ns() - began_ns, way=self.kind,
+                self.identity, verb, name, arguments=message, result=attempt.result,
+                duration_ns=self.steady_ns() - began_ns, way=self.kind,
             )  # fmt: skip
+
+
+class Attempt:
+    """A call or goal under way.
+
+    Attributes:
+        client: Sends it.
+        result: What became of it, for the audit log.
+    """
+
+    def __init__(self, client: Any) -> None:
+        self.client = client
+        self.result = "cancelled"

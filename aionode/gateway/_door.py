@@ -13,7 +13,7 @@ from aionode.gateway._identity import Identity, check_browser, from_scope, take_
 if TYPE_CHECKING:
     from aionode.gateway._clients import Clients
 
-__all__ = ["Guard"]
+__all__ = ["Door"]
 
 Message = MutableMapping[str, Any]
 Receive = Callable[[], Awaitable[Message]]
@@ -45,7 +45,7 @@ STATUS: Final = {
 """The HTTP status of each code of RefusedError."""
 
 
-class Guard:
+class Door:
     """Identifies the client of each request, and refuses what pages of other origins ask for.
 
     In the scope it leaves ``aionode.identity`` and ``aionode.credentials``.
