@@ -171,8 +171,8 @@ _EXPORTS = {
     "freeze_objects": "aionode.runner",
     "run": "aionode.runner",
 }
-"""Where each name is defined; it is imported when it is first used, so that ``aionode --help`` and
-programs that need few of them start at once."""
+"""The module that defines each name. A name is imported when it is first used, so that
+``aionode --help`` and programs that need few names start at once."""
 
 
 def __getattr__(name: str) -> Any:

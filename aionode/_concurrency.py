@@ -27,7 +27,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 SLICE_NS = 1_000_000
-"""How long a queue is drained before timers, I/O and other callbacks get their turn."""
+"""Time for which a queue is drained before timers, I/O and other callbacks get their turn."""
 
 THREAD_CALLS: WeakKeyDictionary[asyncio.AbstractEventLoop, set[asyncio.Future[None]]] = (
     WeakKeyDictionary()

@@ -1,4 +1,4 @@
-"""Which distribution of ROS 2 the other nodes run, and what that changes on the wire."""
+"""The distribution of ROS 2 that the other nodes run, and its effect on the wire."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DEFAULT: Final = "jazzy"
 VARIABLE: Final = "ROS_DISTRO"
 
 NO_TYPE_HASH: Final = "TypeHashNotSupported"
-"""What nodes of ROS 2 Humble write in place of every type hash."""
+"""The text that nodes of ROS 2 Humble write in place of every type hash."""
 
 HUMBLE_HERE: Final = f"a Humble robot is here: set {VARIABLE}=humble to talk to it"
 HUMBLE_ALONE: Final = f"this process speaks Humble, the others do not: unset {VARIABLE}"

@@ -45,16 +45,16 @@ if TYPE_CHECKING:
 __all__ = ["LendableLoop", "Readers"]
 
 LONGEST_WAIT_S = 3600.0
-"""How long one wait for descriptors takes at most."""
+"""Longest wait for descriptors."""
 
 LONGEST_END_S = 1.0
-"""How long closing a loop waits for the thread that waits in place of it."""
+"""Longest time for which closing a loop waits for the thread that polls in its place."""
 
 Ts = TypeVarTuple("Ts")
 
 
 class HasFileno(Protocol):
-    """What has a descriptor."""
+    """An object with a file descriptor."""
 
     def fileno(self) -> int:
         """Return the descriptor."""
@@ -114,7 +114,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
             with suppress(RuntimeError):  # it has been closed meanwhile
                 self.call_soon_threadsafe(_only_wake_up)
 
-    # What gives the loop work, which it learns of when it is given back.
+    # Calls that give the loop work; the loop learns of them when it is given back.
 
     def call_soon(
         self, callback: Callable[[*Ts], object], *args: *Ts, context: Context | None = None

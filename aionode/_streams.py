@@ -26,10 +26,10 @@ __all__ = [
 ]
 
 CHECK_S = 0.01
-"""How often the descriptors are checked, in seconds."""
+"""Time between two checks of the descriptors, in seconds."""
 
 FULL_CHECKS = 20
-"""How many checks in a row must find a descriptor full before it is discarded."""
+"""Checks in a row that must find a descriptor full before it is discarded."""
 
 
 def standard() -> set[int]:

@@ -1,4 +1,4 @@
-"""What is sent before the process ends, or is suspended, without the ends of its nodes.
+"""The last messages of a process that ends, or is suspended, without the ends of its nodes.
 
 Two kinds of functions are called, in this order: those of `STOPS` send the stop of each open lease,
 those of `SENDS` hand what was published to the operating system.
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["SENDS", "STOPS", "LastMessages", "is_sending", "print_error", "start_thread"]
 
 LIMIT_NS: Final = 200_000_000
-"""How long sending takes at most, in nanoseconds."""
+"""Longest time that sending takes, in nanoseconds."""
 
 STEP_NS: Final = 50_000_000
 """How long a publisher or transport may take for a step that a signal has interrupted, in

@@ -167,7 +167,7 @@ class BareClient(BareEndpoint):
 
     @property
     def servers(self) -> int:
-        """How many servers are matched now."""
+        """The number of servers that are matched now."""
         return sum(requester.servers for requester in self._requesters)
 
     def send(

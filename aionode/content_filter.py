@@ -37,7 +37,7 @@ MAX_PARAMETERS: Final = 100
 """The number of parameters that the grammar has names for."""
 
 MAX_DIGITS: Final = 400
-"""How long a number may be; Python refuses much longer ones with an error of its own."""
+"""Most characters of a number; Python refuses much longer ones with an error of its own."""
 
 MAX_DEPTH: Final = 50
 """How deep parentheses and NOT may be nested."""
@@ -51,7 +51,7 @@ NAIVE_LENGTH: Final = 100
 
 @dataclass
 class ContentFilterOptions:
-    """Which messages to deliver to a subscription, with rclpy's attribute names.
+    """Selects the messages that a subscription gets, with rclpy's attribute names.
 
     Attributes:
         filter_expression: A condition over the fields of the message; empty for all messages.

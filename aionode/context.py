@@ -82,7 +82,7 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
 
 
 class ContextNode(Protocol):
-    """What a context needs of its nodes. A protocol, as `Node` itself imports the context."""
+    """The methods of a node that its context calls. A protocol, as `Node` imports the context."""
 
     def destroy_node(self) -> None:
         """End the node."""
@@ -92,7 +92,7 @@ class ContextNode(Protocol):
 
 
 class Context:
-    """What the nodes of one participant share: transports, graph, domain and time.
+    """The transports, graph, domain and time that the nodes of one participant share.
 
     Nodes created without a context share `Context.default()`. A context opens with its first
     running node and closes after the last; ``async with Context() as context`` keeps it open for
@@ -518,7 +518,7 @@ class Context:
 
     @property
     def _current_usage(self) -> Usage:
-        """Which of the current arguments the nodes have used."""
+        """Tells which of the current arguments the nodes have used."""
         return self._command_line if self._usage is None else self._usage
 
     @property

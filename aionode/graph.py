@@ -39,7 +39,7 @@ Watcher: TypeAlias = "Callable[[EndpointInfo, bool], None]"
 
 
 class EndpointKind(enum.Enum):
-    """What an endpoint does."""
+    """The kind of an endpoint."""
 
     PUBLISHER = "publisher"
     SUBSCRIPTION = "subscription"

@@ -378,7 +378,7 @@ class TimeSynchronizer(SimpleFilter):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped before the others arrived."""
+        """The number of messages that were dropped before the others arrived."""
         return self._matcher.dropped
 
     def add(self, msg: Any, index: int) -> None:
@@ -434,7 +434,7 @@ class Synchronized:
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped before the others arrived."""
+        """The number of messages that were dropped before the others arrived."""
         return self._matcher.dropped
 
     def __aiter__(self) -> AsyncIterator[tuple[Any, ...]]:

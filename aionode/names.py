@@ -63,7 +63,7 @@ CHARACTERS = (
 BRACES = "topic name must not have unmatched (unbalanced) curly braces '{}'"
 
 Problem = tuple[str, int]
-"""Which rule is broken, and at which index."""
+"""The rule that is broken, and the index."""
 
 
 # Validation
@@ -340,7 +340,7 @@ def is_hidden(name: str) -> bool:
 
 
 class RemapKind(Enum):
-    """What a remap rule changes."""
+    """The kind of name that a remap rule changes."""
 
     NODE_NAME = "node name"
     NAMESPACE = "namespace"

@@ -25,7 +25,7 @@ NamesAndTypes = list[tuple[str, list[str]]]
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """What a `TopicEndpointInfo` describes, with rclpy's values."""
+    """The kind of endpoint that a `TopicEndpointInfo` describes, with rclpy's values."""
 
     INVALID = 0
     PUBLISHER = 1

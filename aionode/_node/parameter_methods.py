@@ -1,4 +1,4 @@
-"""What every node has to declare, read and change its parameters: rclpy's methods."""
+"""The methods by which a node declares, reads and changes its parameters, as in rclpy."""
 
 from __future__ import annotations
 

@@ -55,7 +55,7 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
-            # Until callbacks have ended: their cleanup may sleep.
+            # The subscription outlives the callbacks: their cleanup may sleep.
             self._node._node_shutdown.postpone(self._subscription, EndStage.GOALS)
         elif not active and self._subscription is not None:
             self._subscription.destroy()

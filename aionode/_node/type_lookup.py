@@ -27,7 +27,7 @@ ANSWER_S: Final = 2.0
 """Timeout for one description, in seconds of real time; a node answers within milliseconds."""
 
 MOST_ASKED: Final = 5
-"""How many nodes are asked for one type: those that do not answer must not add up."""
+"""Most nodes that are asked for one type: the waits for silent ones must not add up."""
 
 ACTION_PARTS: Final = ("SendGoal", "GetResult", "FeedbackMessage")
 """The types by which an action is known in the graph, as suffixes of its name."""

@@ -1,4 +1,4 @@
-"""What a package can start: its executables, from its source folder or where it is installed."""
+"""The executables of a package, from its source folder or from its installation."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 __all__ = ["Packages"]
 
 MARKER = Path("share", "ament_index", "resource_index", "packages")
-"""Where an installed package has a file of its name, below its prefix."""
+"""Folder below a prefix in which each installed package has a file of its name."""
 
 
 class Packages:

@@ -14,10 +14,10 @@ __all__ = ["MANIFEST", "MAX_FOLDERS", "package_folder", "packages_in", "workspac
 MANIFEST: Final = "package.xml"
 
 MAX_DEPTH: Final = 6
-"""How many folders below the workspace a package is looked for."""
+"""Depth, in folders below the workspace, to which packages are looked for."""
 
 MAX_FOLDERS: Final = 10_000
-"""How many folders are looked at: a workspace has some hundreds, a home folder any number."""
+"""Most folders that are searched: a workspace has some hundreds, a home folder any number."""
 
 IGNORED: Final = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
 """A folder with one of these files is left out by ROS's tools, with all below it."""

@@ -59,7 +59,7 @@ INFINITY = {".inf", ".Inf", ".INF", "+.inf", "+.Inf", "+.INF"}
 MINUS_INFINITY = {"-.inf", "-.Inf", "-.INF"}
 NOT_A_NUMBER = {".nan", ".NaN", ".NAN"}
 
-# What C's strtoll with base 0 and strtod take, which is what rcl calls.
+# rcl reads numbers by C's strtoll with base 0 and strtod; these patterns accept the same.
 LONGEST_INTEGER = 100  # digits: far more than 64 bits need, far fewer than Python refuses
 INTEGER = r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)"
 DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"

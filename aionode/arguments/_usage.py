@@ -1,4 +1,4 @@
-"""Which arguments no node has used, as a typo in a name would otherwise go unnoticed."""
+"""Reports arguments that no node has used: a typo in a name would otherwise go unnoticed."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 __all__ = ["Usage"]
 
 CHECK_AFTER_NS = 1_000_000_000
-"""How long after the first node started the arguments are checked."""
+"""Time from the start of the first node to the check of the arguments."""
 
 
 class NodeParameters(Protocol):
-    """What is read of the `ParameterStore` of a node; that imports the arguments itself."""
+    """The part of a node's `ParameterStore` that is read here. The store imports this package."""
 
     node_name: str
     allow_undeclared: bool
@@ -39,7 +39,7 @@ class Usage:
 
     def __init__(self, arguments: Arguments) -> None:
         self.arguments = arguments
-        # What is still unused; the rest is what nodes had so far.
+        # Rules and parameters that are still unused, then the nodes so far.
         self._rules = set(arguments.remap_rules)
         self._parameters = [rule for rule in arguments.parameter_rules if rule.typed]
         self._names: set[str] = set()

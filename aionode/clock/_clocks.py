@@ -64,7 +64,7 @@ class TimeJump:
 
 
 class JumpThreshold:
-    """Which jumps call the callbacks.
+    """The jumps that call the callbacks.
 
     Args:
         min_forward: The shortest jump forward to report, a positive duration, or None for none.
@@ -236,7 +236,7 @@ class Clock:
 
     @property
     def clock_type(self) -> ClockType:
-        """Which time this clock shows."""
+        """The kind of time that this clock shows."""
         return self._clock_type
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""Where time comes from: the machine, or a test that advances it by hand.
+"""The source of time: the machine, or a test that advances it by hand.
 
 Everything in aionode that reads the time or waits for it does so through a `TimeBase`, so that a
 test can replace the machine's.

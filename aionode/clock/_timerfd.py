@@ -126,7 +126,7 @@ class KernelAlarms(TimerHeap):
 
 
 MAX_PERIODIC = 64
-"""How many alarms have a file of their own at most, of all that a process may have open."""
+"""Most alarms that have a timer of the kernel, and so an open file, of their own."""
 
 
 class PeriodicAlarm:

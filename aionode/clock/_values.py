@@ -29,7 +29,7 @@ def total_ns(seconds: float, nanoseconds: float) -> int:
 
 
 class ClockType(IntEnum):
-    """Which clock a time was read from; the values are rcl's."""
+    """The kind of clock that a time was read from, with rcl's values."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1

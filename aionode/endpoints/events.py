@@ -42,10 +42,10 @@ __all__ = [
 EventT = TypeVar("EventT")
 
 EVENTS_KEPT = 100
-"""How many events wait for a callback or a reader; then the oldest are dropped and counted."""
+"""Most events that wait for a callback or a reader; beyond, the oldest is dropped and counted."""
 
 
-# What happened
+# Kinds of events
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +175,7 @@ PublisherEvent = (
     | IncompatibleTypeInfo
     | MatchedInfo
 )
-"""What `Publisher.events` yields."""
+"""The events that `Publisher.events` yields."""
 
 SubscriptionEvent = (
     QoSRequestedDeadlineMissedInfo
@@ -185,14 +185,14 @@ SubscriptionEvent = (
     | IncompatibleTypeInfo
     | MatchedInfo
 )
-"""What `Subscription.events` yields."""
+"""The events that `Subscription.events` yields."""
 
 
 # Callbacks
 
 
 class PublisherEventCallbacks:
-    """What a publisher calls with its events; sync or async functions, each of one argument.
+    """Functions that a publisher calls with its events, sync or async, each of one argument.
 
     An exception in one ends the node, as in the callback of a subscription.
 
@@ -225,7 +225,7 @@ class PublisherEventCallbacks:
 
 
 class SubscriptionEventCallbacks:
-    """What a subscription calls with its events; sync or async functions, each of one argument.
+    """Functions that a subscription calls with its events, sync or async, each of one argument.
 
     An exception in one ends the node, as in the callback of the subscription itself.
 
@@ -277,7 +277,7 @@ class EventStream(Generic[EventT]):
 
     @property
     def dropped(self) -> int:
-        """How many events were dropped because they were not read in time."""
+        """The number of events that were dropped because they were not read in time."""
         return self._queue.stats.dropped
 
     def __aiter__(self) -> AsyncIterator[EventT]:

@@ -30,7 +30,7 @@ MsgT = TypeVar("MsgT")
 LeasedT_contra = TypeVar("LeasedT_contra", contravariant=True)
 
 LOCK_S: Final = 0.05
-"""How long another thread waits for a command that is just being published, which takes no time."""
+"""Time for which another thread waits for a command in the middle of its publication."""
 
 
 def send_stops(within_sec: float = REPEAT_S) -> bool:
@@ -53,7 +53,7 @@ def send_stops(within_sec: float = REPEAT_S) -> bool:
 
 
 class LeasedPublisher(Protocol[LeasedT_contra]):
-    """What a lease needs of its publisher."""
+    """The parts of a publisher that its lease uses."""
 
     _affinity: LoopAffinity
 
@@ -84,7 +84,7 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
 
 
 class State(enum.Enum):
-    """Where a lease is; it only goes down this list."""
+    """The states of a lease; it only goes down this list."""
 
     NEW = enum.auto()
     OPEN = enum.auto()
@@ -117,7 +117,7 @@ class CommandLease(Generic[MsgT]):
         ValueError: `ttl_sec` is not positive and finite.
     """
 
-    # What decides who sends the stop: the state, under the lock. The loop's thread holds the lock
+    # The state, under the lock, decides who sends the stop. The loop's thread holds the lock
     # from the comparison of the time until the command is written, so that no command follows a
     # stop of another thread. The lock is reentrant, because a signal handler may run meanwhile.
 

@@ -40,7 +40,7 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 WAITING_REQUESTS = 10_000
-"""How many requests are queued at most; further ones are refused at once with an error.
+"""Most requests that are queued; further ones are refused at once with an error.
 
 Unlike a message, a request has a client that waits for the answer, so none is silently dropped
 because of the depth of the profile.

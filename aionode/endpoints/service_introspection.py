@@ -35,14 +35,14 @@ RESPONSE_RECEIVED: Final = 3
 
 
 class ServiceIntrospectionState(IntEnum):
-    """What a client or server publishes about each request and response."""
+    """The detail in which a client or server publishes each request and response."""
 
     OFF = 0
     """Nothing; it has no publisher for it."""
     METADATA = 1
-    """Which request, of which client, and when."""
+    """The client, the number of the request, and the time."""
     CONTENTS = 2
-    """The same, and the request or response itself."""
+    """Client, number and time, and the request or response itself."""
 
 
 class Introspection:

@@ -1,4 +1,4 @@
-"""What each entity counts and measures.
+"""Counts and measurements of each entity.
 
 All durations are real time in nanoseconds, even where a test steps the clock: they are what the
 machine spent, not what passed on the program's clock.
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 __all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
 
 ID_DIGITS: Final = 8
-"""How many hexadecimal digits of an id are shown: enough to tell endpoints apart."""
+"""Hexadecimal digits of an id that are shown: enough to tell endpoints apart."""
 
 NOTED_CALLS: Final = 256
-"""How many calls are recorded at once, which takes a tenth of the time of recording one by one, and
+"""Calls that are recorded at once, which takes a tenth of the time of recording one by one, and
 leaves the code for it out of the processor's caches.
 """
 
@@ -104,7 +104,7 @@ class Distribution:
 
     @property
     def count(self) -> int:
-        """How many durations have been recorded."""
+        """The number of durations that have been recorded."""
         return sum(self._read().values())
 
     @property
@@ -141,7 +141,7 @@ def _middle_ns(bucket: int) -> int:
 
 
 class CallbackStats:
-    """What became of the messages, requests or ticks of one entity.
+    """The outcomes of the messages, requests or ticks of one entity.
 
     Everything that arrived is in ``received``, ``dropped``, ``expired`` or ``filtered``, or still
     queued.
@@ -178,8 +178,8 @@ class CallbackStats:
         self.lost = 0
         # Of the waits, runs and blocking stretches; None until something is recorded or read.
         self._distributions: tuple[Distribution, Distribution, Distribution] | None = None
-        # What was noted since `_record_noted`, of callbacks that did not await: how long their item
-        # was queued, and how long they ran; and how long those ran whose item was not queued.
+        # Calls since `_record_noted` of callbacks that did not await: how long their items waited,
+        # and how long they ran; then how long calls ran whose item did not wait.
         self._waited_ns: list[int] = []
         self._took_ns: list[int] = []
         self._inline_ns: list[int] = []
@@ -238,7 +238,7 @@ class CallbackStats:
 
 
 class PublisherStats:
-    """How much one publisher sent, and by which routes.
+    """The messages that one publisher sent, by route.
 
     Attributes:
         published: How many messages were published.
@@ -261,7 +261,7 @@ class PublisherStats:
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped on the way to other processes: a link or Zenoh was slow.
+        """The number of messages dropped on the way to other processes: a link or Zenoh was slow.
 
         What a full subscription drops is counted by the subscription.
         """
@@ -269,7 +269,7 @@ class PublisherStats:
 
     @property
     def filtered(self) -> int:
-        """How many messages were not sent, as no subscription of another process wants them.
+        """The number of messages not sent, as no subscription of another process wants them.
 
         Counted once for each link, and once for Zenoh. What arrives and does not pass the content
         filter of a subscription is counted by the subscription.
@@ -294,7 +294,7 @@ class PublisherStats:
 
 
 class ClientStats:
-    """What became of the calls of one client.
+    """The outcomes of the calls of one client.
 
     Attributes:
         calls: How many calls were sent.

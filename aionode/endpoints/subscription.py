@@ -46,7 +46,7 @@ __all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
 ItemT = TypeVar("ItemT")
 
 SubscriptionCallback = Callable[[ItemT], object] | Callable[[ItemT, MessageInfo], object]
-"""What a subscription calls, sync or async; an awaitable that it returns is awaited."""
+"""A function that a subscription calls, sync or async; an awaitable that it returns is awaited."""
 
 
 class Subscription(Endpoint, Generic[ItemT]):

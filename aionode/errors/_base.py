@@ -16,7 +16,7 @@ MAX_TEXT = 2_000
 """Longest error text, in characters; the values that it quotes can be far longer."""
 
 MAX_NAME = 160
-"""How many characters of an invalid name are shown."""
+"""Most characters of an invalid name that are shown."""
 
 
 def shortened(text: str, limit: int = MAX_TEXT) -> str:

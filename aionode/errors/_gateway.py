@@ -1,4 +1,4 @@
-"""What the gateway refuses, and what is wrong with its policy file."""
+"""Refusals of the gateway, and errors in its policy file."""
 
 from __future__ import annotations
 

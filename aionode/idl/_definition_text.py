@@ -31,13 +31,13 @@ WIDTH = 96
 STAND_IN = re.compile(
     r"The (request|response|goal|result|feedback) of \w+\.|\S+, as (in \S+|a node describes it)\."
 )
-"""What the classes made of a definition say of themselves where that has no comment."""
+"""The docstring of classes whose definition has no comment."""
 
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
 
 Comments: TypeAlias = Literal["none", "outer", "all"]
-"""Which comments to show: none, those of the type itself, or those of nested types as well."""
+"""The comments to show: none, those of the type itself, or those of nested types as well."""
 
 
 def definition_text(

@@ -56,7 +56,7 @@ class DeclaredArgument:
 
 
 class Plan:
-    """What a launch file starts, in order. Making it starts nothing.
+    """The actions of a launch file, in order. Making a description starts nothing.
 
     A file in Python is run as a program of the user: it may do what programs may do.
 
@@ -109,7 +109,7 @@ class Plan:
 
     @property
     def steps(self) -> list[Step]:
-        """What is done, in order.
+        """The actions, in order.
 
         Raises:
             LaunchFileError: It cannot be evaluated with these arguments (a ValueError).

@@ -29,7 +29,7 @@ __all__ = ["arguments_of", "check_later_steps", "evaluate", "load_file", "new_co
 FUNCTION = "generate_launch_description"
 
 MAX_DEPTH = 100
-"""How many files may include one another."""
+"""Most files that may include one another."""
 
 
 def new_context(path: str, arguments: Mapping[str, str]) -> LaunchContext:

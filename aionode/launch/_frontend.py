@@ -1,4 +1,4 @@
-"""What the elements of XML and YAML files stand for."""
+"""The meaning of each element of XML and YAML files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a launch description does, in order: the result of its evaluation."""
+"""The actions of a launch description, in order: the result of its evaluation."""
 
 from __future__ import annotations
 
@@ -52,9 +52,9 @@ class Process(Step):
     respawn_max_retries: int = -1
     output: str = "log"
     term_after_sec: float = 7.0
-    """How long after SIGINT it gets SIGTERM."""
+    """Time from SIGINT to SIGTERM."""
     kill_after_sec: float = 5.0
-    """How long after SIGTERM it gets SIGKILL."""
+    """Time from SIGTERM to SIGKILL."""
     emulate_tty: bool = False
     autostart: bool = False
     """Whether its managed node is configured and activated."""
@@ -113,7 +113,7 @@ class Call(Step):
 
     @property
     def text(self) -> str:
-        """What is called."""
+        """The function that is called, as text."""
         return str(self.action.describe())
 
 
@@ -142,7 +142,7 @@ class Emit(Step):
 
 @dataclass(frozen=True)
 class Opaque(Step):
-    """What is done later, and is not known before: the rest may depend on it."""
+    """An action that is not known before it is done: the rest may depend on it."""
 
     text: str
 

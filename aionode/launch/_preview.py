@@ -1,4 +1,4 @@
-"""What a plan starts, as records and as text; nothing of it is started."""
+"""Shows the processes and nodes of a plan, as records and as text, and starts none of them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What event handlers are told about a process, in the order in which it happens."""
+"""Tells event handlers about a process, in the order in which things happen."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class ProcessEvents:
         self._pid: int | None = None
         self._end: MemberEnd | None = None
         self._early: list[tuple[bytes, int]] = []
-        """What it has printed before its start was told."""
+        """Output that the process printed before handlers were told of its start."""
 
     def look(self, member: Member) -> None:
         """Tell of a start or an end that has not been told."""

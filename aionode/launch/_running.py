@@ -55,12 +55,12 @@ __all__ = ["RunningLaunch", "first_of", "run_service"]
 
 
 NODE_LIMIT_SEC: Final = 30.0
-"""How long after the start of a process its node may take to be in the graph, in seconds. A process
-that ends before that is noticed at once; one that needs long may run on a busy machine."""
+"""Time from the start of a process within which its node has to be in the graph, in seconds:
+much, as the machine may be busy. A process that ends before its node is there is seen at once."""
 
 
 class RunningLaunch:
-    """What a launch description does while it runs.
+    """Runs a launch description.
 
     Args:
         system: The system that its processes and nodes are added to.
@@ -84,11 +84,11 @@ class RunningLaunch:
         self._events: asyncio.Queue[Event] = asyncio.Queue()
         self._clock = SteadyClock()
         self._work: set[asyncio.Task[None]] = set()
-        """What may start something more: timers, requests, processes that run."""
+        """Work that may start something more: timers, requests, processes that run."""
         self._work_of: dict[Any, asyncio.Task[None]] = {}
-        """What each action has begun last."""
+        """The work that each action has begun last."""
         self._ends: dict[asyncio.Task[None], Event] = {}
-        """What is told to event handlers when work has ended."""
+        """The event that handlers are told of when work has ended."""
         self._hears_output = False
         self._idle = asyncio.Event()
         self._is_shutdown = False

@@ -11,7 +11,7 @@ from aionode.launch._launch.substitution import Substitution, TextSubstitution
 __all__ = ["SUBSTITUTIONS", "parse_words"]
 
 SUBSTITUTIONS: dict[str, Callable[..., Substitution]] = {}
-"""What each name stands for; the modules of substitutions fill it."""
+"""The substitution that each name stands for; the modules of substitutions fill it."""
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 

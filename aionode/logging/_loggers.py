@@ -264,7 +264,7 @@ def nearest_severity(level: int) -> LoggingSeverity:
 
 
 class SetUp:
-    """What was installed in the standard library's logging, so that it can be removed again."""
+    """The handlers installed in the standard library's logging, to be removed at the end."""
 
     def __init__(self) -> None:
         self.ready = False

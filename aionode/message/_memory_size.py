@@ -1,4 +1,4 @@
-"""How much memory a message takes, approximately: what a queue of messages adds up."""
+"""The approximate memory of a message, which a queue of messages adds up."""
 
 from __future__ import annotations
 

@@ -37,7 +37,7 @@ MOST_HELD: Final = 2**26
 """Maximum bytes of all values of a node after others have set some."""
 
 PARAMETER_BYTES: Final = 500
-"""What a parameter takes besides its value, approximately."""
+"""Approximate memory of a parameter besides its value."""
 
 
 class ParameterService(NamedTuple):

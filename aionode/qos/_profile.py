@@ -83,7 +83,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """Which messages are kept for a slow subscription: the newest `depth`, or all."""
+    """The messages that are kept for a slow subscription: the newest `depth`, or all."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1

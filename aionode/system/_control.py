@@ -23,7 +23,7 @@ class SystemCommand(ServiceType, typename="aionode_system/srv/SystemCommand"):
     """A request to a running system: ``status``, ``restart`` or ``stop``."""
 
     class Request(Message):
-        """What to do, and with which member; an empty name stands for the system."""
+        """A command and the member it is for; an empty name stands for the system."""
 
         command: str
         name: str
@@ -36,7 +36,7 @@ class SystemCommand(ServiceType, typename="aionode_system/srv/SystemCommand"):
 
 
 class Controlled(Protocol):
-    """What the services need of a system."""
+    """The methods of a system that its services call."""
 
     log: SystemLog
 

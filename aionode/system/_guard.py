@@ -27,7 +27,7 @@ __all__ = ["Guard", "ProgramDescription", "RunningProgram"]
 LOST: Final = "the guardian of the system has ended"
 
 END_LIMIT_SEC: Final = 30.0
-"""How long the guardian is waited for at the end, in seconds: both signals, for two generations."""
+"""Longest wait for the guardian at the end, in seconds: both signals, for two generations."""
 
 
 def future() -> asyncio.Future[Any]:
@@ -37,12 +37,12 @@ def future() -> asyncio.Future[Any]:
 
 @dataclass(frozen=True)
 class ProgramDescription:
-    """What is started.
+    """A program to start.
 
     Attributes:
         argv: The command line.
         env: The whole environment.
-        ladder: The signals that end it, and how long each is waited for, in seconds.
+        ladder: The signals that end the program, each with the time before the next, in seconds.
         cwd: The working folder; that of the supervisor if None.
         cgroup: The folder of the cgroup that it enters; none if None.
     """

@@ -47,7 +47,7 @@ TOKEN_VARIABLE = "AIONODE_SYSTEM"  # noqa: S105  # no secret: says which system 
 PR_SET_CHILD_SUBREAPER = 36
 PR_SET_NAME = 15
 LOOK_S = 0.1
-"""How often processes that are to end are looked for, in seconds."""
+"""Time between two looks for processes that are to end, in seconds."""
 
 
 class Program:

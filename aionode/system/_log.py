@@ -21,19 +21,19 @@ if TYPE_CHECKING:
 __all__ = ["SystemLog"]
 
 LAST_LINES: Final = 20
-"""How many lines of a member are shown when it has failed."""
+"""Lines of a member that are shown when it has failed."""
 
 KEPT_BYTES: Final = 16_384
-"""How many bytes of a member's last lines are kept."""
+"""Bytes of a member's last lines that are kept."""
 
 LONGEST_LINE: Final = 65_536
-"""How many bytes of a line are waited for until its end."""
+"""Most bytes of a line for whose end the log waits."""
 
 PIECE: Final = 4096
-"""How many bytes a pipe takes at once, if it takes any: PIPE_BUF."""
+"""Bytes that a pipe takes at once, if it takes any: PIPE_BUF."""
 
 MOST_PIECES: Final = 1024
-"""How many pieces are written at once: IOV_MAX."""
+"""Most pieces that are written at once: IOV_MAX."""
 
 Buffer: TypeAlias = bytes | memoryview
 

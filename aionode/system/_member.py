@@ -25,7 +25,7 @@ Restart = Literal["never", "on-failure", "always"]
 
 @dataclass(frozen=True)
 class Options:
-    """What processes and nodes of a system have in common.
+    """The base of the processes and nodes of a system.
 
     Attributes:
         restart: When it is started again.
@@ -98,7 +98,7 @@ def options_of(
 
 
 class Host(Protocol):
-    """What a member needs of its system."""
+    """The methods of a system that its members call."""
 
     log: SystemLog
     tasks: asyncio.TaskGroup
@@ -163,7 +163,7 @@ class Member:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name} {self.state} restarts={self.restarts}>"
 
-    # What the kinds of members define
+    # For the kinds of members to define
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
         """Start it, call `note_running`, and return how it ended; end it when `stop` is set."""

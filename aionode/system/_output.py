@@ -20,14 +20,14 @@ PAUSE_SEC: Final = 0.04
 each would wake the loop."""
 
 PIECE: Final = 1 << 16
-"""How much is read at once, in bytes: what a pipe takes at first. The allocator gives much larger
+"""Bytes that are read at once: as many as a new pipe holds. The allocator gives much larger
 buffers back to the system each time, and their pages cost more than the copies."""
 
 TERMINAL_PIECE: Final = 4095
-"""What Linux gives at once of the output to a terminal, in bytes, if there is more."""
+"""Bytes that Linux gives at once of the output to a terminal, if there is more."""
 
 LARGE_PIPE: Final = 1 << 20
-"""How large a pipe becomes that was full, in bytes: what an ordinary user may ask for."""
+"""Size of a pipe that was full once, in bytes: the largest that an ordinary user may ask for."""
 
 F_SETPIPE_SZ: Final = 1031
 """Of fcntl; Python 3.10 has a name for it on Linux alone."""

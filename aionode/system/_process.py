@@ -28,7 +28,7 @@ __all__ = ["ProcessHost", "ProcessMember", "ProcessOptions"]
 
 @dataclass(frozen=True)
 class ProcessOptions:
-    """What only processes have.
+    """The options that only processes have.
 
     Attributes:
         argv: The command line.
@@ -62,7 +62,7 @@ class ProcessOptions:
 
 
 class ProcessHost(Protocol):
-    """What a process needs of its system beside what each member does."""
+    """The methods of a system that processes call, beside those for all members."""
 
     guard: Guard
     reader: OutputReader

@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 __all__ = ["ActionReady", "Fact", "NodeActive", "NodeExists", "ServiceReady", "TopicPublished"]
 
 ASK_SEC = 2.0
-"""How long a managed node may take to tell its state, in seconds."""
+"""Longest time that a managed node may take to tell its state, in seconds."""
 
 
 @runtime_checkable
 class Fact(Protocol):
-    """What a system waits for. Your own class may be one."""
+    """A condition that a system waits for. Your own class may be one."""
 
     @property
     def timeout_sec(self) -> float:
-        """How long it may take, in seconds."""
+        """Longest time that the condition may take, in seconds."""
         ...
 
     def __str__(self) -> str:

@@ -1,4 +1,4 @@
-"""What is known of the members of a system: their states, and how they ended."""
+"""The members of a system as others see them: their states, and how they ended."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class MemberEnd:
 
 @dataclass(frozen=True)
 class MemberStatus:
-    """What a member of a system does now.
+    """The present state of a member of a system.
 
     Attributes:
         name: Its name in the system.

@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 __all__ = ["System"]
 
 MAX_ENDS: Final = 1000
-"""How many ends are kept."""
+"""Ends of members that are kept."""
 
 
 class System:
@@ -459,7 +459,7 @@ class System:
         """The exit status of the first member that failed for good; 0 if none has."""
         return 0 if self._first_failure is None else self._first_failure.status
 
-    # What members need
+    # For members
 
     def environment(self) -> dict[str, str]:
         """Return the environment of the processes: they join the domain of the system's context."""

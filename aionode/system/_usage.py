@@ -1,4 +1,4 @@
-"""How much of the machine each process takes, by psutil where it is installed."""
+"""The processor time and memory of each process, by psutil where it is installed."""
 
 from __future__ import annotations
 

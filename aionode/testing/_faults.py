@@ -146,12 +146,12 @@ class _FaultyWriter(Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages the inner writer has dropped; injected losses are not counted."""
+        """The number of messages that the inner writer has dropped, without injected losses."""
         return self._inner.dropped
 
     @property
     def filtered(self) -> int:
-        """How many messages the inner writer has left out."""
+        """The number of messages that the inner writer has left out."""
         return self._inner.filtered
 
     def assert_liveliness(self) -> None:
@@ -229,7 +229,7 @@ class _FaultyRequester(Requester):
 
     @property
     def servers(self) -> int:
-        """How many servers are matched."""
+        """The number of servers that are matched."""
         return self._inner.servers
 
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:

@@ -23,7 +23,7 @@ IDLE_TURNS = 5
 """Turns in a row in which every task must be blocked, in a loop whose queue is not accessible."""
 
 SETTLING: WeakKeyDictionary[asyncio.AbstractEventLoop, int] = WeakKeyDictionary()
-"""How many calls of `settle` are turning each loop; each of them is ready in every turn."""
+"""The number of calls of `settle` that are turning each loop; each is ready in every turn."""
 
 
 async def settle() -> None:

@@ -98,7 +98,7 @@ class SteppedLoop:
             )
             await asyncio.wait([running])
 
-    # What the loop offers
+    # Methods of an event loop
 
     def _is_foreign(self) -> bool:
         """Whether the caller is no part of what follows the clock."""

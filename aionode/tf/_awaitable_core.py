@@ -32,7 +32,7 @@ LATEST = Time()
 
 
 class BufferEnd(Entity):
-    """What ends with the node: it wakes all who wait for transforms of its buffer."""
+    """An entity that ends with the node and wakes all tasks that wait for its transforms."""
 
     def __init__(self, subject: str, on_close: Callable[[], None]) -> None:
         super().__init__(subject)

@@ -39,16 +39,16 @@ if TYPE_CHECKING:
 __all__ = ["CACHE_TIME_SEC", "MAX_FRAMES", "MAX_NAME", "BufferCore", "duration_ns", "time_ns_of"]
 
 CACHE_TIME_SEC = 10.0
-"""How long transforms are kept by default, in seconds."""
+"""Time for which transforms are kept by default, in seconds."""
 
 MAX_FRAMES = 10_000
-"""How many frames a buffer takes; tf2 has no limit, but its memory has."""
+"""Most frames that a buffer takes; tf2 has no limit, but memory has."""
 
 MAX_NAME = 1_000
-"""How long the name of a frame may be, in characters."""
+"""Most characters of the name of a frame."""
 
 MAX_REPORTS = 1_000
-"""How many refusals are logged; further ones of the same kind and sender are not."""
+"""Most refusals that are logged; further ones of the same kind and sender are not."""
 
 ROUNDING = 1e-12
 """Up to this excess, a quaternion is not divided by its length: that would only round again."""

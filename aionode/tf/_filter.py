@@ -57,7 +57,7 @@ class Filtered(Generic[MsgT]):
 
     @property
     def waiting(self) -> int:
-        """How many messages wait for their transform."""
+        """The number of messages that wait for their transform."""
         return len(self._waiting)
 
     def __aiter__(self) -> AsyncIterator[tuple[MsgT, TransformStamped]]:

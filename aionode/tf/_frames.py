@@ -1,4 +1,4 @@
-"""What a buffer keeps of one frame: its history, or the one pose of a static frame."""
+"""A frame in a buffer: its history, or the one pose of a static frame."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 __all__ = ["MAX_SAMPLES", "DynamicFrame", "Frame", "Room", "StaticFrame", "Tree"]
 
 MAX_SAMPLES = 1_000_000
-"""How many poses a buffer keeps of all frames together: some 340 MB."""
+"""Most poses that a buffer keeps of all frames together: some 340 MB."""
 
 MAX_EQUAL = 100
 """Among how many poses of one stamp an exact duplicate is searched."""
 
 COMPACT = 64
-"""How many forgotten poses a history may begin with before they are removed at once."""
+"""Most forgotten poses at the start of a history before they are removed at once."""
 
 
 class Room:
-    """How many poses the frames of one buffer may still keep."""
+    """The number of poses that the frames of one buffer may still keep."""
 
     __slots__ = ("left",)
 

@@ -20,7 +20,7 @@ TOPIC = "/tf"
 STATIC_TOPIC = "/tf_static"
 
 DEPTH = 100
-"""How many messages of each topic wait, as in tf2."""
+"""Most messages of each topic that wait, as in tf2."""
 
 MAX_SENDERS = 1_000
 """For how many publishers the name of their node is remembered."""

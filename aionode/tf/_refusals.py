@@ -1,4 +1,4 @@
-"""What tf2 refuses to take into a buffer, in tf2's words."""
+"""Transforms that tf2 refuses to take into a buffer, in tf2's words."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ SERVER = "tf2_buffer_server"
 """The name that tf2's server has when it is started as a program."""
 
 PADDING_SEC = 2.0
-"""How much longer than the server a client waits, in seconds."""
+"""Time for which a client waits longer than the server, in seconds."""
 
 CODES: tuple[tuple[type[TransformException], int], ...] = (
     (ConnectivityException, TF2Error.CONNECTIVITY_ERROR),

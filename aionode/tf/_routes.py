@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 __all__ = ["Route", "Routes"]
 
 MAX_ROUTES = 1_000
-"""How many routes a buffer remembers."""
+"""Most routes that a buffer remembers."""
 
 
 class Route:

@@ -1,4 +1,4 @@
-"""Who waits for a transform, and what has to happen until that is worth another look.
+"""Waits for transforms, and the events that make another lookup worth its time.
 
 A wait for a time in the future depends on one frame: the one whose data ends too early. It is asked
 again when that frame has data for the time, and when a frame on its way is new or has another

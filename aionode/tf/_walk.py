@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["MAX_DEPTH", "Failure", "Walk", "latest_common_ns", "walk"]
 
 MAX_DEPTH = 1000
-"""How many edges a way may have; beyond that, tf2 takes the tree for a loop."""
+"""Most edges of a way; beyond that, tf2 takes the tree for a loop."""
 
 
 class Failure:

@@ -33,7 +33,7 @@ VERSION: Final = 2
 """Of the format and of its keys; contexts of different versions do not acknowledge."""
 
 MAX_RANGES: Final = 64
-"""How many ranges of missing messages one ACKNACK names at most."""
+"""Most ranges of missing messages that one ACKNACK names."""
 
 HEADER: Final = struct.Struct("<BBH16s16sqq")
 RANGE: Final = struct.Struct("<qq")

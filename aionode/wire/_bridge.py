@@ -1,4 +1,4 @@
-"""What `zenoh-bridge-ros2dds` announces of the nodes behind it, and reads of ours.
+"""The announcements of `zenoh-bridge-ros2dds`: of the nodes behind it, and of ours to it.
 
 A bridge is a Zenoh router with a DDS participant. The key of a topic or service is its ROS name
 without the first slash, without domain, type and hash. It announces itself and what it has found::

@@ -59,7 +59,7 @@ VALUE_SIZE: Final = 64
 """About what one value of a message takes in memory, in bytes: a Python object and its place."""
 
 ELEMENT_SIZE: Final = 8
-"""What one number of an array takes at most, in bytes."""
+"""Most bytes that one number of an array takes."""
 
 
 def type_from_description(description: TypeDescription) -> Any:

@@ -47,7 +47,7 @@ class DataKey(NamedTuple):
 
 
 class Side(enum.Enum):
-    """Who says something about a topic."""
+    """The endpoints that a key speaks of: publishers or subscriptions."""
 
     PUBLISHERS = "pub"
     SUBSCRIPTIONS = "sub"

@@ -1,1 +1,1 @@
-"""What all endpoints are built from: queue, callback runner, graph entry."""
+"""The parts of which all endpoints are built: queue, callback runner, graph entry."""

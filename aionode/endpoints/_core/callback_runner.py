@@ -55,7 +55,7 @@ REPORT_INTERVAL_NS = 1_000_000_000
 
 @dataclass(frozen=True, slots=True)
 class CallbackContext:
-    """Where a callback failed, for an `on_error` function.
+    """The callback that failed, and its input, for an `on_error` function.
 
     Attributes:
         node: Full name of the node.

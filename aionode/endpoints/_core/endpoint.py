@@ -1,4 +1,4 @@
-"""What publishers, subscriptions, services and clients have in common: their place in the graph."""
+"""The base of publishers, subscriptions, services and clients: their place in the graph."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
 
 
 class EndpointSetup(NamedTuple):
-    """What a node gives to an endpoint that it creates.
+    """The parts of a node that an endpoint uses.
 
     Attributes:
         endpoint: The endpoint as the graph is to know it.

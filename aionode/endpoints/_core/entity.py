@@ -1,6 +1,6 @@
-"""What all entities of a node have in common: an owner, a task, and an end.
+"""The base of all entities of a node: an owner, a task, and an end.
 
-What has an underscore here is for the node and for subclasses; users see the rest.
+Names with an underscore are for the node and for subclasses; users see the rest.
 """
 
 from __future__ import annotations

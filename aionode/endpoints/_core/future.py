@@ -1,4 +1,4 @@
-"""What rclpy's ``*_async`` methods return: the result of an entity's work as a future."""
+"""The futures that rclpy's ``*_async`` methods return, for the result of an entity's work."""
 
 from __future__ import annotations
 

@@ -15,18 +15,18 @@ from aionode.clock import perf_ns
 __all__ = ["REPEAT_S", "LeaseWatch", "Watched", "watch"]
 
 GRACE_NS: Final = 30_000_000
-"""How long after it has noticed the end of a time to live the thread leaves the stop to the loop,
-which may be as late as the thread, because the process was frozen or the machine is busy."""
+"""Time for which the thread, after it has noticed the end of a time to live, leaves the stop to the
+loop: the loop may only be late, because the process was frozen or the machine is busy."""
 
 POLL_S: Final = 0.05
-"""How often it looks at least: at clocks that were set, after the host was suspended, and at stops
-that are put again."""
+"""Longest time between two looks at the leases: a clock may have been set, the host suspended, or a
+stop may have to be sent again."""
 
 AGAIN_S: Final = 0.01
-"""How often it looks while a time to live is over."""
+"""Time between two looks while a time to live is over."""
 
 REPEAT_S: Final = 0.2
-"""How long a stop is put again while the loop does not take over."""
+"""Time for which a stop is sent again while the loop does not take over."""
 
 STOPPED: Final = "the process was about to end or to be suspended"
 
@@ -64,7 +64,7 @@ class Watched(Protocol):
 
 
 class Record:
-    """What the thread knows of one lease.
+    """One lease, as the thread knows it.
 
     Attributes:
         noticed_ns: When it was seen to be over, by `perf_ns`; 0 while it is not.

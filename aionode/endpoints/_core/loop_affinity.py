@@ -1,4 +1,4 @@
-"""Which event loop and thread a context works in, for calls from other threads."""
+"""The event loop and thread of a context, for calls from other threads."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ResultT = TypeVar("ResultT")
 MethodT = TypeVar("MethodT", bound="Callable[..., Any]")
 
 PATIENCE_S = 1.0
-"""How often a waiting thread checks whether the event loop has been closed."""
+"""Time between two checks by a waiting thread whether the event loop has been closed."""
 
 
 class LoopAffinity:

@@ -97,7 +97,7 @@ class MessageQueue(InlineCall, Generic[T]):
         # Those that wait for an item and for room; emptied when they are woken.
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
-        # What `consume` waits for, and what handles items meanwhile. The waiter is None while the
+        # `consume` waits for the waiter; inline calls handle items meanwhile. It is None while the
         # consumer does not wait, and during an inline callback.
         self._inline_waiter: asyncio.Future[None] | None = None
         self._handle: Callable[[int, T], Coroutine[object, object, None] | None] | None = None
@@ -189,7 +189,7 @@ class MessageQueue(InlineCall, Generic[T]):
 
     @property
     def waiting(self) -> int:
-        """How many items wait."""
+        """The number of items that wait."""
         return len(self.items)
 
     async def wait(self, waiter: asyncio.Future[None] | None = None) -> None:

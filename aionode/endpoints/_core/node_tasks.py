@@ -1,4 +1,4 @@
-"""Which tasks are a node's own, and how a wait ends whose entity is destroyed."""
+"""The tasks of a node, and the end of a wait whose entity is destroyed."""
 
 from __future__ import annotations
 

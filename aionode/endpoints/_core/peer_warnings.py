@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 __all__ = ["PeerWarnings"]
 
 EACH: Final = 10
-"""How many warnings about one subject are logged in full."""
+"""Most warnings about one subject that are logged in full."""
 
 ALL: Final = 100
-"""How many are logged in full in all."""
+"""Most warnings that are logged in full in all."""
 
 
 class PeerWarnings:

@@ -60,7 +60,7 @@ class PublicationTimes:
 
 
 class PublisherClock:
-    """What is known about the clock of one publisher's host.
+    """The clock of one publisher's host, as far as it is known.
 
     Attributes:
         began_ns: What the steady clock here showed when that clock showed 0, as an estimate.

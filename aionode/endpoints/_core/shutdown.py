@@ -19,10 +19,10 @@ NOTICE_S = 0.3
 """After how long the log says what the end of a node waits for, in seconds of real time."""
 
 CALLBACKS_S = 5.0
-"""How long the end of a node waits for its callbacks."""
+"""Time for which the end of a node waits for its callbacks."""
 
 ANSWERS_S = 1.0
-"""How long it waits for the servers whose goals it cancels."""
+"""Time for which the end of a node waits for the servers whose goals it cancels."""
 
 
 class Shutdown:

@@ -49,10 +49,10 @@ NOTICE_S = 0.3
 """After how long the log names a cancelled callback that keeps `on_silence` waiting."""
 
 MOMENT_S = 0.05
-"""How long after the end of a publisher it is clear whether its whole process has gone."""
+"""Time after the end of a publisher until it is clear whether its whole process has gone."""
 
 RETURN_S = 1.0
-"""How long a process may take to return whose connection was lost: the recovery cuts some.
+"""Time within which a process may return whose connection was lost: the recovery cuts some.
 
 Zenoh makes a connection anew within some tenths of a second, and declares in some milliseconds.
 """
@@ -62,12 +62,12 @@ ROUTER_S = 2.0
 
 
 class Silence(NamedTuple):
-    """What a program wants when a topic falls silent.
+    """A program's wishes for a topic that falls silent.
 
     Attributes:
         on_silence: Called without arguments, sync or async.
         silence_ns: The longest silence.
-        clock: What it is measured with; None for the steady clock.
+        clock: The clock that measures the silence; None for the steady clock.
     """
 
     on_silence: Callable[[], object]

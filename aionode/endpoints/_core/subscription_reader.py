@@ -1,4 +1,4 @@
-"""Where the messages of a subscription arrive."""
+"""The entrance of a subscription: transports hand messages to its reader."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ REMEMBERED_PUBLISHERS = 1024
 
 
 class MessageInfo(TypedDict):
-    """What is known about a message besides its content, with rclpy's keys.
+    """Sender, times and sequence number of a message, with rclpy's keys.
 
     Times are in nanoseconds since 1970; sequence numbers start at 1 and increase by 1.
     """
@@ -39,7 +39,7 @@ class MessageInfo(TypedDict):
 
 
 class Monitor(Protocol):
-    """What is told which publishers are alive."""
+    """An observer of publishers: it is told which are alive."""
 
     def note_alive(self, gid: bytes) -> None:
         """Take the assertion of a publisher."""
@@ -49,7 +49,7 @@ class Monitor(Protocol):
 
 
 class Watch(Protocol):
-    """What is told which messages arrive, and refuses some."""
+    """An observer of arriving messages, which may refuse them."""
 
     def admits(self, sample_info: SampleInfo) -> bool:
         """Take a message that has arrived; return whether it is to be queued."""

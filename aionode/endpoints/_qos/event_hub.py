@@ -1,4 +1,4 @@
-"""Where the events of one endpoint go: to its callbacks, and to its stream."""
+"""Hands the events of one endpoint to its callbacks and to its stream."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which publishers of a subscription are alive."""
+"""The liveliness of each publisher of a subscription."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a publisher has promised: its deadline and its liveliness."""
+"""Watches the promises of a publisher: its deadline and its liveliness."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["PublisherMonitor", "SignOfLife"]
 
 ASSERTIONS_IN_LEASE = 3
-"""How often AUTOMATIC liveliness is asserted within one lease: two may be lost."""
+"""Assertions of AUTOMATIC liveliness within one lease: two may be lost."""
 
 
 class SignOfLife(Writer):

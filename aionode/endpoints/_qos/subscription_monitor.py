@@ -1,4 +1,4 @@
-"""What a subscription has requested: deadline, lifespan, and liveliness of its publishers."""
+"""Watches what a subscription has requested: deadline, lifespan, liveliness of its publishers."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ __all__ = ["CancelRequest"]
 FIRST_RETRY_S = 0.1
 LONGEST_RETRY_S = 5.0
 ATTEMPTS = 14
-"""How many requests are sent at most, which takes 45 s; after that only answers are awaited."""
+"""Most requests that are sent, within 45 s; after that only answers are awaited."""
 
 
 class CancelRequest:

@@ -53,7 +53,7 @@ ANSWER_LIMIT_S = 1.0
 UNLIMITED = 2**63 - 1
 
 LAST_FEEDBACK_S = 0.02
-"""How long to wait for feedback after a result from another process, in seconds.
+"""Time to wait for feedback after a result from another process, in seconds.
 
 In Zenoh a reply may overtake the samples before it: of 100 goals that sent feedback just before
 their end, in 3 to 7 it came after the result, by less than a millisecond.
@@ -451,7 +451,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
         return await self._kept(self._begin_to_cancel(goal).answer)
 
-    # What the server sends
+    # Messages of the server
 
     def _on_feedback(self, message: Any) -> Any:
         goal = self._goals.get(message.goal_id.uuid.tobytes())

@@ -26,7 +26,7 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 T = TypeVar("T")
 
 KEPT_FEEDBACK = 100
-"""How many feedback messages are kept for the reader; the oldest is dropped first."""
+"""Most feedback messages that are kept for the reader; the oldest is dropped first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class ActionResult(Generic[ResultT]):
 
 
 class GoalClient(Protocol):
-    """What a goal handle needs of its `ActionClient`, which describes each method."""
+    """The methods of an `ActionClient` that its goal handles call; the client describes each."""
 
     action_name: str
     _subject: str
@@ -179,7 +179,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         if not self.done:
             self._client._cancel_at_server(self)
 
-    # What a caller awaits
+    # For callers to await
 
     async def result(self) -> ActionResult[ResultT]:
         """Wait for the end of the goal, and return how it ended.

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["SIGNS_IN_TIME", "ClientWatch", "announcing"]
 
 SIGNS_IN_TIME = 3
-"""How often a client gives a sign within the time after which it is lost: two may be late."""
+"""Signs that a client gives within the time after which it is lost: two may be late."""
 
 STALLS_IN_TIME = 6
 """A look that is late by this part of that time, or more, shows that the server stood still."""
@@ -39,7 +39,7 @@ def announcing(profile: QoSProfile | int, lost_ns: int) -> QoSProfile:
 
 @dataclass(slots=True)
 class WatchedGoal:
-    """What is known of the client of one goal.
+    """The client of one goal, as its server knows it.
 
     Attributes:
         gid: The gid of its client of the service that takes goals.

@@ -1,4 +1,4 @@
-"""What action servers and clients share: their parts, argument checks, stamps, abort reasons."""
+"""The shared parts of action servers and clients: argument checks, stamps, abort reasons."""
 
 from __future__ import annotations
 

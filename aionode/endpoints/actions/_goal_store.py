@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 MAX_GOALS = 1000
-"""How many goals may be active at once, unless a program says otherwise."""
+"""Most goals that may be active at once, unless a program says otherwise."""
 
 SPACING_S = 0.0001
 """The shortest time between two status messages, in seconds for each goal that they list."""
@@ -76,7 +76,7 @@ class GoalStore(dict[bytes, Any]):
 
     @property
     def active(self) -> int:
-        """How many goals have not ended."""
+        """The number of goals that have not ended."""
         return len(self) - len(self._kept)
 
     def refusal(self, goal: Any = None) -> str:

@@ -24,7 +24,7 @@ class ActionContext(Protocol):
 
     @property
     def time_base(self) -> TimeBase:
-        """Where the time comes from."""
+        """The source of time."""
 
     def new_uuid(self) -> bytes:
         """Return the 16 bytes of a new id for a goal."""
@@ -35,7 +35,7 @@ class ActionContext(Protocol):
 
 
 class ActionNode(Protocol):
-    """What an action needs of an `aionode.Node`.
+    """The methods of an `aionode.Node` that actions call.
 
     A protocol, as `Node` itself imports the actions.
     """

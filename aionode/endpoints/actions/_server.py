@@ -69,7 +69,7 @@ UNLIMITED = 2**63 - 1
 """Depth of the queues of goals: `goal_callback` limits their number."""
 
 DRAIN_LIMIT_S = 1.0
-"""How long a result waits until the last feedback is sent, in seconds of real time."""
+"""Time for which a result waits until the last feedback is sent, in seconds of real time."""
 
 
 class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):

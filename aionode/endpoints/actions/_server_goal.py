@@ -23,7 +23,7 @@ STOPPED_TEXT = "the action server stopped"
 
 
 class GoalServer(Protocol):
-    """What a goal handle needs of its `ActionServer`, which describes each method."""
+    """The methods of an `ActionServer` that its goal handles call; the server describes each."""
 
     action_name: str
     destroyed: bool
@@ -83,7 +83,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def _current_key(self) -> GoalKey:
-        """What cancel requests select it by."""
+        """The properties by which cancel requests select this goal."""
         return self._key._replace(status=self.status)
 
     @property

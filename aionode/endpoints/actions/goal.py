@@ -80,7 +80,7 @@ class GoalStatus(IntEnum):
 
 
 class GoalEvent(IntEnum):
-    """What can happen to a goal, with the numbers of rcl_action."""
+    """The events in the life of a goal, with the numbers of rcl_action."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1
@@ -90,21 +90,21 @@ class GoalEvent(IntEnum):
 
 
 class GoalResponse(Enum):
-    """What a `goal_callback` answers to a new goal."""
+    """The answer of a `goal_callback` to a new goal."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a `cancel_callback` answers to a request to cancel a goal."""
+    """The answer of a `cancel_callback` to a request to cancel a goal."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelCode(IntEnum):
-    """What a server answers to a cancel request, as in action_msgs/srv/CancelGoal."""
+    """The answer of a server to a cancel request, as in action_msgs/srv/CancelGoal."""
 
     NONE = 0
     REJECTED = 1
@@ -142,7 +142,7 @@ def next_status(status: GoalStatus, event: GoalEvent, goal_id: str = "") -> Goal
 
 
 class GoalKey(NamedTuple):
-    """What a cancel request selects goals by.
+    """The properties of a goal by which a cancel request selects it.
 
     Attributes:
         goal_id: The 16 bytes of the id; all zero in a request that does not name a goal.

@@ -45,7 +45,7 @@ class TimerInfo:
 
 
 TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
-"""What a timer calls, sync or async; an awaitable that it returns is awaited."""
+"""A function that a timer calls, sync or async; an awaitable that it returns is awaited."""
 
 RunnerFactory = Callable[[TimerCallback, "Timer", CallbackStats], "CallbackRunner"]
 """Makes the runner of a timer's callback, with the options given to `create_timer`."""
@@ -99,7 +99,7 @@ class Timer(Entity):
 
     @property
     def callback(self) -> TimerCallback:
-        """What is called: without arguments, or with a `TimerInfo` if it requires an argument.
+        """The function that is called: without arguments, or with a `TimerInfo` if it requires one.
 
         A new one is used from the next call on.
         """

@@ -1,4 +1,4 @@
-"""What launch files know as `launch`: the names of ROS 2's, evaluated into a plan."""
+"""The package that launch files import as `launch`: ROS 2's names, evaluated into a plan."""
 
 from __future__ import annotations
 

@@ -77,5 +77,5 @@ class EventHandler(BaseEventHandler):
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity] | None:
-        """What is done."""
+        """The actions that the event starts."""
         return self._entities

@@ -60,7 +60,7 @@ class LaunchContext:
         self.ahead = False
         """Whether what is evaluated is done later."""
         self.names: dict[str, int] = {}
-        """How many processes had a name so far."""
+        """The number of processes that each name had so far."""
         self._configurations: list[dict[str, Any]] = []
         self._environments: list[dict[str, str]] = []
         self._locals: list[dict[str, Any]] = []

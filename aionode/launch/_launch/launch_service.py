@@ -32,7 +32,7 @@ class LaunchService:
         self.context = LaunchContext(argv=argv, noninteractive=noninteractive)
         self.shuts_down_when_idle = True
         self.included: list[LaunchDescriptionEntity] = []
-        """What the engine has not taken yet."""
+        """Descriptions that the engine has not taken yet."""
         self.wake: Callable[[], object] = int
         """Called in the loop's thread when there is something more in `included`."""
         self.event_loop: asyncio.AbstractEventLoop | None = None

@@ -35,7 +35,7 @@ class Substitution:
         return f"{type(self).__name__}()"
 
     second_word: ClassVar[str] = ""
-    """Which argument the second word of ``$(name word word)`` is, if it is one with a name."""
+    """The name of the argument that the second word of ``$(name word word)`` is, if it has one."""
 
     @classmethod
     def of_words(cls, *words: Any) -> Self:

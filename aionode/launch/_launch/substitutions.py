@@ -283,7 +283,7 @@ class FileContent(Substitution):
 
 
 class Command(Substitution):
-    """What a command prints, such as xacro."""
+    """The output of a command, such as xacro."""
 
     second_word = "on_stderr"
 

@@ -1,4 +1,4 @@
-"""What launch files know as `launch_ros`."""
+"""The package that launch files import as `launch_ros`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What nodes get: parameters and remapping rules, as arguments or as values."""
+"""Parameters and remapping rules of nodes, as arguments or as values."""
 
 from __future__ import annotations
 

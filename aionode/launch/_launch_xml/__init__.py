@@ -1,4 +1,4 @@
-"""What launch files know as `launch_xml`."""
+"""The package that launch files import as `launch_xml`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What launch files know as `launch_yaml`."""
+"""The package that launch files import as `launch_yaml`."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class ExecuteLocal(Action):
         self.log_cmd = log_cmd
         self._cached = {1: bytearray(), 2: bytearray()}
         self.process_details: dict[str, Any] | None = None
-        """What is known of the process while it runs: name, cmd, pid, …."""
+        """Details of the process while it runs: name, cmd, pid, …."""
         self.return_code: int | None = None
 
     def arguments_of_ros(self, context: LaunchContext) -> list[str | ParameterValues]:
