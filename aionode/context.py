@@ -26,8 +26,7 @@ from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProce
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.logging import get_logger
 from aionode.message import type_name
-from aionode.transport._local_sessions import new_participant
-from aionode.transport._zenoh_config import network_from, unheard_middleware
+from aionode.transport._network import network_from, new_participant, unheard_middleware
 from aionode.transport.base import Registration, Transport
 from aionode.transport.local import LocalTransport
 from aionode.wire._liveliness import endpoint_token, gid_of

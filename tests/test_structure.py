@@ -49,8 +49,7 @@ SHARED = {
     "aionode.tf._buffer_core": "buffers of rclpy's programs take the same times and defaults",
     "aionode.tf._texts": "the command line shows the rates of frames",
     "aionode.tf._waiters": "futures of rclpy's programs wait as tasks do",
-    "aionode.transport._local_sessions": "the id of a context says when it was made",
-    "aionode.transport._zenoh_config": "contexts and `aionode router` and `doctor` share settings",
+    "aionode.transport._network": "contexts and `aionode router` and `doctor` share settings",
     "aionode.transport.zenoh._session": "`aionode router` is a Zenoh session without nodes",
     "aionode.wire": "the wire format belongs to the transports; nothing outside aionode needs it",
 }

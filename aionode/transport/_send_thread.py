@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from aionode.clock import perf_ns
 from aionode.transport._loop_waker import ThreadsafeQueue
-from aionode.transport._zenoh_config import QUEUE_BYTES
+from aionode.transport._network import QUEUE_BYTES
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker

@@ -13,8 +13,8 @@ from typing import Any
 from aionode import content_filter
 from aionode.message import fields
 from aionode.transport import _content_filters as content_filters
-from aionode.transport import _writer_proxy as writer_proxy
-from aionode.transport._reliability import NEVER
+from aionode.transport.zenoh import _writer_proxy as writer_proxy
+from aionode.transport.zenoh._reliability import NEVER
 from aionode.wire import _described_type as described_type
 from aionode.wire.cdr import _layout as layout
 from tests.faults import process

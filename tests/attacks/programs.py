@@ -33,9 +33,9 @@ from aionode.interfaces.rcl_interfaces.srv import (
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSProfile
-from aionode.transport._local_sessions import announce
 from aionode.transport.link import _protocol as protocol
 from aionode.transport.link._continuation import STOPS, seal
+from aionode.transport.zenoh._local_sessions import announce
 from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from aionode.transport import _writer_proxy as writer_proxy
-from aionode.transport._writer_proxy import WriterProxy
+from aionode.transport.zenoh import _writer_proxy as writer_proxy
+from aionode.transport.zenoh._writer_proxy import WriterProxy
 from aionode.wire import _acknack as acknack
 from aionode.wire._acknack import SubmessageKind
 from tests.attacks.liar import Liar

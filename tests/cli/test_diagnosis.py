@@ -14,7 +14,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.message import Message, int32
-from aionode.transport._zenoh_config import network_from
+from aionode.transport._network import network_from
 
 
 @pytest.fixture

@@ -27,7 +27,7 @@ from aionode.errors import (
 from aionode.idl import define
 from aionode.message import Message, type_name
 from aionode.names import resolve
-from aionode.transport._zenoh_config import network_from
+from aionode.transport._network import network_from
 from aionode.transport.link import _protocol as protocol
 from aionode.transport.link._listener import Advertisement
 from aionode.transport.link._protocol import BufferRef, Frame, FrameParser, Kind

@@ -20,7 +20,7 @@ from aionode.cli._support.session import run_verb
 from aionode.clock import perf_ns
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
-from aionode.transport._zenoh_config import DiscoveryRange, unheard_middleware
+from aionode.transport._network import DiscoveryRange, unheard_middleware
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from aionode.cli._support.output import Output
     from aionode.graph import EndpointInfo, NodeInfo
     from aionode.node import Node
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
 
 __all__ = ["doctor", "doctor_command", "network_findings"]
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections import Counter
 
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
     from aionode.transport.base import Reader, Requester, Serve, Writer
 
 __all__ = ["RclTransport"]

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import zenoh
 
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
-from aionode.transport._zenoh_config import BLOCK_US, FLUSH_S
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._handlers import BULK_PRIORITY, reason
+from aionode.transport.zenoh._settings import BLOCK_US, FLUSH_S
 from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:

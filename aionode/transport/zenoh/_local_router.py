@@ -20,8 +20,8 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
+from aionode.transport._network import is_near
 from aionode.transport._send_thread import start_thread
-from aionode.transport._zenoh_config import LOOPBACK, is_near, look_settings, router_settings
 from aionode.transport.zenoh._handlers import direct, reason, translated
 from aionode.transport.zenoh._recovery import LOOK_IDS
 from aionode.transport.zenoh._session import (
@@ -30,10 +30,11 @@ from aionode.transport.zenoh._session import (
     load_config,
     run_in_own_thread,
 )
+from aionode.transport.zenoh._settings import LOOPBACK, look_settings, router_settings
 from aionode.transport.zenoh._sockets import SocketOptions
 
 if TYPE_CHECKING:
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["LocalRouter"]

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo, Graph
-    from aionode.transport._reliability import WriterHistory
+    from aionode.transport.zenoh._reliability import WriterHistory
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["MatchedReaders"]

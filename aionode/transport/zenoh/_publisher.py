@@ -14,7 +14,6 @@ from zenoh import ext
 from aionode.clock import SilenceAlarm, perf_ns
 from aionode.errors import TransportError
 from aionode.qos import depth_of, is_unlimited, keeps_all
-from aionode.transport._reliability import MUTE_TICKS, WriterHistory
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
 from aionode.transport.zenoh._acknowledgements import TICK_S
@@ -41,6 +40,7 @@ from aionode.transport.zenoh._kept_history import (
     unless_expired,
 )
 from aionode.transport.zenoh._matched_readers import MatchedReaders
+from aionode.transport.zenoh._reliability import MUTE_TICKS, WriterHistory
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.transport.zenoh._stop import ZenohStop
 from aionode.transport.zenoh._submessages import SubmessageSender
@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
-    from aionode.transport._reliability import ReaderProxy
     from aionode.transport.base import StopSender
+    from aionode.transport.zenoh._reliability import ReaderProxy
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.wire._acknack import Submessage
 

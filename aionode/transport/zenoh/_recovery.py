@@ -32,10 +32,10 @@ import zenoh
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
-from aionode.transport._zenoh_config import introducers, look_settings
 from aionode.transport.zenoh._descriptors import find, pair_of
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session import load_config
+from aionode.transport.zenoh._settings import introducers, look_settings
 from aionode.transport.zenoh._sockets import cut
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from collections.abc import Set as AbstractSet
 
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
     from aionode.transport.zenoh._descriptors import Pair
     from aionode.transport.zenoh._graph_watcher import Watcher
     from aionode.transport.zenoh._session_state import SessionState

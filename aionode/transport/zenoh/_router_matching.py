@@ -25,15 +25,15 @@ import zenoh
 
 from aionode.errors import ConfigurationError, TransportError
 from aionode.transport._send_thread import SendThread
-from aionode.transport._zenoh_config import look_settings
 from aionode.transport.zenoh._handlers import direct, reason
 from aionode.transport.zenoh._recovery import LOOK_IDS
 from aionode.transport.zenoh._session import CLOSE_S, load_config
+from aionode.transport.zenoh._settings import look_settings
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["RouterMatching"]

@@ -18,19 +18,19 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError, TransportError
-from aionode.transport._local_sessions import announce, listed, reserve_port
+from aionode.transport._network import network_from
 from aionode.transport._send_thread import start_thread
-from aionode.transport._zenoh_config import (
+from aionode.transport.zenoh._handlers import direct, reason
+from aionode.transport.zenoh._local_sessions import announce, listed, reserve_port
+from aionode.transport.zenoh._settings import (
     LOOPBACK,
     Neighbours,
     listening_address,
     near,
-    network_from,
     probed_ports,
     router_settings,
     session_settings,
 )
-from aionode.transport.zenoh._handlers import direct, reason
 from aionode.transport.zenoh._sockets import SocketOptions, cut_unanswered
 from aionode.transport.zenoh._turns import one_at_a_time
 
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from aionode.transport._loop_waker import ThreadsafeQueue
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
 
 __all__ = [
     "ConnectionWatcher",

@@ -17,8 +17,8 @@ from aionode.errors import escaped
 from aionode.graph import EndpointKind
 from aionode.transport._content_filters import ContentFilters
 from aionode.transport._loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
+from aionode.transport._network import GRAPH_BYTES, QUEUE_BYTES
 from aionode.transport._send_thread import SendThread
-from aionode.transport._zenoh_config import FLUSH_S, GRAPH_BYTES, QUEUE_BYTES
 from aionode.transport.base import Registration
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._announced import AnnouncedLimit
@@ -28,6 +28,7 @@ from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._outlet import Outlet
 from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.transport.zenoh._request_room import RequestRoom
+from aionode.transport.zenoh._settings import FLUSH_S
 from aionode.transport.zenoh._sockets import look
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of

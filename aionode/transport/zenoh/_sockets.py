@@ -24,8 +24,8 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
+from aionode.transport._network import is_near
 from aionode.transport._send_thread import start_thread
-from aionode.transport._zenoh_config import BLOCK_US, is_near
 from aionode.transport.zenoh._descriptors import (
     Descriptor,
     Pair,
@@ -35,6 +35,7 @@ from aionode.transport.zenoh._descriptors import (
     polled_by_zenoh,
 )
 from aionode.transport.zenoh._handlers import direct
+from aionode.transport.zenoh._settings import BLOCK_US
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

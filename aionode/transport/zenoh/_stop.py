@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from zenoh import ext
 
     from aionode.clock import SilenceAlarm
-    from aionode.transport._reliability import ReaderProxy, WriterHistory
     from aionode.transport._send_thread import SendQueue, SendThread
+    from aionode.transport.zenoh._reliability import ReaderProxy, WriterHistory
 
 __all__ = ["ZenohStop"]
 

@@ -13,7 +13,7 @@ from aionode.wire._acknack import SubmessageKind
 from aionode.wire._key_expression import Side
 
 if TYPE_CHECKING:
-    from aionode.transport._reliability import Entry, ReaderProxy
+    from aionode.transport.zenoh._reliability import Entry, ReaderProxy
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["SubmessageSender"]

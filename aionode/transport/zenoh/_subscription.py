@@ -14,8 +14,6 @@ from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
 from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._content_filters import filter_token, text_of_filter
-from aionode.transport._reliability import NEVER, OVERHEAD_BYTES
-from aionode.transport._writer_proxy import WriterProxy
 from aionode.transport.base import NOT_INLINE_NS, ReaderRegistration, SampleInfo
 from aionode.transport.zenoh._delivery import (
     UNKNOWN_GID,
@@ -23,7 +21,9 @@ from aionode.transport.zenoh._delivery import (
     is_transient,
 )
 from aionode.transport.zenoh._handlers import direct, translated
+from aionode.transport.zenoh._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport.zenoh._session_state import Declaration
+from aionode.transport.zenoh._writer_proxy import WriterProxy
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
     from aionode.transport.base import (
         LinkStatus,
         Reader,

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from aionode.clock import perf_ns
-from aionode.transport._local_sessions import holder_of, listed
-from aionode.transport._zenoh_config import LOOPBACK, near
+from aionode.transport.zenoh._local_sessions import holder_of, listed
+from aionode.transport.zenoh._settings import LOOPBACK, near
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterator, Sequence
 
-    from aionode.transport._zenoh_config import Network
+    from aionode.transport._network import Network
 
 __all__ = ["connecting", "one_at_a_time"]
 

@@ -13,7 +13,7 @@ import pytest
 
 from aionode.context import Context
 from aionode.errors import ConfigurationError, TransportError
-from aionode.transport._zenoh_config import unheard_middleware
+from aionode.transport._network import unheard_middleware
 from aionode.transport.rcl import RclTransport, _types
 from aionode.transport.rcl._bindings import load
 from aionode.transport.rcl._types import find, hash_text, rosidl_class

@@ -18,13 +18,13 @@ from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from aionode.transport import _reliability as reliability
-from aionode.transport._reliability import WINDOW_BYTES
-from aionode.transport._writer_proxy import WriterProxy
+from aionode.transport.zenoh import _reliability as reliability
 from aionode.transport.zenoh import _session_state as session_state
 from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._publisher import ZenohWriter
+from aionode.transport.zenoh._reliability import WINDOW_BYTES
 from aionode.transport.zenoh._subscription import GONE_TICKS, ZenohReader
+from aionode.transport.zenoh._writer_proxy import WriterProxy
 from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
 from aionode.wire._acknack import Submessage, SubmessageKind
@@ -447,7 +447,7 @@ async def test_an_idle_keep_all_publisher_hears_of_its_readers(
 ) -> None:
     """Else it could not tell one that was frozen from one that has ended."""
     monkeypatch.setattr("aionode.transport.zenoh._acknowledgements.PROBE_S", 0.01)
-    monkeypatch.setattr("aionode.transport._reliability.UNHEARD_NS", 0)
+    monkeypatch.setattr("aionode.transport.zenoh._reliability.UNHEARD_NS", 0)
     async with (
         two_contexts() as (first, second),
         quiet_node("a", first) as a,

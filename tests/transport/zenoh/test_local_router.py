@@ -9,7 +9,7 @@ import pytest
 
 from aionode.context import Context
 from aionode.errors import ConfigurationError
-from aionode.transport._zenoh_config import network_from
+from aionode.transport._network import network_from
 from aionode.transport.zenoh import _local_router as local_router
 from aionode.transport.zenoh._local_router import ROUTER_IDS, LocalRouter
 from aionode.transport.zenoh._session import answering_ports

@@ -13,7 +13,7 @@ import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode.graph import Graph
-from aionode.transport._zenoh_config import network_from
+from aionode.transport._network import network_from
 from aionode.transport.zenoh._session import close_session, open_router
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import DOMAIN_ID, Collector, known, raw_session, ros_router, zenoh_config

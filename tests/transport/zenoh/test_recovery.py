@@ -16,7 +16,7 @@ import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
 from aionode._concurrency import checkpoint
 from aionode.graph import Graph, NodeInfo
-from aionode.transport._zenoh_config import Network, network_from
+from aionode.transport._network import Network, network_from
 from aionode.transport.zenoh import _recovery as recovery
 from aionode.transport.zenoh import _sockets
 from aionode.transport.zenoh._descriptors import Pair, find

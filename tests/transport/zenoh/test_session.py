@@ -19,7 +19,6 @@ from aionode.context import Context
 from aionode.errors import ConfigurationError, TransportError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.transport._zenoh_config import INTRODUCERS
 from aionode.transport.zenoh._session import (
     answering_ports,
     close_session,
@@ -27,6 +26,7 @@ from aionode.transport.zenoh._session import (
     run_in_own_thread,
     speaking_ports,
 )
+from aionode.transport.zenoh._settings import INTRODUCERS
 from tests.support.peers import free_ports, quiet_node, ros_router, ros_session
 
 pytestmark = pytest.mark.one_loop
@@ -103,7 +103,7 @@ async def both_seen(node: Node) -> None:
 
 def list_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have sessions meet as on systems that do not list them."""
-    monkeypatch.setattr("aionode.transport._local_sessions.udp_sockets", lambda: None)
+    monkeypatch.setattr("aionode.transport._network.UDP_SOCKETS", Path("/nowhere"))
 
 
 async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
@@ -156,7 +156,7 @@ async def test_a_session_opens_where_loopback_is_down(monkeypatch: pytest.Monkey
     """In a sandbox without a network: nobody can be met, but nodes of the process work."""
     nobody_may_connect = "255.255.255.255"
     monkeypatch.setattr(
-        "aionode.transport._local_sessions.address_of", lambda _: nobody_may_connect
+        "aionode.transport.zenoh._local_sessions.address_of", lambda _: nobody_may_connect
     )
     async with quiet_node("one") as one:
         assert knows(one, ["one"])

@@ -14,9 +14,9 @@ from pathlib import Path
 import pytest
 
 from aionode._concurrency import checkpoint
-from aionode.transport._local_sessions import announce
-from aionode.transport._zenoh_config import DiscoveryRange, Network, network_from
+from aionode.transport._network import DiscoveryRange, Network, network_from
 from aionode.transport.zenoh import _turns
+from aionode.transport.zenoh._local_sessions import announce
 from aionode.transport.zenoh._turns import connecting, is_idle, one_at_a_time
 from tests.support.peers import free_ports
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from aionode.transport._reliability import (
+from aionode.transport.zenoh._reliability import (
     NEVER,
     OVERHEAD_BYTES,
     QUIET_NS,

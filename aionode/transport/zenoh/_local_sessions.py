@@ -12,45 +12,22 @@ with a hundred processes that are linked it takes 8 ms to read, when all of them
 Zenoh's gossip would introduce the sessions too, but each one tells all that it is connected with of
 each new one: a hundred that start at once send half a million such messages. Where nothing is
 listed, that is how sessions meet.
-
-Zenoh has the session with the greater id dial if gossip introduces two. Ids grow with the time,
-so that this is the later one here too, and no two ever dial each other.
 """
 
 from __future__ import annotations
 
-import secrets
 import socket
 import sys
 from contextlib import suppress
-from pathlib import Path
 from typing import Final
 
-from aionode.clock import perf_ns
-from aionode.transport._zenoh_config import LOOPBACK
+from aionode.transport._network import udp_sockets
+from aionode.transport.zenoh._settings import LOOPBACK
 
-__all__ = ["announce", "holder_of", "listed", "new_participant", "reserve_port"]
-
-UDP_SOCKETS: Final = Path("/proc/net/udp")
+__all__ = ["announce", "holder_of", "listed", "reserve_port"]
 
 PRESENCE: Final = 97
 """The second number of these addresses, all of which belong to loopback."""
-
-LATER: Final = "f"
-"""The first digit of the id of a session that looks others up: it dials all others."""
-
-SOUGHT: Final = "1"
-"""That of a session that does not: all others dial it, if one has introduced it to them."""
-
-
-def new_participant() -> str:
-    """Return an id for a context and its session; one that is made later is greater.
-
-    The time is that since the machine was started, which is the same for all processes. Zenoh
-    writes ids without leading zeros, and all have to see the same text.
-    """
-    first = SOUGHT if udp_sockets() is None else LATER
-    return f"{first}{perf_ns() >> 16:012x}{secrets.token_hex(10)[:19]}"
 
 
 def announce(group: int, port: int) -> socket.socket:
@@ -102,16 +79,6 @@ def reserve_port(host: str) -> socket.socket:
         one.close()
         raise
     return one
-
-
-def udp_sockets() -> list[str] | None:
-    """Return a line for each UDP socket that is bound; None where nothing lists them."""
-    if not sys.platform.startswith("linux"):
-        return None
-    try:
-        return UDP_SOCKETS.read_text("ascii").splitlines()[1:]
-    except OSError:  # a sandbox may hide it
-        return None
 
 
 def address_of(group: int) -> str:

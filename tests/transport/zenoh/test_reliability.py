@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability import (
+from aionode.transport.zenoh._reliability import (
     FLAPPING_NS,
     HEARTBEAT_NS,
     MUTE_TICKS,
@@ -19,7 +19,7 @@ from aionode.transport._reliability import (
     ReaderProxy,
     WriterHistory,
 )
-from aionode.transport._writer_proxy import WriterProxy
+from aionode.transport.zenoh._writer_proxy import WriterProxy
 
 WRITER = b"w" * 16
 

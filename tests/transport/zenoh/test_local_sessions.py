@@ -11,14 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from aionode.transport import _local_sessions
-from aionode.transport._local_sessions import (
-    announce,
-    holder_of,
-    listed,
-    new_participant,
-    reserve_port,
-)
+from aionode.transport import _network
+from aionode.transport._network import new_participant
+from aionode.transport.zenoh._local_sessions import announce, holder_of, listed, reserve_port
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of others"
@@ -48,7 +43,7 @@ def test_sessions_of_other_groups_are_not_listed(group: int) -> None:
 def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int) -> None:
     """Nothing is left to be removed."""
     program = (
-        "from aionode.transport._local_sessions import announce\n"
+        "from aionode.transport.zenoh._local_sessions import announce\n"
         f"presence = announce({group}, 4711)\n"
         "print('there', flush=True)\n"
         "input()\n"
@@ -81,7 +76,7 @@ def test_there_is_no_list_where_the_system_hides_it(
     group: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     """As a sandbox may; gossip is used instead, and all others dial such a session."""
-    monkeypatch.setattr(_local_sessions, "UDP_SOCKETS", tmp_path / "hidden")
+    monkeypatch.setattr(_network, "UDP_SOCKETS", tmp_path / "hidden")
 
     assert listed(group) is None
     assert new_participant()[0] == "1"

@@ -9,15 +9,17 @@ import pytest
 import zenoh  # noqa: TID251  # asks Zenoh whether it knows the settings
 
 from aionode.errors import ConfigurationError
-from aionode.transport._zenoh_config import (
-    INTRODUCERS,
+from aionode.transport._network import (
     MEETING_PORTS,
     ROUTER_PORT,
     DiscoveryRange,
-    Neighbours,
     Network,
     is_near,
     network_from,
+)
+from aionode.transport.zenoh._settings import (
+    INTRODUCERS,
+    Neighbours,
     probed_ports,
     router_settings,
     session_settings,
