@@ -1,10 +1,11 @@
 """How much code each room of aionode has: lines by package, now and in an earlier commit.
 
 Rooms are those of docs/design.md: a package or module of ``aionode/``, and each transport by
-itself. Generated interfaces are left out, and so are tests and documentation. A line counts
-whatever is in it, so that denser lines save nothing unseen: the columns say what is code, what is
-text (docstrings and comments), and what only passes names on, which is each ``__all__`` and each
-module that has nothing but imports.
+itself. What ``aionode/rclpy`` has besides rclpy, such as tf2, is counted apart. Generated
+interfaces are left out, and so are tests and documentation. A line counts whatever is in it, so
+that denser lines save nothing unseen: the columns say what is code, what is text (docstrings and
+comments), and what only passes names on, which is each ``__all__`` and each module that has nothing
+but imports.
 
 Run it with ``python benchmarks/lines.py``. ``--since COMMIT`` adds the lines of a commit and the
 difference, ``--room rclpy`` lists the modules of one room.
@@ -29,6 +30,34 @@ if TYPE_CHECKING:
 ROOT: Final = Path(__file__).parents[1]
 DIVIDED: Final = ("transport",)
 """Packages whose parts are rooms of their own."""
+
+BESIDE_RCLPY: Final = {
+    "other packages": (
+        "_ament_index_python",
+        "_arrays",  # of ros2_numpy and cv_bridge
+        "_cv_bridge",
+        "_message_filters",
+        "_ros2_numpy",
+        "_rosbag2",
+        "_rosidl_parser",
+        "_rosidl_runtime_py",
+        "_sensor_msgs_py",
+        "_tf2_",
+        "_tf_transformations",
+    ),
+    "message classes": ("_rosidl/",),
+    "start of programs": (
+        "__main__",
+        "_check",
+        "_finder",
+        "_missing",
+        "_module_names",
+        "_program",
+        "_reexports",
+        "_workspace",
+    ),
+}
+"""What ``aionode/rclpy`` has besides the modules of rclpy: how the paths in it begin."""
 
 
 @dataclass
@@ -146,6 +175,10 @@ def room_of(path: str) -> str:
     parts = path.removesuffix(".py").split("/")[1:]
     if parts[0] in DIVIDED and len(parts) > 2:
         return "/".join(parts[:2])
+    if parts[0] == "rclpy":
+        inside = "/".join(parts[1:])
+        beside = [room for room, begins in BESIDE_RCLPY.items() if inside.startswith(begins)]
+        return "/".join([parts[0], *beside])
     return parts[0]
 
 

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from types import CodeType, FrameType
-from typing import TypedDict
+from typing import TYPE_CHECKING, TypedDict
 
-from aionode.clock import S_TO_NS, Clock
+from aionode.clock._values import S_TO_NS
 from aionode.errors import brief
+
+if TYPE_CHECKING:
+    from aionode.clock import Clock
 
 __all__ = ["CallSite", "CallSites", "LogOptions"]
 

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, get_args, get_origin
+from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 import yaml
 
-from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     Substitution,
     normalize_to_list_of_substitutions,
     text_of,
 )
+
+if TYPE_CHECKING:
+    from aionode.launch._launch.launch_context import LaunchContext
 
 __all__ = [
     "coerce_to_type",
