@@ -134,7 +134,7 @@ class Gateway(Clients):
     async def _stop(self, server: Server, serving: asyncio.Task[None]) -> None:
         for session in list(self._sessions):
             session.ended.set()
-        server.should_exit = True
+        server.stop()
         await serving
         await self.robot.commands.close()  # those of requests, which have no session any more
 

@@ -19,18 +19,25 @@ if TYPE_CHECKING:
 __all__ = ["HttpConnection", "Server", "WebSocketConnection", "server_config"]
 
 PING_SEC: Final = 20.0
-CLOSING_SEC: Final = 1
+DATE_SEC: Final = 1.0
+CLOSING_SEC: Final = 1.0
 SPARE: Final = 16
 """How many more connections there may be than clients: those for pages, and those that are told
 that there are too many."""
 
 
 class Server(uvicorn.Server):
-    """A server that leaves signals to the program, and says when it has started."""
+    """A server that leaves signals to the program, says when it has started, and ends at once.
 
-    def __init__(self, config: uvicorn.Config) -> None:
+    uvicorn's own looks ten times a second whether it shall end, and then whether it may.
+    """
+
+    config: ServerConfig
+
+    def __init__(self, config: ServerConfig) -> None:
         super().__init__(config)
         self.has_started = asyncio.Event()
+        self._has_to_end = asyncio.Event()
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -41,6 +48,40 @@ class Server(uvicorn.Server):
         """Listen, and tell who waits for it."""
         await super().startup(sockets)
         self.has_started.set()
+
+    def stop(self) -> None:
+        """Have `serve` disconnect the clients and return."""
+        self.should_exit = True
+        self._has_to_end.set()
+
+    async def main_loop(self) -> None:
+        """Serve until `stop` is called, and bring the date of the headers up to date meanwhile."""
+        while not await self.on_tick(0):
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(DATE_SEC):
+                    await self._has_to_end.wait()
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Disconnect the clients; after `CLOSING_SEC`, cancel the requests that still run."""
+        for listener in (*self.servers, *(sockets or ())):
+            listener.close()
+        for connection in list(self.server_state.connections):
+            connection.shutdown()
+        try:
+            async with asyncio.timeout(CLOSING_SEC):
+                await self._end_of_connections()
+        except TimeoutError:
+            for request in self.server_state.tasks:
+                request.cancel()
+
+    async def _end_of_connections(self) -> None:
+        while self.server_state.connections:
+            self.config.has_lost_one.clear()
+            await self.config.has_lost_one.wait()
+        if self.server_state.tasks:
+            await asyncio.wait(self.server_state.tasks)
+        for server in self.servers:
+            await server.wait_closed()
 
 
 class HttpConnection(H11Protocol):
@@ -104,6 +145,7 @@ class HttpConnection(H11Protocol):
         if self._handshake is not None:
             self._handshake.cancel()
         super().connection_lost(exc)
+        self.config.has_lost_one.set()  # type: ignore[attr-defined]  # a ServerConfig
 
 
 class WebSocketConnection(WebSocketsSansIOProtocol):
@@ -169,6 +211,11 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         """Close the connection without a word, which nobody would read."""
         self.transport.abort()
 
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Tell the server, which may wait for its last connection to end."""
+        super().connection_lost(exc)
+        self.config.has_lost_one.set()  # type: ignore[attr-defined]  # a ServerConfig
+
     def handle_pong(self, event: Any) -> None:
         """Take the answer to a ping."""
         if self._on_pong is not None and bytes(event.data) == self._on_pong[0]:
@@ -189,9 +236,10 @@ def common_name(transport: asyncio.Transport) -> str:
 
 
 class ServerConfig(uvicorn.Config):
-    """The configuration of a server, and what returns its policy as it is now."""
+    """The configuration of a server, its policy as it is now, and whether a connection ended."""
 
     policy: Callable[[], Policy]
+    has_lost_one: asyncio.Event
 
 
 def server_config(app: Any, current: Callable[[], Policy]) -> ServerConfig:
@@ -217,8 +265,8 @@ def server_config(app: Any, current: Callable[[], Policy]) -> ServerConfig:
         log_config=None,  # the program's logging stays as it is
         proxy_headers=False,  # a client may claim any address there
         server_header=False,
-        timeout_graceful_shutdown=CLOSING_SEC,
         **tls,
     )
     config.policy = current
+    config.has_lost_one = asyncio.Event()
     return config

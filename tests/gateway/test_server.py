@@ -281,6 +281,26 @@ async def test_the_stop_is_sent_when_the_gateway_ends() -> None:
                 probe.bind(("127.0.0.1", gateway.port))
 
 
+async def test_the_gateway_ends_as_soon_as_its_clients_are_gone(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A server that looks every 100 ms whether it may end takes 200 ms of the end of a program."""
+    sleeps: list[float] = []
+    sleep = asyncio.sleep  # noqa: TID251  # is what the test notes
+
+    async def noted_sleep(delay: float, *result: Any) -> None:
+        sleeps.append(delay)
+        await sleep(delay, *result)
+
+    async with http_client() as client, contextlib.AsyncExitStack() as stack:
+        async with serving() as gateway:
+            await client.get(f"http://127.0.0.1:{gateway.port}/topics")  # stays connected
+            await stack.enter_async_context(connect(address(gateway)))
+            monkeypatch.setattr(asyncio, "sleep", noted_sleep)
+        monkeypatch.undo()
+    assert [delay for delay in sleeps if 0 < delay < 1] == []  # longer: pings of a WebSocket
+
+
 async def test_a_port_that_is_taken_is_an_error() -> None:
     """And the process goes on: the server must not end it."""
     async with serving() as gateway:
