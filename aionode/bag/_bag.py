@@ -30,10 +30,10 @@ __all__ = ["Bag", "Records", "open"]
 T = TypeVar("T")
 
 BATCH: Final = 256
-"""How many records an async iteration reads at once, in a thread."""
+"""Records that an async iteration reads at once, in a thread."""
 
 TURN: Final = 64
-"""How many records are read before other threads get their turn."""
+"""Records that are read before other threads get their turn."""
 
 BATCH_BYTES: Final = 8 << 20
 """A batch ends with the record that makes it this large."""
@@ -86,12 +86,12 @@ class Bag:
 
     @property
     def message_count(self) -> int:
-        """How many messages it has."""
+        """The number of messages."""
         return sum(topic.message_count for topic in self.topics.values())
 
     @property
     def counts(self) -> dict[str, int]:
-        """How many messages each topic has."""
+        """The number of messages of each topic."""
         return {name: topic.message_count for name, topic in self.topics.items()}
 
     @property
@@ -117,7 +117,7 @@ class Bag:
 
     @property
     def duration(self) -> Duration:
-        """How long it is from the first message to the last."""
+        """The time from the first message to the last."""
         return Duration(nanoseconds=self.end_ns - self.start_ns)
 
     @property

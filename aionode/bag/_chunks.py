@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 __all__ = ["HEAD", "MESSAGE", "Row", "checked_content", "rows_of"]
 
 HEAD: Final = struct.Struct("<BQ")
-"""What each record begins with: its kind and its length."""
+"""The head of each record: its kind and its length."""
 
 MESSAGE: Final = struct.Struct("<HIQQ")
-"""What a message begins with: channel, sequence, and the times of logging and publishing."""
+"""The head of a message: channel, sequence, and the times of logging and publishing."""
 
 MOST_CHUNK: Final = 1 << 32
 """A chunk that claims to be larger, in bytes, is damaged."""

@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 __all__ = ["Difference", "Source", "compare"]
 
 Source = Outputs | Bag | str | PathLike[str] | Iterable["Record"]
-"""What can be compared: outputs of a run, a bag or its path, or records."""
+"""One side of a comparison: outputs of a run, a bag or its path, or records."""
 
 LIMIT: Final = 10
-"""How many differences of each topic are listed by default."""
+"""Differences of each topic that are listed by default."""
 
 SHOWN: Final = 60
 """So many characters of a value are shown."""
@@ -96,7 +96,7 @@ def compare(
 
 
 class Tolerances:
-    """How much the messages of one topic may differ.
+    """The difference that messages of one topic may have.
 
     Args:
         topic: The topic.

@@ -1,4 +1,4 @@
-"""What recorders have lost, as bags keep it: in the custom data, which rosbag2 keeps as well."""
+"""The losses of recorders, as bags keep them: in the custom data, which rosbag2 keeps as well."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ LOSSES: Final = "messages_lost"
 
 
 class Lost(NamedTuple):
-    """How many messages of one topic a recorder has lost.
+    """The messages of one topic that a recorder has lost.
 
     Attributes:
         in_transport: How many were published and did not arrive, by their numbers.

@@ -59,7 +59,7 @@ CHUNK_HEADER: Final = struct.Struct("<BQQQQI")
 INDEX_HEADER: Final = struct.Struct("<BQHI")
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 MOST_PARTS: Final = 512
-"""How many pieces one `writev` takes: systems have a limit, which is 1024 on Linux."""
+"""Pieces that one `writev` takes: systems have a limit, which is 1024 on Linux."""
 
 
 def record_bytes(*records: McapRecord) -> bytes:
@@ -72,7 +72,7 @@ def record_bytes(*records: McapRecord) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """What is known of a chunk after it was written.
+    """A chunk that was written, as the summary lists it.
 
     Attributes:
         index: Its entry in the summary.
@@ -84,7 +84,7 @@ class Span:
 
     @property
     def end(self) -> int:
-        """Where the records end that belong to it."""
+        """The offset at which the records of the chunk end."""
         index = self.index
         return index.chunk_start_offset + index.chunk_length + index.message_index_length
 
@@ -143,7 +143,7 @@ class ChunkWriter:
 
 
 class Scanned(Protocol):
-    """What can be used of a file that was not closed; `rest` follows its `end`."""
+    """The usable part of a file that was not closed; `rest` follows its `end`."""
 
     end: int
     rest: bytes
@@ -162,7 +162,7 @@ class McapWriter:
         chunk_bytes: The size from which on a chunk is written.
 
     Attributes:
-        size: How many bytes are in the file, or wait for it.
+        size: The bytes in the file, and those that wait for it.
         counts: How many messages were added, by channel.
         spans: The chunks that are in the file.
 
@@ -221,12 +221,12 @@ class McapWriter:
 
     @property
     def size(self) -> int:
-        """How many bytes are in the file, or wait for it."""
+        """The bytes in the file, and those that wait for it."""
         return self._offset + self._chunk.size
 
     @property
     def message_count(self) -> int:
-        """How many messages were added."""
+        """The number of messages that were added."""
         return sum(self.counts.values())
 
     @property

@@ -1,4 +1,4 @@
-"""What nodes published while a recording ran through them."""
+"""The messages that nodes published while a recording ran through them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Outputs", "Tap"]
 
 LATCHED_DEPTH: Final = 1000
-"""How many of the messages that were latched before the run are taken."""
+"""Most messages taken of those that were latched before the run."""
 
 
 class Outputs:
@@ -130,7 +130,7 @@ class Tap:
 
 
 class TapReader:
-    """What a transport hands the messages of one topic to; see `aionode.transport.base.Reader`."""
+    """Takes the messages of one topic from a transport; see `aionode.transport.base.Reader`."""
 
     raw = True
     waiting = 0

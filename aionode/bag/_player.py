@@ -37,7 +37,7 @@ __all__ = ["Player"]
 
 DEFAULT_DEPTH: Final = 10
 READ_AHEAD: Final = 1024
-"""How many messages are read at once, while those before them are published."""
+"""Messages that are read at once, while those before them are published."""
 
 EARLY_NS: Final = 100_000
 """A message is published so early, in nanoseconds, rather than that the loop sleeps for it alone:
@@ -185,7 +185,7 @@ class Player:
         self.stop()
         await self._stack.__aexit__(kind, error, traceback)
 
-    # What a program does with it
+    # For programs to call
 
     @property
     def start(self) -> Time:
@@ -199,7 +199,7 @@ class Player:
 
     @property
     def time(self) -> Time:
-        """Where in the recording it is."""
+        """The present position, as a time of the recording."""
         return time_of(self._now_ns())
 
     @property

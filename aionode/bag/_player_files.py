@@ -1,4 +1,4 @@
-"""What a player reads: which file it is in, and in which order the messages come."""
+"""Reads the files of a player, one after another, in the order that is asked for."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["FilesInPlay", "in_order_sent"]
 
 READ_AHEAD: Final = 1000
-"""How many messages are sorted at a time by when they were sent, as in rosbag2."""
+"""Messages that are sorted at a time by the time of sending, as in rosbag2."""
 
 
 class FilesInPlay:

@@ -27,12 +27,12 @@ SOURCES: Final = {
 """Whose events tell of the requests: those of the server, or those of the client."""
 
 MOST_PENDING: Final = 1000
-"""How many requests may wait for their answers; further ones are left out, with a warning."""
+"""Most requests that wait for their answers; further ones are left out, with a warning."""
 
 SEND_GOAL: Final = "send_goal/_service_event"
 CANCEL_GOAL: Final = "cancel_goal/_service_event"
 ANSWER_S: Final = 5.0
-"""How long the end of a recording waits for answers, in seconds."""
+"""Time for which the end of a recording waits for answers, in seconds."""
 
 Key = tuple[str, str, str]
 

@@ -18,7 +18,7 @@ __all__ = ["serve_player"]
 
 
 class Playing(Protocol):
-    """What of a `Player` is told and controlled."""
+    """The parts of a `Player` that its services show and control."""
 
     @property
     def playing(self) -> bool:

@@ -1,4 +1,4 @@
-"""What a bag consists of: topics, and records of their messages."""
+"""The content of a bag: topics, and records of their messages."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class TopicInfo(msgspec.Struct, kw_only=True, eq=False):
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """What tells two topics apart: the name, and the type with its hash."""
+        """The identity of a topic: its name, and its type with the hash."""
         return (self.name, self.type, self.type_hash)
 
 

@@ -48,7 +48,7 @@ RECEIVE_TIME: Final = 2
 
 
 class Due(NamedTuple):
-    """What is to happen when a message of a time comes.
+    """An action that is due when a message of its time arrives.
 
     Attributes:
         time_ns: The time, in nanoseconds since 1970.
@@ -219,7 +219,7 @@ class Recorder:
         """
         await self._stack.__aexit__(None, None, None)  # an error of the block stays as it is
 
-    # What a program does with it
+    # For programs to call
 
     def write(self, topic: str, msg: Any, time: Time | None = None) -> None:
         """Record a message that is not published.
@@ -243,7 +243,7 @@ class Recorder:
 
     @property
     def stats(self) -> dict[str, TopicStats]:
-        """What was recorded and what was lost, by topic; of the last bag, once it is stopped."""
+        """The messages recorded and lost, by topic; those of the last bag after `stop`."""
         return self._stats if self._recording is None else self._recording.stats
 
     @property

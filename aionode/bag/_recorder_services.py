@@ -25,13 +25,13 @@ FAILED: Final = {"resume": 3, "split": 4}
 
 
 class Recording(Protocol):
-    """What of a `Recorder` is told and controlled."""
+    """The parts of a `Recorder` that its services show and control."""
 
     node: Node
 
     @property
     def stats(self) -> Mapping[str, tuple[int, int, int]]:
-        """What was recorded, lost in transport and lost in the recorder, by topic."""
+        """The messages recorded, lost in transport and lost in the recorder, by topic."""
 
     @property
     def recording(self) -> bool:

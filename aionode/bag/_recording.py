@@ -22,7 +22,7 @@ Key = tuple[str, str, str]
 
 
 class TopicStats(NamedTuple):
-    """What became of the messages of one topic.
+    """The outcomes of the messages of one topic.
 
     Attributes:
         recorded: How many are in the bag, or on their way to it.
@@ -100,7 +100,7 @@ class Recording:
 
     @property
     def stats(self) -> dict[str, TopicStats]:
-        """What was recorded and what was lost, by topic."""
+        """The messages recorded and lost, by topic."""
         found: dict[str, TopicStats] = {}
         for number, (info, _) in enumerate(self._topics):
             subscription = self.subscriptions.get(number)

@@ -32,7 +32,7 @@ END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
 
 
 class Checked(NamedTuple):
-    """What was found in one file.
+    """The findings in one file.
 
     Attributes:
         file: Its name.
@@ -185,7 +185,7 @@ class Scan:
 
     @property
     def messages(self) -> int:
-        """How many messages the chunks have."""
+        """The number of messages in the chunks."""
         return sum(sum(span.counts.values()) for span in self.spans)
 
     def _take(self, opcode: int, data: bytes) -> None:

@@ -41,7 +41,7 @@ PIECE_VARIABLE: Final = "AIONODE_REPLAY_PIECE"
 """The piece of one bag that is replayed in place of the whole, in JSON; set by ``bag shrink``."""
 
 NODE_OWNED: Final = ("/rosout", "/parameter_events")
-"""What every node publishes: of the recording it is not published again."""
+"""Topics that every node publishes itself: a replay leaves them out."""
 
 logger = get_logger("aionode.bag.replay")
 

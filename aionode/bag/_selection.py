@@ -1,4 +1,4 @@
-"""Which topics are recorded or played."""
+"""The choice of topics to record or to play."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def kind_of(topic: str) -> tuple[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """Which topics are wanted: with rosbag2's options, and their meaning.
+    """The choice of topics, with rosbag2's options and their meaning.
 
     Attributes:
         topics: Names of topics.

@@ -29,7 +29,7 @@ SHORTEST_NS: Final = 10_000_000
 """Time is not cut any finer than this, in nanoseconds."""
 
 NO_TESTS: Final = (2, 3, 4, 5)
-"""What pytest exits with if it was interrupted, has an error of its own, or has run no test."""
+"""Exit statuses of pytest: interrupted, an error of its own, or no test run."""
 
 
 async def shrink(

@@ -43,7 +43,7 @@ DAMAGE: Final = (
     AssertionError,
     OSError,  # of a search before the beginning of a file that is cut short
 )
-"""What the libraries raise for a damaged file."""
+"""Exceptions of the libraries for a damaged file."""
 
 
 class Source(Protocol):

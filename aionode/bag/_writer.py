@@ -138,7 +138,7 @@ class BagWriter:
 
     @property
     def message_count(self) -> int:
-        """How many messages the bag has, or waits to write."""
+        """The number of messages in the bag, with those that wait to be written."""
         return sum(topic.message_count for topic in self.topics)
 
     @property

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Row", "WriterThread"]
 
 BATCH_S: Final = 0.02
-"""How long the thread sleeps between two looks at what has come, in seconds."""
+"""Time for which the thread sleeps between two looks for new rows, in seconds."""
 
 SYNC_NS: Final = 250_000_000
 """How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
@@ -32,10 +32,10 @@ the last second, and writing takes time as well, on a busy machine most of it.""
 
 
 TURN: Final = 32
-"""How many rows are taken before other threads get their turn."""
+"""Rows that are taken before other threads get their turn."""
 
 LEAST_WAITING: Final = 16 << 20
-"""How many bytes may wait for the thread in snapshot mode, however few are kept."""
+"""Bytes that may wait for the thread in snapshot mode, however few are kept."""
 
 
 class Row(NamedTuple):

@@ -61,7 +61,7 @@ __all__ = [
 
 
 class InitContextManager:
-    """What `init` returns: at the end of ``with`` the context is shut down."""
+    """The return value of `init`: at the end of ``with`` the context is shut down."""
 
     def __init__(
         self,

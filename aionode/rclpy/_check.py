@@ -112,7 +112,7 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
             for statement in node.orelse:
                 yield from imported(statement, optional=optional)
         case ast.Try() if any(map(catches_import_error, node.handlers)):
-            # What stands in for a missing module is needed only where that is missing.
+            # The replacement of a missing module is needed only where the module is missing.
             for part in ast.iter_child_nodes(node):
                 yield from imported(part, optional=True)
         case _:

@@ -1,4 +1,4 @@
-"""What the entities of nodes have in common: a handle, and the end of it."""
+"""The base of the entities of nodes: a handle, and its end."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "wait_until"]
 
 CHECK_S = 0.05
-"""How often a wait for another process looks."""
+"""Time between two looks of a wait for another process."""
 
 steady_ns = MachineTime().steady_ns
 

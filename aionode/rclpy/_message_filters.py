@@ -1,4 +1,4 @@
-"""What programs know as `message_filters`: `aionode.message_filters` for nodes of rclpy."""
+"""Programs import this as `message_filters`: `aionode.message_filters` for nodes of rclpy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What to do about a module of ROS that aionode does not have."""
+"""Advice for a module of ROS that aionode does not have."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ INSTEAD: Final = {
     "transforms3d": "`pip install transforms3d` has it",
     "cv2": "`pip install opencv-python-headless` has it",
 }
-"""What serves in the place of a package, or where it comes from."""
+"""The replacement of a package, or its source."""
 
 COMPILED: Final = """
     controller_manager image_transport_py moveit point_cloud_transport_py python_qt_binding

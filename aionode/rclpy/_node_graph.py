@@ -1,4 +1,4 @@
-"""What a node sees of the graph. Nobody needs to spin for that."""
+"""The graph as a node sees it. Nobody needs to spin for that."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["NodeGraph"]
 NamesAndTypes = list[tuple[str, list[str]]]
 
 CHECK_S = 0.05
-"""How often `wait_for_node` looks."""
+"""Time between two looks of `wait_for_node`."""
 
 TYPES = {
     EndpointKind.PUBLISHER: TopicEndpointTypeEnum.PUBLISHER,

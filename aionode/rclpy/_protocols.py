@@ -1,4 +1,4 @@
-"""What modules below executors and nodes need of them."""
+"""The methods of executors and nodes that modules below them call."""
 
 from __future__ import annotations
 

@@ -167,7 +167,7 @@ ORIGINS: Final = """
     types: FrameType MethodType TracebackType
     unique_identifier_msgs.msg: UUID
 """
-"""Where the names are defined, ``=`` by which other name; all others are modules themselves."""
+"""The module that defines each name, with ``=`` and its name there; all others are modules."""
 
 SUBMODULES: Final = (
     "callback_groups",

@@ -1,4 +1,4 @@
-"""What programs know as `rosbag2_py.Recorder` and `Player`: each runs in a thread of its own.
+"""Programs import these as `rosbag2_py.Recorder` and `Player`: each runs in a thread of its own.
 
 Their methods may be called from any thread. They own no signals, and the program goes on meanwhile.
 """
@@ -34,7 +34,7 @@ PRESETS: Final = {"none": "none", "fastwrite": "none", "zstd_small": "zstd_small
 """The compressions of rosbag2's presets; of all others it is ``zstd``."""
 
 CHECK_S: Final = 0.1
-"""How often a wait looks for Ctrl-C, which a lock does not let through on every system."""
+"""Time between two looks of a wait for Ctrl-C, which a lock does not let through everywhere."""
 
 NOT_CONFIGURED: Final = "give it storage options, and options, when it is created"
 
@@ -54,7 +54,7 @@ class MessageOrder:
 
 
 class RecordOptions(msgspec.Struct):
-    """What is recorded, and how."""
+    """The topics to record, and the way to record them."""
 
     all_topics: bool = False
     all_services: bool = False
@@ -108,7 +108,7 @@ class RecordOptions(msgspec.Struct):
 
 
 class PlayOptions(msgspec.Struct):
-    """What is played, and how: times in seconds, apart from the last, which is in nanoseconds."""
+    """The topics to play, and the way: times in seconds, apart from the last, in nanoseconds."""
 
     read_ahead_queue_size: int = 1000
     node_prefix: str = ""
@@ -279,7 +279,7 @@ def level_of(name: str) -> LoggingSeverity:
 
 
 class Live:
-    """What recorders and players have in common."""
+    """The base of recorders and players."""
 
     _kind: ClassVar[type[Any]]
 

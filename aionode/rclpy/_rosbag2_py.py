@@ -1,4 +1,4 @@
-"""What programs know as `rosbag2_py`: readers and writers of bags, over `aionode.bag`."""
+"""Programs import this as `rosbag2_py`: readers and writers of bags, over `aionode.bag`."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ DEFAULT_STORAGE: Final = "mcap"
 
 
 class StorageOptions(msgspec.Struct):
-    """Where a bag is, and how it is stored."""
+    """The place of a bag, and its format."""
 
     uri: str
     storage_id: str = ""
@@ -84,7 +84,7 @@ class ConverterOptions(msgspec.Struct):
 
 
 class StorageFilter(msgspec.Struct):
-    """Which topics are read; with nothing given, all are."""
+    """The topics to read; all if none are given."""
 
     topics: list[str] = []
     services_events: list[str] = []
@@ -191,7 +191,7 @@ class FileInformation(msgspec.Struct):
 
 
 class BagMetadata(msgspec.Struct):
-    """What ``metadata.yaml`` says of a bag."""
+    """A bag as ``metadata.yaml`` describes it."""
 
     version: int = 9
     bag_size: int = 0
@@ -570,7 +570,7 @@ class Reindexer:
             raise RuntimeError(str(error)) from error
 
 
-# What there is
+# Listings
 
 
 def get_registered_readers() -> set[str]:

@@ -1,4 +1,4 @@
-"""What is ready in the nodes of an executor, and what it takes from them and calls.
+"""Finds the ready entities of an executor's nodes, takes their items and calls their callbacks.
 
 Each function takes, and returns what is to be called then, or None if there is nothing to do. The
 result of a call is awaited if it is a coroutine.

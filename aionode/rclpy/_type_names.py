@@ -65,11 +65,11 @@ ProtocolType = type(Protocol)
 
 
 class CommonMsgSrvMetaClass(ProtocolType):  # type: ignore[misc, valid-type]  # as rclpy has it
-    """What the classes of messages and services have in common."""
+    """The common part of the classes of messages and services."""
 
 
 class MsgMetaClass(CommonMsgSrvMetaClass):
-    """What the classes of messages have in common."""
+    """The common part of the classes of messages."""
 
 
 class PyCapsule(Protocol):

@@ -36,7 +36,7 @@ __all__ = [
 SWITCHES = (ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED)
 
 LONGEST_STEP_S = 1.0
-"""How often a sleep on the system clock looks whether that was set."""
+"""Time between two looks of a sleep on the system clock whether that clock was set."""
 
 steady_ns = MachineTime().steady_ns
 
@@ -62,7 +62,7 @@ class Clock:
 
     @property
     def clock_type(self) -> ClockType:
-        """Which time it shows."""
+        """The kind of time that the clock shows."""
         return self._clock_type
 
     @property

@@ -50,7 +50,7 @@ logging_use = LoggingUse()
 
 
 class Context:
-    """What the nodes of one participant share: its domain, its arguments, and when it ends.
+    """The domain, arguments and end that the nodes of one participant share.
 
     It is used once: `init`, then `shutdown` or `try_shutdown`. A thread of its own talks to other
     processes from `init` on; callbacks run in the threads that spin.

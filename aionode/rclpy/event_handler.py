@@ -1,4 +1,4 @@
-"""What is called when something happens to a publisher or subscription itself."""
+"""Callbacks for events of publishers and subscriptions themselves."""
 
 from __future__ import annotations
 
@@ -203,7 +203,7 @@ def create_handlers(
 
 
 class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
-    """What is called when something happens to a subscription; each gets a status."""
+    """Callbacks for the events of a subscription; each gets a status."""
 
     def create_event_handlers(
         self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
@@ -213,7 +213,7 @@ class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
 
 
 class PublisherEventCallbacks(events.PublisherEventCallbacks):
-    """What is called when something happens to a publisher; each gets a status."""
+    """Callbacks for the events of a publisher; each gets a status."""
 
     def create_event_handlers(
         self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str

@@ -14,7 +14,7 @@ __all__ = ["LoggingService"]
 
 
 MOST_LEVELS: Final = 1_000
-"""How many loggers of one request are answered: any node may send any number."""
+"""Loggers of one request that are answered: any node may send any number."""
 
 
 class LoggingService:

@@ -1,4 +1,4 @@
-"""What services tell of their calls on ``<service>/_service_event``."""
+"""Publishes the calls of services on ``<service>/_service_event``."""
 
 from aionode.endpoints.service_introspection import ServiceIntrospectionState
 

@@ -1,4 +1,4 @@
-"""Which signals shut contexts down."""
+"""The signals that shut contexts down."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ MsgT = TypeVar("MsgT")
 
 
 class MessageInfo(TypedDict):
-    """Where a message comes from; times are in nanoseconds since 1970."""
+    """The origin of a message; times are in nanoseconds since 1970."""
 
     source_timestamp: int
     received_timestamp: int
@@ -44,7 +44,7 @@ class Subscription(TopicEntity["SubscriptionHandle"], Generic[MsgT]):
     """
 
     class CallbackType(Enum):
-        """What the callback takes."""
+        """The arguments that the callback takes."""
 
         MessageOnly = 0
         WithMessageInfo = 1
@@ -74,7 +74,7 @@ class Subscription(TopicEntity["SubscriptionHandle"], Generic[MsgT]):
 
     @property
     def callback(self) -> Callable[..., object]:
-        """What is called with each message, or with it and its `MessageInfo`.
+        """The function that is called with each message, or with a message and its `MessageInfo`.
 
         Raises:
             RuntimeError: set to what takes other arguments.

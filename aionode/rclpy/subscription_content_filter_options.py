@@ -8,7 +8,7 @@ __all__ = ["ContentFilterOptions"]
 
 
 class ContentFilterOptions(NamedTuple):
-    """Which messages a subscription takes: an expression, and what its ``%0`` and so on are."""
+    """An expression that selects messages, and the values of its ``%0`` and so on."""
 
     filter_expression: str
     expression_parameters: list[str]

@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 
 class Stepping(threading.local):
-    """Which task this thread takes one step on."""
+    """The task of which this thread takes one step."""
 
     task: Task[Any] | None = None
 
@@ -30,7 +30,7 @@ stepping = Stepping()
 
 
 class FutureState(Enum):
-    """What has become of a future."""
+    """The state of a future."""
 
     PENDING = "PENDING"
     CANCELLED = "CANCELLED"

@@ -1,4 +1,4 @@
-"""What is known of a topic's publishers and subscriptions."""
+"""Descriptions of a topic's publishers and subscriptions."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """What an endpoint is."""
+    """The kind of an endpoint."""
 
     INVALID = 0
     PUBLISHER = 1

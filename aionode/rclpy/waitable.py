@@ -17,7 +17,7 @@ T = TypeVar("T")
 
 
 class NumberOfEntities:
-    """How many handles of each kind a waitable adds to a wait set."""
+    """The number of handles of each kind that a waitable adds to a wait set."""
 
     __slots__ = (
         "num_clients",

@@ -47,7 +47,7 @@ NOT_INLINE_NS: Final = 1
 
 
 class SampleInfo(msgspec.Struct, frozen=True, gc=False):
-    """Where a message comes from.
+    """The origin of a message.
 
     Attributes:
         gid: The 16 bytes that identify the sending endpoint; for a request, its client.
@@ -119,7 +119,7 @@ class Reader(Protocol):
 
     @property
     def waiting(self) -> int:
-        """How many messages were delivered, and wait for a callback or a reader."""
+        """The number of messages that wait here for a callback or a reader."""
 
     async def wait_for_room(self) -> None:
         """Wait until `has_room`, or until the reader is destroyed."""
@@ -210,12 +210,12 @@ class Writer(Registration):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped on their way because it was slow."""
+        """The number of messages dropped on their way because it was slow."""
         return 0
 
     @property
     def filtered(self) -> int:
-        """How many messages were not sent to another process that wants none of them."""
+        """The number of messages not sent to processes whose subscriptions want none of them."""
         return 0
 
     def route_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
@@ -276,7 +276,7 @@ class MessageStop(StopSender):
 
 
 class ReplyTo(Protocol):
-    """What becomes of one request, as the client's end sees it. Late calls do nothing."""
+    """The outcomes of one request, as the client's end sees them. Late calls do nothing."""
 
     def reply(self, response: Any, sample_info: SampleInfo) -> None:
         """Take a response."""
@@ -301,11 +301,11 @@ class Requester(Registration):
     @property
     @abstractmethod
     def servers(self) -> int:
-        """How many servers are matched through this transport now."""
+        """The number of servers that are matched through this transport now."""
 
     @property
     def caveat(self) -> str:
-        """What is known to keep the matched servers from answering, and the way out; or empty."""
+        """A known reason why the matched servers cannot answer, and the way out; or empty."""
         return ""
 
     @abstractmethod
@@ -361,11 +361,11 @@ class Serve(Protocol):
 
 
 class LinkStatus(NamedTuple):
-    """What contexts of the domain say of links between them.
+    """The links between contexts of the domain, as the contexts report them.
 
     Attributes:
-        advertisements: What each of them announces so that others can link to it.
-        pairs: The ids of each two that are linked.
+        advertisements: The announcement of each context by which others can link to it.
+        pairs: The ids of each two contexts that are linked.
     """
 
     advertisements: AbstractSet[str]

@@ -169,7 +169,7 @@ class LocalWriter(Writer):
         self._gid = endpoint.gid
         self._matched: dict[LocalReader, Deliver] = {}
         self._deliveries: tuple[Deliver, ...] = ()
-        # What late readers get: each message, its number, and its time.
+        # The history for late readers: each message, its number, and its time.
         self._history: deque[tuple[Any, int, int]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
@@ -388,7 +388,7 @@ class LocalRequester(Requester):
 
     @property
     def servers(self) -> int:
-        """How many servers of this context are matched."""
+        """The number of servers of this context that are matched."""
         return len(self._matched())
 
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:

@@ -1,4 +1,4 @@
-"""What the commands of ``aionode bag`` have in common: which topics, which times, which QoS."""
+"""The common options of ``aionode bag``: topics, times and QoS."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ DOWN: Final = "\x1b[B"
 RIGHT: Final = "\x1b[C"
 CLEAR_LINE: Final = "\r\x1b[K"
 MOST_BYTES: Final = 64
-"""How much is read at once; a key has three bytes at most."""
+"""Bytes that are read at once; a key has three at most."""
 
 
 @contextlib.contextmanager

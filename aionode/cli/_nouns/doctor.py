@@ -121,7 +121,7 @@ async def doctor(
     if not middleware:
         findings += link_findings(pairs)
         findings += bridge_findings(bridges)
-        # What a bridge reaches is no matter of this environment's middleware.
+        # The environment's middleware has no say in the nodes that a bridge reaches.
         environ = {} if bridges else os.environ
         findings += network_findings(
             network, environ, has_router=has_router, domains=domains, alone=not nodes

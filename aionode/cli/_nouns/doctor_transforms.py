@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 __all__ = ["transform_findings"]
 
 LISTEN_S = 1.5
-"""How long to listen to /tf, in seconds."""
+"""Time to listen to /tf, in seconds."""
 
 OLD_S = 5.0
 """From which age on a transform counts as no longer sent, in seconds."""
 
 AHEAD_S = 0.5
-"""How far ahead of this machine's clock a stamp may be, in seconds."""
+"""Seconds by which a stamp may be ahead of this machine's clock."""
 
 
 ZERO = Time()

@@ -29,7 +29,7 @@ __all__ = [
 PREFIX, SUFFIX = "/aionode_system_", "/command"
 
 ANSWER_S = 60.0
-"""How long a system may take to stop a member: three signals, for two generations."""
+"""Longest time for a system to stop a member: three signals, for two generations."""
 
 HEADINGS = ("NAME", "STATE", "READY", "PID", "RESTARTS", "CPU", "MEMORY", "UPTIME")
 

@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 __all__ = ["echo", "list_frames", "send_static", "tf_command", "tree"]
 
 WAITING_S = 1.0
-"""How often `echo` says what it waits for, in seconds."""
+"""Time between two reports of `echo` on what it waits for, in seconds."""
 
 LATEST = Time()
 
 LISTEN_S = 2.0
-"""How long to listen to /tf, in seconds: long enough for what comes once a second."""
+"""Time to listen to /tf, in seconds: long enough for transforms sent once a second."""
 
 
 namespace_option = click.option(

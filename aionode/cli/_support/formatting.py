@@ -32,7 +32,7 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class PrintOptions:
-    """How much of a message is printed.
+    """The extent to which a message is printed.
 
     Attributes:
         limit: Maximum elements of an array and characters of a string; None prints all.

@@ -1,4 +1,4 @@
-"""Which programs `aionode run` starts in the place of its own process, and by which commands."""
+"""The programs that `aionode run` starts in place of its own process, with their commands."""
 
 from __future__ import annotations
 

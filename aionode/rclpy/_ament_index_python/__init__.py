@@ -1,4 +1,4 @@
-"""What programs know as `ament_index_python`: finding installed packages."""
+"""The package that programs import as `ament_index_python`: finding installed packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where packages are: those of the workspace, and the installed ones."""
+"""Finds packages: those of the workspace, and the installed ones."""
 
 from __future__ import annotations
 

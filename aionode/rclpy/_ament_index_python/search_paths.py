@@ -1,4 +1,4 @@
-"""Where packages are searched."""
+"""The folders in which packages are searched."""
 
 from __future__ import annotations
 

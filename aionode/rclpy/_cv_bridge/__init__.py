@@ -1,4 +1,4 @@
-"""What programs know as `cv_bridge`: images of OpenCV to and from messages, over numpy."""
+"""Programs import this as `cv_bridge`: images of OpenCV to and from messages, over numpy."""
 
 from __future__ import annotations
 

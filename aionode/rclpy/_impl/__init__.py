@@ -1,1 +1,1 @@
-"""What the modules of rclpy are made of: handles, queues, and the thread of a context."""
+"""The parts of which rclpy's modules are made: handles, queues, and the thread of a context."""

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent", "GoalState"]
 
 RETRY_S = 0.001
-"""How long states wait for a thread that is sending earlier ones, in seconds."""
+"""Time for which states wait for a thread that is sending earlier ones, in seconds."""
 
 steady_ns = MachineTime().steady_ns
 

@@ -29,7 +29,7 @@ __all__ = ["ContextHandle", "contexts_by_id", "living_contexts", "parsed"]
 contexts_by_id: weakref.WeakValueDictionary[int, ContextHandle] = weakref.WeakValueDictionary()
 
 LAST_WORDS_S = 2.0
-"""How long a thread may publish after a signal has shut its context down, and it was told so."""
+"""Time for which a thread may publish after a signal has shut its context down."""
 
 steady_ns = MachineTime().steady_ns
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["LONGEST_WAIT_S", "Arrivals", "Destroyable", "Signal", "Wakeup"]
 
 LONGEST_WAIT_S = 3600.0
-"""How long one call of the system waits at most, in seconds, for a lock or for descriptors.
+"""Longest wait of one call of the system, in seconds, for a lock or for descriptors.
 
 Some systems refuse more than 24 days. A longer wait consists of several.
 """
@@ -67,7 +67,7 @@ class Wakeup:
 
 
 class Wakeable(Protocol):
-    """What a `Signal` wakes."""
+    """An object that a `Signal` wakes."""
 
     def wake(self) -> None:
         """Look again."""

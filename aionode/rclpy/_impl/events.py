@@ -1,4 +1,4 @@
-"""What happens to publishers and subscriptions: matches, missed deadlines, lost messages.
+"""The events of publishers and subscriptions: matches, missed deadlines, lost messages.
 
 The statuses are counted in the thread of the context, which also keeps the time of deadlines and
 leases; executors take them as those of other waitables.
@@ -39,7 +39,7 @@ __all__ = ["EventHandle", "PublisherEventType", "SubscriptionEventType"]
 
 
 class PublisherEventType(IntEnum):
-    """What can happen to a publisher."""
+    """The kinds of events of a publisher."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -49,7 +49,7 @@ class PublisherEventType(IntEnum):
 
 
 class SubscriptionEventType(IntEnum):
-    """What can happen to a subscription."""
+    """The kinds of events of a subscription."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1

@@ -27,7 +27,7 @@ class EventPublisher(PublisherHandle):
 
 
 class Introspection(core.Introspection):
-    """What one client or server tells."""
+    """Publishes the requests and responses of one client or server."""
 
     def __init__(self, node: NodeHandle, srv_type: Any, service: str) -> None:
         super().__init__(srv_type, service, partial(EventPublisher, node))

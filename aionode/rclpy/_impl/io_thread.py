@@ -27,10 +27,10 @@ T = TypeVar("T")
 ArgT = TypeVar("ArgT")
 
 MOST_WAITING = 1000
-"""How many messages may wait for the thread before `publish` waits for it."""
+"""Messages that may wait for the thread before `publish` waits for it."""
 
 SLICE = 100
-"""How many of them it takes in one turn of its loop."""
+"""Messages that the thread takes in one turn of its loop."""
 
 PRECISE_S = 0.002
 """The end of a wait, in seconds, for which no descriptors are watched: that has whole
@@ -38,7 +38,7 @@ milliseconds only.
 """
 
 STOP_S = 5.0
-"""How long the end of the process waits for the thread: longer than its steps may take together.
+"""Time for which the end of the process waits for the thread: longer than all of its steps.
 
 Inside Zenoh at the very end, it would abort the process.
 """

@@ -35,7 +35,7 @@ NOUNS = {
     EndpointKind.SERVER: "service",
     EndpointKind.CLIENT: "client",
 }
-"""What rcl calls the endpoints of a kind, in errors."""
+"""rcl's word for the endpoints of a kind, in errors."""
 
 system_ns = MachineTime().system_ns
 

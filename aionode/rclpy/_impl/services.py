@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
 
 MOST_REQUESTS = 1000
-"""How many requests a service keeps that nobody has taken, whatever its QoS says."""
+"""Most requests that a service keeps until they are taken, whatever its QoS says."""
 
 logger = logging.getLogger("aionode.rclpy")
 
@@ -44,14 +44,14 @@ now_ns = MachineTime().system_ns
 
 
 class rmw_request_id_t(NamedTuple):  # noqa: N801  # rclpy's name
-    """Which request a response belongs to."""
+    """The request that a response belongs to."""
 
     sequence_number: int
     writer_guid: bytes = bytes(16)
 
 
 class rmw_service_info_t(NamedTuple):  # noqa: N801  # rclpy's name
-    """Where a request or a response comes from."""
+    """The origin of a request or a response."""
 
     request_id: rmw_request_id_t
     source_timestamp: int = 0
@@ -108,7 +108,7 @@ class ServiceHandle(Destroyable):
 
     @property
     def endpoint(self) -> EndpointInfo:
-        """What the graph knows of it."""
+        """The entry in the graph."""
         return self._bare.endpoint
 
     @property
@@ -229,7 +229,7 @@ class ClientHandle(Destroyable):
 
     @property
     def endpoint(self) -> EndpointInfo:
-        """What the graph knows of it."""
+        """The entry in the graph."""
         return self._bare.endpoint
 
     @property

@@ -26,7 +26,7 @@ __all__ = [
 
 
 class SignalHandlerOptions(IntFlag):
-    """Which signals are handled."""
+    """The signals that are handled."""
 
     NO = 0
     SIGINT = 1
@@ -58,7 +58,7 @@ replaced: dict[int, Any] = {}
 
 
 guards: weakref.WeakValueDictionary[int, GuardConditionHandle] = weakref.WeakValueDictionary()
-"""What is triggered by each of the signals, by its `id`."""
+"""The guard conditions that each of the signals triggers, by their `id`."""
 
 
 def current_options() -> SignalHandlerOptions:

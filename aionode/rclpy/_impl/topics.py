@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 __all__ = ["PublisherHandle", "SubscriptionHandle"]
 
 Feed = list["Callable[[SampleInfo | None], None]"]
-"""What is told of each message, in the thread of the context, by those who watch for events."""
+"""Functions that are told of each message in the thread of the context, to watch for events."""
 
 Sample = tuple[Any, SampleInfo, int, int]
 """A message, where it comes from, when it arrived, and its number among those that were taken."""
 
 REMEMBERED_PUBLISHERS = 1024
-"""How many publishers are remembered; messages may come with any number of invented gids."""
+"""Publishers that are remembered; messages may carry any number of invented gids."""
 
 UNWEIGHED = 2
 """So many messages wait before their bytes count."""
@@ -65,7 +65,7 @@ class PublisherHandle(Destroyable):
 
     @property
     def endpoint(self) -> EndpointInfo:
-        """What the graph knows of it."""
+        """The entry in the graph."""
         return self.bare.endpoint
 
     def publish(self, msg: Any) -> None:
@@ -265,7 +265,7 @@ class Inbox:
 
     @property
     def waiting(self) -> int:
-        """How many messages wait to be taken."""
+        """The number of messages that wait to be taken."""
         return len(self.items)
 
     async def wait_for_room(self) -> None:
@@ -323,7 +323,7 @@ class SubscriptionHandle(Destroyable):
 
     @property
     def endpoint(self) -> EndpointInfo:
-        """What the graph knows of it."""
+        """The entry in the graph."""
         return self.bare.endpoint
 
     def ready(self) -> bool:

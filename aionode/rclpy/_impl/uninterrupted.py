@@ -51,7 +51,7 @@ own_handlers: set[Any] = set()
 """The handlers of signals that call `postpone` first."""
 
 postponed: list[Callable[[], object]] = []
-"""What handlers of signals have to do once the main thread does no more such work."""
+"""Work of signal handlers that is due once the main thread has left its uninterrupted work."""
 
 
 class Handlers:

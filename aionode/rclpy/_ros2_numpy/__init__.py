@@ -1,4 +1,4 @@
-"""What programs know as `ros2_numpy`: messages as numpy arrays, and back."""
+"""The package that programs import as `ros2_numpy`: messages as numpy arrays, and back."""
 
 from __future__ import annotations
 

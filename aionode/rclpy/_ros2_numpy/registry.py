@@ -1,4 +1,4 @@
-"""Who converts which message to numpy, and back."""
+"""The functions that convert each message to numpy, and back."""
 
 from __future__ import annotations
 

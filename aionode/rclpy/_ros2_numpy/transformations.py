@@ -1,4 +1,4 @@
-"""What `ros2_numpy` has of rotations and matrices: the functions of `tf_transformations`."""
+"""Rotations and matrices in `ros2_numpy`: the functions of `tf_transformations`."""
 
 from __future__ import annotations
 

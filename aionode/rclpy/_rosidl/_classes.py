@@ -74,7 +74,7 @@ def module_name(package: str, kind: str, name: str) -> str:
 
 
 class TypeSupport:
-    """What rclpy finds instead of a C type support; it has no use but to be there."""
+    """Stands in for a C type support; rclpy only looks whether there is one."""
 
     def __init__(self, typename: str) -> None:
         self.typename = typename

@@ -1,1 +1,1 @@
-"""What programs know as `rosidl_parser`: the types of fields."""
+"""The package that programs import as `rosidl_parser`: the types of fields."""

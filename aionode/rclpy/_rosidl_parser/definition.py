@@ -79,7 +79,7 @@ BASIC_TYPES = (
     OCTET_TYPE,
 )
 
-# What rosidl appends to the name of an interface to name its parts.
+# Suffixes by which rosidl names the parts of an interface.
 EMPTY_STRUCTURE_REQUIRED_MEMBER_NAME = "structure_needs_at_least_one_member"
 CONSTANT_MODULE_SUFFIX = "_Constants"
 SERVICE_REQUEST_MESSAGE_SUFFIX = "_Request"

@@ -1,4 +1,4 @@
-"""What programs know as `rosidl_runtime_py`: messages as dictionaries and YAML, types by name."""
+"""Programs import this as `rosidl_runtime_py`: messages as dictionaries and YAML, types by name."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ OrderedDumper.add_representer(
 
 @dataclass(frozen=True)
 class Conversion:
-    """How much of a message is shown."""
+    """The extent to which a message is shown."""
 
     truncate_length: int | None
     no_arr: bool

@@ -1,4 +1,4 @@
-"""Which interfaces there are."""
+"""Lists the interfaces that can be used."""
 
 from __future__ import annotations
 

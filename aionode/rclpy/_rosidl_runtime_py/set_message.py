@@ -51,7 +51,7 @@ class Filling:
     expand_header_auto: bool
     expand_time_now: bool
     times: list[Callable[[Any], None]] = field(default_factory=list)
-    """What sets each field that stands for the current time."""
+    """Sets each field that stands for the current time."""
 
     def fill(self, msg: Any, values: Any) -> None:
         """Set fields of a message."""

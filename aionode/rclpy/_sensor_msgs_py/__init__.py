@@ -1,1 +1,1 @@
-"""What programs know as `sensor_msgs_py`: point clouds as numpy arrays."""
+"""The package that programs import as `sensor_msgs_py`: point clouds as numpy arrays."""

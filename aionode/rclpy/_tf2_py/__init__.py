@@ -1,4 +1,4 @@
-"""What programs know as `tf2_py`: the core of transforms, and its exceptions."""
+"""The package that programs import as `tf2_py`: the core of transforms, and its exceptions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What programs know as `tf2_ros`: buffers, listeners, broadcasters and clients."""
+"""The package that programs import as `tf2_ros`: buffers, listeners, broadcasters and clients."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What buffers and clients of buffers have in common, and the types that can be transformed."""
+"""The base of buffers and clients of buffers, and the types that can be transformed."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:  # noqa: N802  # tf2's 
 
 
 class BufferInterface:
-    """What looks transforms up; subclasses say where."""
+    """Looks transforms up, in the place that a subclass knows."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()

@@ -17,7 +17,7 @@ DEFAULT_TF_TOPIC = "/tf"
 DEFAULT_STATIC_TF_TOPIC = "/tf_static"
 
 AUTHORITY = "default_authority"
-"""What tf2_ros calls every sender."""
+"""tf2_ros's name for every sender."""
 
 
 class TransformListener:

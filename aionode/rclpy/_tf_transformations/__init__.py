@@ -1,4 +1,4 @@
-"""What programs know as `tf_transformations`: rotations and 4x4 matrices, in plain numpy.
+"""Programs import this as `tf_transformations`: rotations and 4x4 matrices, in plain numpy.
 
 Quaternions are (x, y, z, w), as in messages; angles are in radians.
 """

@@ -1,4 +1,4 @@
-"""What clients and servers of actions have in common."""
+"""The base of clients and servers of actions."""
 
 from __future__ import annotations
 

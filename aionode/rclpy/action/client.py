@@ -246,7 +246,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
         future.add_done_callback(forget)
 
-    # What executors call
+    # For executors to call
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether an answer, feedback or status has come."""

@@ -1,4 +1,4 @@
-"""Which actions there are."""
+"""The actions in the graph."""
 
 from __future__ import annotations
 

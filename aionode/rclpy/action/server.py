@@ -373,7 +373,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             if future is not None:
                 self.remove_future(future)
 
-    # What executors call
+    # For executors to call
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether a request has come, or a goal is to be forgotten."""

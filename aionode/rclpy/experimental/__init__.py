@@ -1,4 +1,4 @@
-"""What rclpy calls experimental."""
+"""Modules that rclpy calls experimental."""
 
 from aionode.rclpy.experimental.events_executor import EventsExecutor
 

@@ -1,1 +1,1 @@
-"""What rclpy keeps for itself, and some programs use all the same."""
+"""Modules that rclpy keeps for itself, and some programs use all the same."""

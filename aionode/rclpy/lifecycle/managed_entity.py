@@ -1,4 +1,4 @@
-"""What takes part in the transitions of a managed node."""
+"""Entities that take part in the transitions of a managed node."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class LifecycleState(NamedTuple):
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """What makes a node a managed one; to be used with `Node`, as `LifecycleNode` does.
+    """Makes a node a managed one; to be used with `Node`, as `LifecycleNode` does.
 
     Args:
         enable_communication_interface: Whether others can ask for its state and change it.

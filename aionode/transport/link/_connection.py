@@ -39,13 +39,13 @@ __all__ = ["Connection", "LinkOwner", "WriteWaiter", "flush"]
 logger = logging.getLogger("aionode.transport.link")
 
 READ_BYTES: Final = 1 << 15
-"""How much is read before the rest of the loop runs: a few hundred small messages."""
+"""Bytes that are read before the rest of the loop runs: a few hundred small messages."""
 
 READ_MAX: Final = 1 << 20
-"""How much is read at once of a large payload, in bytes."""
+"""Bytes that are read at once of a large payload."""
 
 LAST_READS: Final = 10_000
-"""How often a socket is read until its end: more than it holds, so that a peer that keeps writing
+"""Reads in a row of one socket: more than it holds, so that a peer that keeps writing
 does not block the loop.
 """
 
@@ -54,22 +54,22 @@ BATCH_BYTES: Final = 1 << 16
 
 LENT_BYTES: Final = 96 << 20
 LENT_PIECES: Final = 256
-"""How much shared memory one process may hold, in bytes and in buffers, each of which takes one or
+"""Shared memory that one process may hold, in bytes and in buffers, each of which takes one or
 two descriptors. A frozen process releases none, and its socket may hold hundreds of references;
 beyond the limit payloads go through the stream, where a full socket stops them.
 """
 
 URGENT_BYTES: Final = 1 << 28
-"""How much may wait for a process that sends requests but reads no responses, in bytes."""
+"""Bytes that may wait for a process that sends requests but reads no responses."""
 
 MAX_HELD: Final = 1 << 20
 """An incomplete frame is reported to `LinkOwner.on_held` from this size on, in bytes."""
 
 DESCRIPTORS: Final = 16
-"""How many descriptors are received at once."""
+"""Descriptors that are received at once."""
 
 MAX_DESCRIPTORS: Final = 64
-"""How many descriptors may wait for their frames: each arrives with the first byte of its own."""
+"""Descriptors that may wait for their frames: each arrives with the first byte of its own."""
 
 STALLED_S: Final = 1.0
 """How long, when a context closes, a process may read nothing of what waits for it."""
@@ -99,7 +99,7 @@ class WriteWaiter(Protocol):
 
     @property
     def unsent(self) -> int:
-        """How many messages the operating system has not taken, or not to their end."""
+        """Messages not yet written to the socket, or only partly."""
 
     def on_writable(self) -> None:
         """Write until `Connection.write` refuses, and then call `when_writable` again."""
@@ -167,7 +167,7 @@ class Connection:
         # Whether the socket takes nothing now, and whether sending has failed for good.
         self._full = False
         self._failed = False
-        # What is left of a frame or batch of which the socket took only a part.
+        # The rest of a frame or batch of which the socket took only a part.
         self._rest = memoryview(b"")
         # Frames that are never dropped and go before the queues once the socket is writable.
         self._urgent: deque[tuple[bytes, SharedBuffer | None]] = deque()
@@ -181,7 +181,7 @@ class Connection:
         self._lent_bytes = 0
         # Buffers of the other process that are mapped here.
         self._mappings = BufferMappings()
-        # What `progress` has returned and is not done yet.
+        # Futures that `progress` has returned and that are not done yet.
         self._waiters: list[asyncio.Future[None]] = []
         pool.listeners.add(self._on_buffer_closed)
         loop.add_reader(self._fd, self._on_readable)
@@ -490,7 +490,7 @@ class Connection:
 
     @property
     def held(self) -> int:
-        """How much of an incomplete frame is held, in bytes."""
+        """Bytes that are held of an incomplete frame."""
         return self._parser.held
 
     def accept_hello(self, participant: str) -> None:

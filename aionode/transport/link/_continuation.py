@@ -1,4 +1,4 @@
-"""What continues a link over Zenoh: batches of frames, and how their receiver knows the sender.
+"""The continuation of a link over Zenoh: batches of frames, each with a proof of its sender.
 
 Zenoh takes a batch from anyone, and may show it to anyone. So each end of a link makes a secret for
 it, and tells it to the other end over the socket. A batch carries a keyed hash instead of the
@@ -55,7 +55,7 @@ def seal(secret: bytes, number: int, frames: bytes) -> bytes:
 
 
 class LinkSecret:
-    """What the other end of a link proves itself by.
+    """The secret by which the other end of a link proves itself.
 
     Args:
         participant: Its context.

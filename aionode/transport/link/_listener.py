@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Advertisement", "Listener", "available", "host_id", "is_own_user", "socket_folder"]
 
 BACKLOG: Final = 1024
-"""How many contexts may dial while this one is busy, for example while many start at once."""
+"""Contexts that may dial while this one is busy, for example while many start at once."""
 
 UNIX_SOCKETS: Final = Path("/proc/net/unix")
 """Lists the sockets of this system, or of this container, with the paths they were bound to."""
@@ -36,10 +36,10 @@ SOCKET_ID: Final = re.compile(rb"/([0-9a-f]{1,32})\.(?:sock|new)$", re.MULTILINE
 CREDENTIALS: Final = struct.Struct("3i")
 
 MAX_PATH_BYTES: Final = 107
-"""How long the path of a Unix socket may be on Linux, without the zero byte at its end."""
+"""Most bytes in the path of a Unix socket on Linux, without the zero byte at its end."""
 
 NAME_BYTES: Final = len("/" + 32 * "f" + ".sock")
-"""How long the name of a socket can be: that of a context's id, which has up to 32 digits."""
+"""Most characters in the name of a socket: that of a context's id, which has up to 32 digits."""
 
 NEW_S: Final = 10
 """After this time, in seconds, a socket that still has its temporary name belongs to no process."""
@@ -63,7 +63,7 @@ def host_id() -> str:
 
 
 class Advertisement(NamedTuple):
-    """What a context announces so that others can link to it.
+    """The announcement of a context by which others can link to it.
 
     Attributes:
         participant: Id of the context.

@@ -49,7 +49,7 @@ __all__ = ["LinkManager"]
 logger = logging.getLogger("aionode.transport.link")
 
 AGAIN_S: Final = 1.0
-"""How long after a link has ended, or could not be opened, another attempt is made.
+"""Time from the end of a link, or from a failed attempt, to the next attempt.
 
 Twice as long after each attempt that failed, up to `LAST_AGAIN_S`.
 """
@@ -57,20 +57,20 @@ Twice as long after each attempt that failed, up to `LAST_AGAIN_S`.
 LAST_AGAIN_S: Final = 30.0
 
 HELLO_S: Final = 5.0
-"""How long the other end of an accepted socket may take to send its `Hello`."""
+"""Time within which the other end of an accepted socket has to send its `Hello`."""
 
 MAX_OPENING: Final = 64
-"""How many accepted sockets may be without a `Hello`; with one more the oldest is closed.
+"""Accepted sockets that may be without a `Hello`; with one more the oldest is closed.
 
 A context that was dialled may take as long as it likes, as it was announced: it is busy, and takes
 what was dialled when it is not.
 """
 
 MAX_HELD: Final = 1 << 27
-"""How much of incomplete frames is held for all links together, in bytes."""
+"""Bytes of incomplete frames that are held for all links together."""
 
 MAX_ENDING: Final = 1_000
-"""How many destroyed publishers are remembered until their subscriptions have confirmed."""
+"""Destroyed publishers that are remembered until their subscriptions have confirmed."""
 
 RETRANSMIT_BYTES: Final = 1 << 20
 """A batch of retransmitted messages has this size, or one frame more."""
@@ -122,7 +122,7 @@ class LinkManager:
         # Contexts not to dial now: from each attempt, and each end of a link, until a Hello
         # arrives, a delay is over, or the advertisement is withdrawn.
         self._backoff: set[str] = set()
-        # How many attempts in a row have failed, by context; until a Hello arrives.
+        # Failed attempts in a row, by context, until a Hello arrives.
         self._failures: dict[str, int] = {}
         # By connection and publisher: what a destroyed publisher left to be sent or confirmed,
         # until everything is confirmed or the connection is closed.
@@ -243,7 +243,7 @@ class LinkManager:
         self.servers.pop(gid, None)
         self.requesters.pop(gid, None)
 
-    # Which contexts there are
+    # Contexts that appear and disappear
 
     @property
     def links(self) -> list[str]:

@@ -93,7 +93,7 @@ BUFFER_REF: Final = struct.Struct("<QQ")
 
 
 class Kind(enum.IntEnum):
-    """What a frame says. Control frames are documented at the class that is named here."""
+    """The kinds of frames. Control frames are documented at the class that is named here."""
 
     HELLO = 1
     """`Hello`."""
@@ -159,7 +159,7 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
 
 
 class BufferRef(NamedTuple):
-    """Where a large payload is."""
+    """The place of a large payload."""
 
     number: int
     """Identifies the shared buffer; the sender gets it back with `Release`."""
@@ -326,7 +326,7 @@ class Hello(Control, frozen=True, gc=False):
     version: int
     domain_id: int
     secret: bytes
-    """What continues the link over Zenoh proves by this who has sent it."""
+    """The secret by which frames that continue the link over Zenoh prove their sender."""
 
     def pack(self) -> bytes:
         """Return the frame as bytes."""
@@ -359,7 +359,7 @@ class Open(OfSubscription, frozen=True, gc=False):
     """A subscription asks for the messages of a publisher."""
 
     window: int
-    """How many messages the publisher may send before it gets credit; 0 for any number."""
+    """Messages that the publisher may send before it gets credit; 0 for any number."""
     confirms: bool
     """Whether the subscription confirms what it has received; else it may lose messages."""
 

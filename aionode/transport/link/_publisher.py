@@ -55,7 +55,7 @@ class LinkWriter(Writer):
         self._sequence = 0
         # The same, for `write`: one of them may prove to be broken meanwhile, and is removed.
         self._targets: tuple[LinkSendQueue, ...] = ()
-        # What encodes messages that go to every process in one piece; None if there is no link, or
+        # Encodes messages that go to every process in one piece; None if there is no link, or
         # if `_write_otherwise` has to see to them.
         self._encode: Callable[[Any], bytes] | None = None
         # Whether Zenoh has to carry messages too: a matched subscription has not switched.
@@ -65,7 +65,7 @@ class LinkWriter(Writer):
         # Whether a send queue has `wants`, and how many messages it has not got because of that.
         self._is_filtered = False
         self._filtered = 0
-        # How many messages were dropped in send queues that were removed.
+        # Messages dropped in send queues that were removed.
         self._dropped = 0
 
     @property
@@ -75,13 +75,13 @@ class LinkWriter(Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped because a link was slow, or Zenoh."""
+        """The number of messages dropped because a link was slow, or Zenoh."""
         linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
         return self._dropped + linked + self._zenoh.dropped
 
     @property
     def filtered(self) -> int:
-        """How many messages were not sent over a link, or over Zenoh, as none is wanted there."""
+        """The number of messages not sent over a link, or over Zenoh, as none is wanted there."""
         return self._filtered + self._zenoh.filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
@@ -92,7 +92,7 @@ class LinkWriter(Writer):
 
     @property
     def linked(self) -> int:
-        """How many subscriptions receive over a link only."""
+        """The number of subscriptions that receive over a link only."""
         return sum(
             reader.switched
             for send_queue in self._send_queues.values()

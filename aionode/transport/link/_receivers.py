@@ -1,4 +1,4 @@
-"""Which subscriptions of this process hear which publishers of the other one over a link."""
+"""The subscriptions of this process that hear each publisher at the other end of a link."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What publishers, subscriptions and services need of the links of their context."""
+"""The links of a context, as its publishers, subscriptions and services use them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class LinkRegistry(Protocol):
 
     @property
     def content_filters(self) -> ContentFilters:
-        """What subscriptions of other contexts want."""
+        """The content filters of subscriptions of other contexts."""
 
     @property
     def changes(self) -> int:
@@ -64,7 +64,7 @@ class LinkRegistry(Protocol):
 
 
 class PeerDirectory(Protocol):
-    """What the other transport knows about other contexts, apart from the graph.
+    """Facts about other contexts that the other transport knows, apart from the graph.
 
     Attributes:
         advertisement: What it announces of this context; None for nothing.

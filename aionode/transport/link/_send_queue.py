@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["DATA", "LinkSendQueue", "RemoteSubscription"]
 
 MAX_READERS: Final = 1_000
-"""How many subscriptions to one topic a process may have."""
+"""Subscriptions to one topic that a process may have."""
 
 MAX_UNCONFIRMED: Final = 20_000
-"""How many messages are kept until they are confirmed: more than a subscription in a working
+"""Messages that are kept until they are confirmed: more than a subscription in a working
 process ever leaves unconfirmed. Beyond it the oldest are forgotten.
 """
 
@@ -247,7 +247,7 @@ class LinkSendQueue:
 
     @property
     def unsent(self) -> int:
-        """How many messages wait here, or have not been taken to their end by the socket."""
+        """The number of messages that wait here, or are not completely written to the socket."""
         waiting = sum(sequence > 0 for sequence, _, _ in self._waiting)
         return waiting + self.connection.unsent(self._gid)
 

@@ -171,7 +171,7 @@ class LinkRequester(Requester):
 
     @property
     def servers(self) -> int:
-        """How many servers of other contexts are matched."""
+        """The number of servers of other contexts that are matched."""
         if self._asked_at != self._registry.changes:
             self._ask()
         return self._servers

@@ -37,19 +37,19 @@ against 1030 at twice the size, which a socket does not take at once, and 157 ag
 """
 
 MAX_IDLE: Final = 1 << 26
-"""How much memory is kept in idle buffers, in bytes."""
+"""Bytes that are kept in idle buffers."""
 
 MOST_IDLE: Final = 8
-"""How many idle buffers are kept; each takes two descriptors, and one in the other process."""
+"""Idle buffers that are kept; each takes two descriptors, and one in the other process."""
 
 STEPS: Final = 8
-"""How many sizes of buffers there are between two powers of two.
+"""Sizes of buffers between two powers of two.
 
 Payloads whose size varies a little, like compressed images, then fit into the same buffer.
 """
 
 MAX_MAPPINGS: Final = 400
-"""How many buffers of one sender are mapped at most; it lends fewer, and keeps a few idle."""
+"""Most buffers of one sender that are mapped; it lends fewer, and keeps a few idle."""
 
 F_SEAL_FUTURE_WRITE: Final = 0x0010
 """Linux 5.1: no further writable mapping can be created. Python has no name for it."""

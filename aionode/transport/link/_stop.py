@@ -20,7 +20,7 @@ __all__ = ["LinkStop"]
 
 
 class StoppableWriter(Protocol):
-    """What the stop of a lease needs of an `LinkWriter`, with that one's meaning."""
+    """The members of a `LinkWriter` that the stop of a lease uses, with the same meaning."""
 
     _registry: LinkRegistry
     _gid: bytes

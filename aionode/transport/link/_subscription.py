@@ -46,30 +46,30 @@ if TYPE_CHECKING:
 __all__ = ["LinkReader", "RemotePublisher", "Route", "heard_from"]
 
 WINDOW: Final = 1_000
-"""How many messages a KEEP_ALL subscription lets a publisher send ahead of what it has used."""
+"""Messages that a publisher may send ahead of those that a KEEP_ALL subscription has used."""
 
 MAX_FULL: Final = 50_000
-"""How many messages may wait for room in a KEEP_ALL subscription: its window, and what a publisher
-sends when it is destroyed.
+"""Messages that may wait for room in a KEEP_ALL subscription: its window, and the last ones of a
+publisher that is destroyed.
 """
 
 MAX_HELD: Final = 2_000
-"""How many messages are held at most until Zenoh has caught up; with more the link is taken.
+"""Most messages that are held until Zenoh has caught up; with more the link is taken.
 
 A reliable subscription holds as many as its depth, if that is more; a KEEP_ALL one always waits.
 """
 
 MAX_RECOVERING: Final = 50_000
-"""How many messages are held at most while retransmitted ones are awaited."""
+"""Most messages that are held while retransmitted ones are awaited."""
 
 CONFIRM_BYTES: Final = 1 << 16
 """After so many bytes a subscription confirms what it has received."""
 
 MESSAGE_BYTES: Final = 1 << 10
-"""What each message counts beyond its payload: 64 messages without any are confirmed as well."""
+"""Bytes that each message counts beyond its payload: 64 empty messages are confirmed as well."""
 
 ZENOH_LATE_S: Final = 0.1
-"""How long a subscription that holds messages waits for the other route to deliver anything."""
+"""Time for which a subscription that holds messages waits for the other route to deliver any."""
 
 RECOVERY_S: Final = 0.5
 """The same where messages are sent again: to a KEEP_ALL subscription, or after a link has ended,
@@ -78,7 +78,7 @@ which the other process has to notice first.
 
 
 class Route(enum.Enum):
-    """Where a subscription takes a publisher's messages from."""
+    """The route from which a subscription takes a publisher's messages."""
 
     ZENOH = "zenoh"
     BOTH = "both"
@@ -180,7 +180,7 @@ class RemotePublisher:
             self._max_held = MAX_RECOVERING
         elif self._confirms:
             self._max_held = max(MAX_HELD, depth_of(qos))
-        # What arrived over the link since the last confirmation.
+        # Messages, and their bytes, that arrived over the link since the last confirmation.
         self._used = 0
         self._used_bytes = 0
         self._waiting_for_room = False
@@ -410,7 +410,7 @@ class RemotePublisher:
             if number > self.last:
                 self._next(held[number])
 
-    # What follows from it
+    # Effects of a decision
 
     def _route_changed(self) -> None:
         """Tell the publisher that the link is taken, or wait for what is missing."""
@@ -425,7 +425,7 @@ class RemotePublisher:
             return
         self._timer_runs = True
         self._progressed = False
-        # What a KEEP_ALL subscription waits for arrives for certain, perhaps sent once more.
+        # Messages that a KEEP_ALL subscription waits for arrive for certain, perhaps sent again.
         patient = self._keep_all or self._gone or self.route is Route.RECOVERING
         self._registry.later(RECOVERY_S if patient else ZENOH_LATE_S, self._on_timer)
 
@@ -463,7 +463,7 @@ class RemotePublisher:
             if self.route is not LINK and not self._gone:
                 return
             used, self._used, self._used_bytes = self._used, 0, 0
-            # What is held when the publisher has gone is here, and is not asked for again.
+            # Messages that are held when the publisher has gone are not asked for again.
             last = max(self.last, *self._held) if self._gone and self._held else self.last
             self.connection.send(Credit(self.publisher, self.gid, used, last))
 
@@ -532,7 +532,7 @@ class LinkReader(ReaderRegistration):
 
     @property
     def waiting(self) -> int:
-        """How many messages wait in the subscription."""
+        """The number of messages that wait in the subscription."""
         return self._reader.waiting
 
     def has_room(self) -> bool:

@@ -38,7 +38,7 @@ __all__ = ["LinkTransport"]
 logger = logging.getLogger("aionode.transport.link")
 
 LOOK_S = 0.001
-"""How often `send_rest` looks whether a full socket takes more, in seconds."""
+"""Time between two tries of `send_rest` whether a full socket takes more, in seconds."""
 
 
 class LinkTransport(Transport):

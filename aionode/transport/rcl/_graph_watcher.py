@@ -34,13 +34,13 @@ UNKNOWN_NODES: Final = ("_NODE_NAME_UNKNOWN_", "_CREATED_BY_BARE_DDS_APP_")
 """Names of the nodes of endpoints whose participant has not told of its nodes."""
 
 HIDDEN: Final = "_aionode_graph_"
-"""How the names of the nodes begin that only ask for the graph."""
+"""Prefix of the names of nodes that only ask for the graph."""
 
 AGAIN_S: Final = 0.1
-"""When it is asked again after an answer with a part missing."""
+"""Time until the graph is asked again after an incomplete answer, in seconds."""
 
 TRIES: Final = 20
-"""How often it is asked again in a row."""
+"""Times that the graph is asked again in a row."""
 
 
 class RclGraphWatcher:

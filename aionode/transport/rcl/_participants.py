@@ -1,4 +1,4 @@
-"""How many processes of a domain run on this host, whether discovery has found them or not.
+"""Counts the processes of a domain on this host, whether discovery has found them or not.
 
 Fast DDS announces a new participant before it listens. Those that answer at once are not heard,
 and they say no more until their next regular announcement, which they make every 3 s. Nothing in
@@ -29,16 +29,16 @@ FIRST_PORT: Final = 7410
 """The port for discovery of the first participant of domain 0 (RTPS 2.5, 9.6.2.3)."""
 
 DOMAIN_PORTS: Final = 250
-"""How far the ports of one domain are from those of the next."""
+"""Distance between the ports of one domain and those of the next."""
 
 PARTICIPANTS: Final = 120
-"""How many participants have ports in a domain; each has two, the first one for discovery."""
+"""Participants with ports in a domain; each has two ports, the first one for discovery."""
 
 DISCOVERY_TOPIC: Final = "ros_discovery_info"
 """The topic on which each participant of ROS 2 tells of its nodes."""
 
 HOST_BYTES: Final = 4
-"""How many bytes of a gid identify Fast DDS and the host."""
+"""Bytes of a gid that identify Fast DDS and the host."""
 
 
 def lacks_participants(state: RclState) -> bool:

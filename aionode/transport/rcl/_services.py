@@ -36,7 +36,7 @@ DEPTH: Final = 1000
 """Depth of own servers and clients at least: with ROS's 10, some of 30 calls at once are lost."""
 
 AVAILABLE_S: Final = 0.005
-"""How often it is asked whether a server that the graph knows can answer already."""
+"""Times that a client asks whether a server that the graph knows can answer already."""
 
 AVAILABLE_NS: Final = 5_000_000_000
 """After which time a request is sent all the same."""
@@ -283,7 +283,7 @@ class RclRequester(RclDeclaration, Requester):
 
     @property
     def servers(self) -> int:
-        """How many servers of others are matched."""
+        """The number of servers of others that are matched."""
         return len(self._servers)
 
     def _note_server(self, server: EndpointInfo, present: bool) -> None:

@@ -1,4 +1,4 @@
-"""What all entities of one context share: rclpy's context, its nodes, and the event loop."""
+"""The state that all entities of one context share: rclpy's context, its nodes, the event loop."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ __all__ = ["PREFIX_BYTES", "RclDeclaration", "RclState"]
 logger = logging.getLogger("aionode.transport.rcl")
 
 PREFIX_BYTES: Final = 12
-"""How many bytes of a gid identify the participant over DDS (RTPS 2.5, 9.3.1.1)."""
+"""Bytes of a gid that identify the participant over DDS (RTPS 2.5, 9.3.1.1)."""
 
 
 class RclState:

@@ -34,10 +34,10 @@ its messages without the GIL.
 """
 
 REMEMBERED_PUBLISHERS: Final = 1024
-"""How many publishers have their messages counted."""
+"""Publishers whose messages are counted."""
 
 GIVE_UP_TRIES: Final = 20
-"""How often a publisher that is being destroyed tries to send one more message (0.1 s each)."""
+"""Tries of a publisher that is being destroyed to send one more message (0.1 s each)."""
 
 
 class RclWriter(RclDeclaration, Writer):
@@ -208,7 +208,7 @@ class RclWriter(RclDeclaration, Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped on their way because it was slow."""
+        """The number of messages dropped on their way because it was slow."""
         return self._queue.dropped + self._refused
 
     def route_of(self, reader: EndpointInfo) -> str | None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["RclTransport"]
 
 KNOWN_S: Final = 0.25
-"""How long `open` waits for the graph: nothing tells that discovery is complete."""
+"""Time for which `open` waits for the graph: nothing tells that discovery is complete."""
 
 QUIET_S: Final = 0.06
 """After how much quiet `open` goes on early, if another node was found."""
@@ -46,7 +46,7 @@ MAX_QUIETS: Final = 5
 """For how many of its times of quiet `all_known` waits at most."""
 
 CLOSE_S: Final = 0.8
-"""How long `close` waits for messages that a thread is sending."""
+"""Time for which `close` waits for messages that a thread is sending."""
 
 
 class RclTransport(Transport):
@@ -71,7 +71,7 @@ class RclTransport(Transport):
 
     @property
     def malformed(self) -> Counter[str]:
-        """How many messages in no known form came, for each topic and service."""
+        """The number of messages in no known form, for each topic and service."""
         return self._state.malformed
 
     @property

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["MessageSupport", "rosidl_class", "type_hash_of"]
 
 MESSAGE_HASH_FIELD: Final = 3
-"""Where ``get_type_hash_func`` is in a ``rosidl_message_type_support_t``, in pointers."""
+"""Position of ``get_type_hash_func`` in a ``rosidl_message_type_support_t``, in pointers."""
 
 SERVICE_HASH_FIELD: Final = 8
 """The same in a ``rosidl_service_type_support_t``."""

@@ -1,1 +1,1 @@
-"""Where cv_bridge has what is compiled."""
+"""The place of cv_bridge's compiled part."""
