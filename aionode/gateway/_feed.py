@@ -87,9 +87,10 @@ class Received:
             key: The kind of encoding.
             make: Returns the encoding.
         """
-        if key not in self._kinds:
-            self._kinds[key] = make(self)
-        found: T = self._kinds[key]
+        try:
+            found: T = self._kinds[key]
+        except KeyError:
+            found = self._kinds[key] = make(self)
         return found
 
 

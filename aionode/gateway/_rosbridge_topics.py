@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -208,7 +208,7 @@ class Topics:
         subscribed = await self._session.subscribe(
             topic,
             wish.type_name,
-            frame=partial(self._frame, topic, wish),
+            frame=self._frames(topic, wish),
             key=("rosbridge", topic, queue),
             depth=wish.depth,
             qos=wish.qos,
@@ -218,15 +218,24 @@ class Topics:
         if earlier is not None:
             earlier.subscribed.close()
 
-    def _frame(self, topic: str, wish: Wish, received: Received) -> Frame | None:
-        """Return the frame of a message, made once for all clients that want the same."""
+    def _frames(self, topic: str, wish: Wish) -> Callable[[Received], Frame | None]:
+        """Return what makes the frame of a message, once for all clients that want the same."""
         kind = ("rosbridge", wish.compression, topic)
-        try:
-            frame = received.once(kind, partial(frame_of, wish.compression, topic))
-        except AionodeError as error:  # a peer sent what is no message of the type
-            self._link.status("error", f"subscribe: {error}")
-            return None
-        if not wish.fragment_size or isinstance(frame, bytes):
+        make = partial(frame_of, wish.compression, topic)
+
+        def frame(received: Received) -> Frame | None:
+            try:
+                made = received.once(kind, make)
+            except AionodeError as error:  # a peer sent what is no message of the type
+                self._link.status("error", f"subscribe: {error}")
+                return None
+            return self._fragments(made, wish) if wish.fragment_size else made
+
+        return frame
+
+    def _fragments(self, frame: Frame, wish: Wish) -> Frame:
+        """Return a frame that leaves in fragments, if it is text."""
+        if isinstance(frame, bytes):
             return frame
         self._fragmented += 1
         return Fragmented.of(frame, max(int(wish.fragment_size), 1), str(self._fragmented))

@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+from aionode.gateway._outgoing import Framing, Outgoing
 
 if TYPE_CHECKING:
     from aionode.gateway._policy import Policy
@@ -159,6 +162,20 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         super().__init__(*args, **options)
         self.conn.debug = False  # it would write the tokens of addresses and headers into the log
 
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Have frames leave as the client reads them."""
+        super().connection_made(transport)
+        self._framing = self.config.framing  # type: ignore[attr-defined]  # a ServerConfig
+        self.transport = self._outgoing = Outgoing(transport, self.writable)
+
+    def pause_writing(self) -> None:
+        """Send nothing until the client has read what was sent."""
+        self._outgoing.pause()
+
+    def resume_writing(self) -> None:
+        """Send again."""
+        self._outgoing.resume()
+
     def handle_connect(self, event: Any) -> None:
         """Have the application find this connection."""
         self.app_state = {**self.app_state, "aionode_connection": self}
@@ -174,9 +191,23 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
 
         uvicorn would write an error into the log for each of them.
         """
+        if message["type"] == "websocket.send":
+            text = message.get("text")
+            await self._send_frame(message["bytes"] if text is None else text)
+            return
         await super().send(message)
         if message["type"] == "websocket.http.response.body":
             self.handshake_complete = True
+
+    async def _send_frame(self, frame: bytes | str) -> None:
+        """Send a frame when the client has read the earlier ones.
+
+        Raises:
+            ClientDisconnected: it has left.
+        """
+        await self.writable.wait()
+        if self.disconnected or not self.send_now(frame):
+            raise ClientDisconnected
 
     def send_now(self, frame: bytes | str) -> bool:
         """Send a frame, if its client has read enough of the earlier ones; return whether."""
@@ -184,13 +215,9 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
             return False
         if self.transport.is_closing():
             return False
-        if type(frame) is bytes:
-            self.conn.send_binary(frame)
-        elif type(frame) is str:
-            self.conn.send_text(frame.encode())
-        else:  # a frame in parts
+        if type(frame) is not bytes and type(frame) is not str:  # a frame in parts
             return False
-        self.transport.write(b"".join(self.conn.data_to_send()))
+        self._outgoing.send(self._framing.parts(frame))
         return True
 
     def silent_sec(self) -> float:
@@ -236,10 +263,17 @@ def common_name(transport: asyncio.Transport) -> str:
 
 
 class ServerConfig(uvicorn.Config):
-    """The configuration of a server, its policy as it is now, and whether a connection ended."""
+    """The configuration of a server.
+
+    Attributes:
+        policy: Returns the policy as it is now.
+        has_lost_one: Set when a connection has ended.
+        framing: Makes the frames of all its WebSockets.
+    """
 
     policy: Callable[[], Policy]
     has_lost_one: asyncio.Event
+    framing: Framing
 
 
 def server_config(app: Any, current: Callable[[], Policy]) -> ServerConfig:
@@ -269,4 +303,5 @@ def server_config(app: Any, current: Callable[[], Policy]) -> ServerConfig:
     )
     config.policy = current
     config.has_lost_one = asyncio.Event()
+    config.framing = Framing()
     return config
