@@ -416,7 +416,7 @@ class Context:
         if not self._is_on_zenoh:
             return
         hint = unheard_middleware(os.environ)
-        if hint and all(one.participant == self.participant for one in self.graph.nodes()):
+        if hint and all(node.participant == self.participant for node in self.graph.nodes()):
             get_logger("aionode.context").warning(hint)
 
     def _end_spinning(self) -> None:
@@ -532,14 +532,14 @@ class Context:
 
     def _register(self, register: Callable[[Transport], RegisteredT]) -> list[RegisteredT]:
         """Register something with every transport, or with none if one refuses."""
-        made: list[RegisteredT] = []
+        registrations: list[RegisteredT] = []
         try:
-            made.extend(map(register, self.transports))
+            registrations.extend(map(register, self.transports))
         except BaseException:
-            for registration in made:
+            for registration in registrations:
                 registration.close()
             raise
-        return made
+        return registrations
 
     def _describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
         """Return the graph entry of a new node."""

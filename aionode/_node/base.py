@@ -275,7 +275,9 @@ class NodeBase:
             ForkedProcessError: the context belongs to the parent process.
         """
         self.context._add_node(self)
-        self._registrations = self.context._register(lambda one: one.create_node(self._info))
+        self._registrations = self.context._register(
+            lambda transport: transport.create_node(self._info)
+        )
         self.context.graph.add_node(self._info)
 
     def _leave(self) -> None:

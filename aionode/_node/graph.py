@@ -279,7 +279,7 @@ def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:
 
 def shown(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
     """Return names and types, with or without those of hidden names."""
-    return found if include_hidden else [one for one in found if not names.is_hidden(one[0])]
+    return found if include_hidden else [entry for entry in found if not names.is_hidden(entry[0])]
 
 
 def actions_among(topics: NamesAndTypes) -> NamesAndTypes:

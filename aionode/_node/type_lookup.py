@@ -111,33 +111,34 @@ async def described_by(
     """
     if name in users:
         description = await description_of(node, users[name])
-        made = None if description is None else type_from_description(description)
-        return made if made is None else with_hash(made, users[name])
+        if description is None:
+            return None
+        return with_hash(type_from_description(description), users[name])
     parts = [users.get(f"{name}_{part}") for part in ACTION_PARTS]
     descriptions = [None if part is None else await description_of(node, part) for part in parts]
     if None in descriptions:
         return None  # a client's node may describe fewer parts than the server's
-    made = action_from_descriptions(name, *descriptions)  # type: ignore[arg-type]  # three, none of them None
-    impl = made.Impl
+    action_type = action_from_descriptions(name, *descriptions)  # type: ignore[arg-type]  # three, none of them None
+    impl = action_type.Impl
     kinds = (impl.SendGoalService, impl.GetResultService, impl.FeedbackMessage)
     for kind, part in zip(kinds, parts, strict=True):
         with_hash(kind, part)  # type: ignore[arg-type]  # it has a description
-    return made
+    return action_type
 
 
-def with_hash(made: Any, user: EndpointInfo) -> Any:
+def with_hash(message_type: Any, user: EndpointInfo) -> Any:
     """Return a class if it has the type hash of an endpoint.
 
     Raises:
         TypeDescriptionError: it has another one.
     """
-    if user.type_hash not in {"", NO_TYPE_HASH, type_hash(made)}:
+    if user.type_hash not in {"", NO_TYPE_HASH, type_hash(message_type)}:
         raise TypeDescriptionError(
             user.type_name,
-            f"{user.node.fully_qualified_name} describes a type with the hash {type_hash(made)}, "
-            f"but uses one with {user.type_hash}",
+            f"{user.node.fully_qualified_name} describes a type with the hash "
+            f"{type_hash(message_type)}, but uses one with {user.type_hash}",
         )
-    return made
+    return message_type
 
 
 async def description_of(node: NodeEndpoints, user: EndpointInfo) -> Any | None:

@@ -77,7 +77,7 @@ class Packages:
             PackageNotFoundError: There is no such package.
         """
         source = self.sources().get(name)
-        prefix = next((one for one in prefixes() if (one / MARKER / name).is_file()), None)
+        prefix = next((folder for folder in prefixes() if (folder / MARKER / name).is_file()), None)
         if source is None and prefix is None:
             raise self.not_found(name)
         installed = {} if prefix is None else installed_executables(prefix, name)
@@ -138,4 +138,4 @@ def source_folder(workspace: Path) -> Path:
 def prefixes() -> list[Path]:
     """Return the folders into which packages are installed: those of ROS, then Python's own."""
     named = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    return [Path(one) for one in (*named, sys.prefix) if one and Path(one).is_dir()]
+    return [Path(path) for path in (*named, sys.prefix) if path and Path(path).is_dir()]

@@ -91,10 +91,10 @@ def scripts(folder: Path, package: str) -> dict[str, Path]:
     CMakeLists.txt installs as programs.
     """
     given = arguments(folder)
-    files = [one for one in listed(given.get("scripts")) if isinstance(one, str)]
+    files = [item for item in listed(given.get("scripts")) if isinstance(item, str)]
     for pair in listed(given.get("data_files")):
         if len(listed(pair)) == 2 and pair[0] == f"lib/{package}":
-            files += [one for one in listed(pair[1]) if isinstance(one, str)]
+            files += [item for item in listed(pair[1]) if isinstance(item, str)]
     found = {Path(file).name: folder / file for file in files}
     found.update(of_cmake(folder, package))
     return {name: file for name, file in found.items() if file.is_file()}

@@ -50,7 +50,7 @@ def workspace_of(place: Path) -> Path | None:
     start = own or place
     around = (start, *start.parents)
     sources = next((folder for folder in around if folder.name == "src"), None)
-    return sources or next((one for one in around if (one / ".git").exists()), own)
+    return sources or next((folder for folder in around if (folder / ".git").exists()), own)
 
 
 @cache

@@ -272,7 +272,9 @@ def read_nodes(events: Events, above: tuple[str, ...]) -> Iterator[ParameterRule
             if not above:
                 events.fail(f"there is no name of a node before '{PARAMETERS_KEY}'")
             node = node_name(events, above)
-            yield from (ParameterRule(node, *each) for each in read_parameters(events, ""))
+            yield from (
+                ParameterRule(node, *parameter) for parameter in read_parameters(events, "")
+            )
         elif events.at("MappingStart"):
             yield from read_nodes(events, (*above, key))
         else:

@@ -125,10 +125,10 @@ class Bag:
         """Its files in order of time, each after the time of its first message in nanoseconds."""
         if len(self._sources) == 1 and self.metadata.get("files"):
             return sorted(
-                (int(each["starting_time"]["nanoseconds_since_epoch"]), str(each["path"]))
-                for each in self.metadata["files"]
+                (int(file["starting_time"]["nanoseconds_since_epoch"]), str(file["path"]))
+                for file in self.metadata["files"]
             )
-        return sorted((each.start_ns, each.path.name) for each in self._sources)
+        return sorted((source.start_ns, source.path.name) for source in self._sources)
 
     def read(
         self,

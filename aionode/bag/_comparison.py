@@ -91,8 +91,8 @@ def compare(
     for topic in dict.fromkeys((*left, *right)):
         tolerances = Tolerances(topic, tolerance, round(time_tolerance_sec * 1e9))
         listed = differences(topic, left.get(topic, []), right.get(topic, []), tolerances, start_ns)
-        found += [each for each, _ in zip(listed, range(limit), strict=False)]
-    return sorted(found, key=lambda each: each.time_ns)
+        found += [difference for difference, _ in zip(listed, range(limit), strict=False)]
+    return sorted(found, key=lambda difference: difference.time_ns)
 
 
 class Tolerances:
@@ -150,7 +150,7 @@ def differences(
 ) -> Iterator[Difference]:
     """Yield the differences between the messages of one topic."""
     for a, b in zip_longest(left, right):
-        one = a or b
+        record = a or b
         pairs: Iterable[tuple[str, Any, Any]]
         if a is None or b is None:
             there = "a message"
@@ -159,7 +159,7 @@ def differences(
         else:
             pairs = unequal(a, b, tolerances)
         for field, x, y in pairs:
-            yield Difference(topic, one.time_ns, field, x, y, one.time_ns - start_ns)
+            yield Difference(topic, record.time_ns, field, x, y, record.time_ns - start_ns)
 
 
 def unequal(a: Record, b: Record, tolerances: Tolerances) -> Iterator[tuple[str, Any, Any]]:

@@ -115,7 +115,7 @@ def merged_records(
         topics = None
         if selection is not None:
             topics = [
-                each.name for each in bag.connections if selection.wants(each.name, each.type)
+                topic.name for topic in bag.connections if selection.wants(topic.name, topic.type)
             ]
         streams.append((bag.start_ns, iter(bag.read(topics, start, end))))
     return in_order(streams)

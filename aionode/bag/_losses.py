@@ -36,8 +36,8 @@ def losses_from(custom_data: Mapping[str, str]) -> dict[str, Lost] | None:
     try:
         listed = json.loads(custom_data[LOSSES])
         return {
-            str(name): Lost(int(each["in_transport"]), int(each["in_recorder"]))
-            for name, each in listed.items()
+            str(name): Lost(int(counts["in_transport"]), int(counts["in_recorder"]))
+            for name, counts in listed.items()
         }
     except (KeyError, TypeError, ValueError, AttributeError):
         return None  # another recorder, or somebody's own entry of this name
@@ -46,10 +46,10 @@ def losses_from(custom_data: Mapping[str, str]) -> dict[str, Lost] | None:
 def added_losses(losses: Iterable[Mapping[str, Lost] | None]) -> dict[str, Lost] | None:
     """Return the sums of several bags; None unless each of them tells."""
     total: dict[str, Lost] = {}
-    for each in losses:
-        if each is None:
+    for by_topic in losses:
+        if by_topic is None:
             return None
-        for name, lost in each.items():
+        for name, lost in by_topic.items():
             before = total.get(name, Lost(0, 0))
             total[name] = Lost(
                 before.in_transport + lost.in_transport, before.in_recorder + lost.in_recorder

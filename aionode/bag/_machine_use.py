@@ -37,9 +37,12 @@ CHANCE: Final[tuple[Any, ...]] = (
     *(random.randrange, random.shuffle, random.sample, random.getrandbits),
 )
 NAMES: Final[dict[Any, str]] = {
-    **{one: f"{one.__module__ or 'time'}.{one.__qualname__}" for one in (*CLOCKS, *CHANCE)},
-    **{one: f"datetime.{one.__qualname__}" for one in CLOCKS[-4:]},
-    **{one: f"random.{one.__name__}" for one in CHANCE[3:]},
+    **{
+        function: f"{function.__module__ or 'time'}.{function.__qualname__}"
+        for function in (*CLOCKS, *CHANCE)
+    },
+    **{function: f"datetime.{function.__qualname__}" for function in CLOCKS[-4:]},
+    **{function: f"random.{function.__name__}" for function in CHANCE[3:]},
 }
 """The functions that give something else in each run, with their names."""
 
@@ -119,7 +122,7 @@ class MachineUse:
 
 def is_of_collector(code: CodeType) -> bool:
     """Whether a function is called when garbage is collected, at any place of the nodes."""
-    return any(getattr(each, "__code__", None) is code for each in gc.callbacks)
+    return any(getattr(callback, "__code__", None) is code for callback in gc.callbacks)
 
 
 @cache

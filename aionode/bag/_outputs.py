@@ -104,7 +104,9 @@ class Tap:
         """
         if self._missing:
             publishers = self._graph.endpoints(EndpointKind.PUBLISHER)
-            others = sorted({each.name for each in publishers if each.node != self._node.info})
+            others = sorted(
+                {publisher.name for publisher in publishers if publisher.node != self._node.info}
+            )
             raise BagError(
                 subject,
                 f"no node of the run publishes {', '.join(self._missing)}",

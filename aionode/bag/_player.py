@@ -428,7 +428,9 @@ class Player:
         """Wait until what was published and asked has arrived, as far as that is wanted."""
         await self._requests.drain()
         if self._wait_acked_sec is not None:
-            publishers = [each for each in self._publishers.values() if each is not None]
+            publishers = [
+                publisher for publisher in self._publishers.values() if publisher is not None
+            ]
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(self._wait_acked_sec or None):
                     for publisher in publishers:

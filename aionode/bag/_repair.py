@@ -82,8 +82,8 @@ def is_indexed(folder: Path, checked: list[Checked]) -> bool:
         count = int(metadata["message_count"])
     except (BagError, KeyError, TypeError, ValueError):
         return False
-    return names == {each.file for each in checked} and count == sum(
-        each.messages for each in checked
+    return names == {file.file for file in checked} and count == sum(
+        file.messages for file in checked
     )
 
 
@@ -299,5 +299,5 @@ def reindex(path: str | PathLike[str]) -> None:
             metadata |= {"compression_format": "zstd", "compression_mode": "FILE"}
         write_metadata(folder, metadata)
     finally:
-        for each in sources:
-            each.close()
+        for source in sources:
+            source.close()

@@ -146,13 +146,13 @@ class Replay:
                     self._tasks.create_task(node.run())
             stepped = self._stepped
             await stepped.settle()
-            for each in self.bag.read(
+            for entry in self.bag.read(
                 topics=publish.keys(),
                 start=Time(nanoseconds=self._piece.start_ns),
                 end=Time(nanoseconds=self._piece.end_ns),
             ):
-                await stepped.walk_to(each.time_ns)
-                publish[each.topic](each)
+                await stepped.walk_to(entry.time_ns)
+                publish[entry.topic](entry)
                 await stepped.settle()
             await stepped.walk_to(min(self._piece.end_ns - 1, self.bag.end_ns))
             await stepped.settle()
@@ -190,9 +190,9 @@ class Replay:
     def _warn_of_second(self, name: str) -> None:
         """Warn if a node publishes what is recorded too; transforms come from many."""
         others = [
-            each.node.fully_qualified_name
-            for each in self.context.graph.endpoints(EndpointKind.PUBLISHER, name=name)
-            if each.node != self._player.info
+            endpoint.node.fully_qualified_name
+            for endpoint in self.context.graph.endpoints(EndpointKind.PUBLISHER, name=name)
+            if endpoint.node != self._player.info
         ]
         if others and name not in {"/tf", "/tf_static"}:
             logger.warning(

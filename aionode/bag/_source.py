@@ -136,7 +136,9 @@ class McapSource:
         """
         wanted = None
         if topics is not None:
-            wanted = {number for number, each in self._channels.items() if each.name in topics}
+            wanted = {
+                number for number, channel in self._channels.items() if channel.name in topics
+            }
         chunks = [
             chunk
             for chunk in self._chunks
@@ -235,7 +237,9 @@ class RosbagsSource:
         except ReaderError as error:
             raise BagError(str(path), f"it cannot be read: {error}") from error
         connections = self._reader.connections
-        self._topics = {number: topic_from(each) for number, each in enumerate(connections)}
+        self._topics = {
+            number: topic_from(connection) for number, connection in enumerate(connections)
+        }
         self.topics = list(self._topics.values())
         has_messages = self._reader.message_count > 0
         self.start_ns = self._reader.start_time if has_messages else MOST_NS
@@ -254,7 +258,9 @@ class RosbagsSource:
             for number, connection in zip(count(), self._reader.connections)
             if topics is None or connection.topic in topics
         }
-        connections = [each for each in self._reader.connections if id(each) in wanted]
+        connections = [
+            connection for connection in self._reader.connections if id(connection) in wanted
+        ]
         if not connections:
             return
         try:

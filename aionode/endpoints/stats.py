@@ -82,8 +82,8 @@ class Distribution:
             following = bisect_left(ordered, _start_ns(bucket + 1), begin)
             counts[bucket] = following - begin
             begin = following
-        for one in (self, *others):
-            one._merge(counts, ordered[-1])
+        for distribution in (self, *others):
+            distribution._merge(counts, ordered[-1])
 
     def _merge(self, buckets: dict[int, int], longest_ns: int) -> None:
         """Add buckets that were counted elsewhere."""

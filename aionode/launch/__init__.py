@@ -99,12 +99,12 @@ class Plan:
         """The arguments that the file takes."""
         return [
             DeclaredArgument(
-                name=one.name,
-                description=one.description,
-                default=None if one.default_value is None else joined(one.default_value),
-                choices=None if one.choices is None else tuple(one.choices),
+                name=argument.name,
+                description=argument.description,
+                default=None if argument.default_value is None else joined(argument.default_value),
+                choices=None if argument.choices is None else tuple(argument.choices),
             )
-            for one in arguments_of(self.description, self.path)
+            for argument in arguments_of(self.description, self.path)
         ]
 
     @property

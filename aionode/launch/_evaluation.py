@@ -178,7 +178,7 @@ def unknown_option(error: Exception) -> str | None:
         return None
     name, option = match.groups()
     frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
-    users = [at for at, one in enumerate(frames) if not is_machinery(one.f_code.co_filename)]
+    users = [at for at, frame in enumerate(frames) if not is_machinery(frame.f_code.co_filename)]
     inner = frames[users[-1] + 1 :] if users else []
     kind = frames[users[-1]].f_globals.get(name) if users else None
     kind = type(inner[0].f_locals["self"]) if inner and "self" in inner[0].f_locals else kind
@@ -197,8 +197,8 @@ def options_of(kind: type) -> list[str]:
         if "__init__" in vars(cls):
             _, *parameters = inspect.signature(vars(cls)["__init__"]).parameters.values()
             variable = {inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL}
-            found |= {one.name for one in parameters if one.kind not in variable}
-            if all(one.kind is not inspect.Parameter.VAR_KEYWORD for one in parameters):
+            found |= {parameter.name for parameter in parameters if parameter.kind not in variable}
+            if all(parameter.kind is not inspect.Parameter.VAR_KEYWORD for parameter in parameters):
                 break
     return sorted(found)
 
@@ -291,8 +291,8 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
         raise
     except Exception as error:
         raise failure_of(entity, error) from error
-    for one in inner:
-        visit(one, context, depth + 1)
+    for child in inner:
+        visit(child, context, depth + 1)
 
 
 def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:

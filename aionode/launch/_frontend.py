@@ -356,7 +356,7 @@ def component(element: Element) -> descriptions.ComposableNode:
     """Return a node of a container."""
     reading = Reading(element)
     extra = reading.pairs("extra_arg", "name", "value")
-    made = descriptions.ComposableNode(
+    node = descriptions.ComposableNode(
         package=words_of(reading.need("pkg")),
         plugin=words_of(reading.need("plugin")),
         condition=condition_of(reading),
@@ -369,7 +369,7 @@ def component(element: Element) -> descriptions.ComposableNode:
         ),
     )
     reading.finish()
-    return made
+    return node
 
 
 def container(reading: Reading, options: Options) -> actions.Action:
@@ -433,8 +433,8 @@ def group(reading: Reading, options: Options) -> actions.Action:
 def timer(kind: Any, reading: Reading, options: Options) -> actions.Action:
     """Return the action of a ``timer``."""
     period = words_of(reading.need("period"))
-    made: actions.Action = kind(period=period, actions=inner_actions(reading), **options)
-    return made
+    action: actions.Action = kind(period=period, actions=inner_actions(reading), **options)
+    return action
 
 
 def for_each(reading: Reading, options: Options) -> actions.Action:

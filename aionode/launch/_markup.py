@@ -90,28 +90,28 @@ def elements(path: str, node: yaml.MappingNode) -> Iterator[Element]:
 
 def element(path: str, name: str, node: yaml.Node, line: int) -> Element:
     """Return the element of this name that a value describes."""
-    made = Element(name, f"{path}:{line}")
+    result = Element(name, f"{path}:{line}")
     if isinstance(node, yaml.SequenceNode):
-        made.children = list(children(path, node, name))
+        result.children = list(children(path, node, name))
     elif isinstance(node, yaml.MappingNode):
         for key, value in node.value:
-            fill(made, path, str(key.value), value)
+            fill(result, path, str(key.value), value)
     elif node.value:
         raise LaunchFileError(path, f"'{name}' is {node.value!r}; a mapping fits", line=line)
-    return made
+    return result
 
 
-def fill(made: Element, path: str, key: str, value: yaml.Node) -> None:
+def fill(parent: Element, path: str, key: str, value: yaml.Node) -> None:
     """Add one key of a mapping to an element: an attribute, or elements of this name."""
     if key == "children" and isinstance(value, yaml.SequenceNode):
-        made.children += children(path, value, made.name)
+        parent.children += children(path, value, parent.name)
     elif isinstance(value, yaml.SequenceNode) and any(
         isinstance(item, yaml.MappingNode) for item in value.value
     ):
         for item in value.value:
-            made.children.append(element(path, key, item, item.start_mark.line + 1))
+            parent.children.append(element(path, key, item, item.start_mark.line + 1))
     else:
-        made.attributes[key] = plain(value)
+        parent.attributes[key] = plain(value)
 
 
 def children(path: str, node: yaml.SequenceNode, name: str) -> Iterator[Element]:

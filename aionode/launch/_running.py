@@ -171,7 +171,7 @@ class RunningLaunch:
     def _watch(self, step: Watch) -> None:
         """Begin to call an event handler, or end that."""
         if step.ends:
-            self._watches = [one for one in self._watches if one.handler != step.handler]
+            self._watches = [watch for watch in self._watches if watch.handler != step.handler]
         else:
             self._watches.insert(0, step)
 
@@ -349,7 +349,7 @@ class RunningLaunch:
 
     def _load(self, step: LoadNodes) -> None:
         """Give a container its nodes: classes of aionode run as tasks of this process."""
-        foreign = [one for one in step.components if not one.is_aionode]
+        foreign = [component for component in step.components if not component.is_aionode]
         for component in step.components:
             if component.is_aionode:
                 self._add_node(component)

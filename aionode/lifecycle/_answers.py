@@ -38,12 +38,14 @@ class StateAnswers:
 
     def get_available_transitions(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # as above
         """Answer ``~/get_available_transitions``: those that are possible now."""
-        response.available_transitions = [self._described(one) for one in self._machine.available()]
+        response.available_transitions = [
+            self._described(transition) for transition in self._machine.available()
+        ]
         return response
 
     def get_transition_graph(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # as above
         """Answer ``~/get_transition_graph``: all that there are."""
-        response.available_transitions = [self._described(one) for one in TRANSITIONS]
+        response.available_transitions = [self._described(transition) for transition in TRANSITIONS]
         return response
 
     def _described(self, transition: Transition) -> Any:

@@ -186,12 +186,12 @@ def contained(
     ]
 
 
-def checked_size(one: FieldType, size: object) -> int:
+def checked_size(field_type: FieldType, size: object) -> int:
     """Return the size or bound of a container or string, or raise `TypeError`."""
     if get_origin(size) is Literal:
         (size,) = get_args(size)
     if not isinstance(size, int) or size < 1:
-        msg = f"{one}: size or bound {brief(size)} given; it must be an int of at least 1"
+        msg = f"{field_type}: size or bound {brief(size)} given; it must be an int of at least 1"
         raise TypeError(msg)
     return size
 

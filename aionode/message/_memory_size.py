@@ -54,7 +54,7 @@ def size_of_field(name: str, kind: FieldType) -> Size | None:
             return lambda msg: sum(map(of_element, value(msg)))
         element_bytes = fixed_size(kind.nested)
     elif kind.kind in TEXTS:
-        return lambda msg: sum([each.__sizeof__() for each in value(msg)])
+        return lambda msg: sum([text.__sizeof__() for text in value(msg)])
     else:
         element_bytes = 1 if kind.form == "bytes" or kind.kind == "uint8" else NUMBER_BYTES
     return None if kind.container == "array" else lambda msg: element_bytes * len(value(msg))

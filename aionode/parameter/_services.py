@@ -124,7 +124,7 @@ class Answers:
             found = each_once(request.names, self.parameters.describe_parameters)
         except ParameterNotDeclaredException:
             return response
-        sizes = {name: descriptor_size(one) for name, one in found.items()}
+        sizes = {name: descriptor_size(descriptor) for name, descriptor in found.items()}
         refuse_large(sum(sizes[name] for name in request.names), "descriptions")
         response.descriptors = [found[name] for name in request.names]
         return response
@@ -189,10 +189,10 @@ class Answers:
         Raises:
             RequestRefusedError: they are too large, or too many.
         """
-        new_bytes = sum(len(each.name) + size_of_message(each.value) for each in messages)
+        new_bytes = sum(len(message.name) + size_of_message(message.value) for message in messages)
         held = self.parameters.get_parameters_by_prefix("")
         held_bytes = sum(
-            PARAMETER_BYTES + len(name) + size_of(each.value) for name, each in held.items()
+            PARAMETER_BYTES + len(name) + size_of(message.value) for name, message in held.items()
         )
         if new_bytes + PARAMETER_BYTES * len(messages) + held_bytes > MOST_HELD:
             raise RequestRefusedError(

@@ -300,7 +300,7 @@ class Guardian:
     # Processes
 
     def _reap(self) -> None:
-        by_pid = {one.pid: one for one in self._programs.values() if not one.ended}
+        by_pid = {program.pid: program for program in self._programs.values() if not program.ended}
         while True:
             try:
                 pid, status = os.waitpid(-1, os.WNOHANG)
@@ -324,7 +324,9 @@ class Guardian:
             send(os.kill, pid, signal.SIGKILL)
 
     def _advance(self) -> None:
-        stopping = [one for one in self._programs.values() if one.stopping and not one.gone]
+        stopping = [
+            program for program in self._programs.values() if program.stopping and not program.gone
+        ]
         if not stopping:
             return
         processes = descendants(os.getpid())
@@ -360,11 +362,11 @@ def owned_by(
     """
     sessions = {program.pid: program.number for program in programs}
     tokens = {program.token: program.number for program in programs}
-    owners = {pid: one.number for one in programs for pid in processes_in(one.cgroup)}
+    owners = {pid: program.number for program in programs for pid in processes_in(program.cgroup)}
     for pid, parent, session in processes:
         number = owners.get(pid, sessions.get(session, owners.get(parent)))
         if number is None:
-            number = next((tokens[one] for one in tokens_in(pid) if one in tokens), None)
+            number = next((tokens[token] for token in tokens_in(pid) if token in tokens), None)
         if number is not None:
             owners[pid] = number
     owned: dict[int, list[int]] = {}

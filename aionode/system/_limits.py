@@ -102,7 +102,7 @@ def own_cgroup(
     except OSError:
         return None
     mounts = (root, root / "unified")  # the second beside cgroups of version 1
-    mount = next((one for one in mounts if (one / "cgroup.controllers").exists()), None)
+    mount = next((mount for mount in mounts if (mount / "cgroup.controllers").exists()), None)
     own = next((line[3:].strip("/") for line in lines if line.startswith("0::")), None)
     if mount is None or own is None:
         return None

@@ -130,11 +130,11 @@ def ros_arguments(
         arguments += ["-r", f"{source}:={target}"]
     if isinstance(parameters, str | os.PathLike) or hasattr(parameters, "items"):
         parameters = [parameters]
-    for one in parameters or ():
-        if isinstance(one, str | os.PathLike):
-            arguments += ["--params-file", os.fspath(one)]
+    for parameter in parameters or ():
+        if isinstance(parameter, str | os.PathLike):
+            arguments += ["--params-file", os.fspath(parameter)]
         else:
-            for key, value in flat(one):
+            for key, value in flat(parameter):
                 arguments += ["-p", f"{key}:={yaml_text(value)}"]
     return arguments
 

@@ -204,4 +204,4 @@ async def missing_of(facts: Sequence[Fact], node: Node) -> list[str]:
 
     async with asyncio.TaskGroup() as tasks:
         waits = [tasks.create_task(wait(fact)) for fact in facts]
-    return [text for one in waits if (text := one.result())]
+    return [text for task in waits if (text := task.result())]

@@ -259,7 +259,7 @@ class System:
                 cpu_cores=cpu_cores,
                 **options,
             )
-        if any(one is not None for one in (env, cwd, memory_bytes, cpu_cores)):
+        if any(option is not None for option in (env, cwd, memory_bytes, cpu_cores)):
             raise ValueError(
                 f"{name}: env, cwd, memory_bytes and cpu_cores are for nodes with processes=True"
             )
@@ -373,7 +373,7 @@ class System:
             NotReadyError: one is not: its `name`, `problem` and `last_lines` say why (a
                 TimeoutError).
         """
-        waits = [one.run.ready for one in self._members.values() if one.state != "stopped"]
+        waits = [member.run.ready for member in self._members.values() if member.state != "stopped"]
         if waits:
             done, _ = await asyncio.wait(waits, return_when=asyncio.FIRST_EXCEPTION)
             for ready in waits:

@@ -115,7 +115,7 @@ def rotation_matrix(rotation: geometry.Quaternion) -> Matrix:
 def turned_tensor(rotation: Matrix, tensor: Sequence[Sequence[float]]) -> list[list[float]]:
     """Return R T Rᵀ."""
     half = [[sum(row[n] * tensor[n][m] for n in range(3)) for m in range(3)] for row in rotation]
-    return [[sum(one[n] * row[n] for n in range(3)) for row in rotation] for one in half]
+    return [[sum(half_row[n] * row[n] for n in range(3)) for row in rotation] for half_row in half]
 
 
 def turned_covariance(pose: Pose, numbers: Iterable[float]) -> list[float]:
@@ -190,7 +190,7 @@ def transform(msg: geometry.TransformStamped, by: TransformStamped) -> geometry.
 
 def moved_polygon(frame: Pose, polygon: geometry.Polygon) -> geometry.Polygon:
     """Move and turn the points of a polygon."""
-    moved = [moved_by(frame, one.x, one.y, one.z) for one in polygon.points]
+    moved = [moved_by(frame, point.x, point.y, point.z) for point in polygon.points]
     return geometry.Polygon(points=[geometry.Point32(x=x, y=y, z=z) for x, y, z in moved])
 
 

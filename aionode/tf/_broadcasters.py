@@ -66,7 +66,7 @@ class StaticTransformBroadcaster:
             TypeError: it is not a transform.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        every = self._by_child | {one.child_frame_id: one for one in listed(transform)}
+        every = self._by_child | {stamped.child_frame_id: stamped for stamped in listed(transform)}
         self.pub_tf.publish(TFMessage(transforms=list(every.values())))
         self._by_child = every
 

@@ -74,12 +74,12 @@ def to_top(frames: Tree, frame: str, time_ns: int, *, stop: str) -> list[str]:
     return found
 
 
-def common_end(one: list[str], other: list[str]) -> tuple[int, int]:
+def common_end(first: list[str], second: list[str]) -> tuple[int, int]:
     """Return the indices, from the end of two lists, at which they differ first."""
-    n, m = len(one), len(other)
+    n, m = len(first), len(second)
     while n > 0 and m > 0:
         n -= 1
         m -= 1
-        if one[n] != other[m]:
+        if first[n] != second[m]:
             break
     return n, m

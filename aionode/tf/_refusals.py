@@ -69,9 +69,9 @@ def too_many(limit: int, authority: str) -> str:
     )
 
 
-def two_broadcasters(child: str, one: str, other: str) -> str:
+def two_broadcasters(child: str, authority: str, other: str) -> str:
     """Return the text about a frame whose transforms come from two nodes in turns."""
     return (
-        f'TF_TWO_BROADCASTERS: frame "{child}" is sent by {one} and by {other} in turns, so its '
-        "transform jumps between theirs; stop one of them, or rename its frame"
+        f'TF_TWO_BROADCASTERS: frame "{child}" is sent by {authority} and by {other} in turns, so '
+        "its transform jumps between theirs; stop one of them, or rename its frame"
     )

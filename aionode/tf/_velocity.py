@@ -90,13 +90,13 @@ def scaled(vector: Vector, factor: float) -> Vector:
     return vector[0] * factor, vector[1] * factor, vector[2] * factor
 
 
-def added(one: Vector, other: Vector) -> Vector:
+def added(a: Vector, b: Vector) -> Vector:
     """Return the sum of two vectors."""
-    return one[0] + other[0], one[1] + other[1], one[2] + other[2]
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
-def cross(one: Vector, other: Vector) -> Vector:
+def cross(a: Vector, b: Vector) -> Vector:
     """Return the cross product of two vectors."""
-    ax, ay, az = one
-    bx, by, bz = other
+    ax, ay, az = a
+    bx, by, bz = b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx

@@ -121,7 +121,7 @@ class AnnouncedFilter:
         if msg_type not in self._compiled:
             options = self._options
             try:
-                made = compile_filter(
+                compiled = compile_filter(
                     msg_type,
                     options.filter_expression,
                     options.expression_parameters,
@@ -130,7 +130,7 @@ class AnnouncedFilter:
             except ContentFilterError:
                 self._compiled[msg_type] = None
             else:
-                self._compiled[msg_type] = made
+                self._compiled[msg_type] = compiled
         return self._compiled[msg_type]
 
 
@@ -257,8 +257,8 @@ class ContentFilters:
             announced = self._by_subscriber.get(subscriber)
             if not announced or subscriber in self._excessive:
                 return None
-            for one in announced.values():
-                predicate = one.predicate(msg_type)
+            for announcement in announced.values():
+                predicate = announcement.predicate(msg_type)
                 if predicate is None or len(predicates) >= MAX_APPLIED:
                     return None
                 predicates.append(predicate)

@@ -245,7 +245,7 @@ class LocalWriter(Writer):
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``local`` for the subscriptions of this context."""
-        return "local" if any(one.endpoint == reader for one in self._matched) else None
+        return "local" if any(matched.endpoint == reader for matched in self._matched) else None
 
     def close(self) -> None:
         """Leave every subscription."""

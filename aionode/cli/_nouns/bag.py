@@ -79,7 +79,7 @@ def info_command(
         keys = {"name": lambda t: t.name, "type": lambda t: t.type, "count": count_of}
         topics = sorted(found.connections, key=keys[sort])
         if topic_name:
-            output.items([(each.name, {"name": each.name}) for each in topics])
+            output.items([(topic.name, {"name": topic.name}) for topic in topics])
             return
         output.item(info_text(found, topics, verbose=verbose), info_record(found, topics))
 
@@ -100,11 +100,11 @@ def info_text(found: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
     ]
     lines.append(f"Lost:              {lost_text(found)}")
     lines += [f"Custom data:       {key}={value}" for key, value in found.custom_data.items()]
-    for each in topics:
-        lines.append(f"Topic: {each.name} | Type: {each.type} | Count: {each.message_count}")
+    for topic in topics:
+        lines.append(f"Topic: {topic.name} | Type: {topic.type} | Count: {topic.message_count}")
         if verbose:
-            lines.append(f"  Hash: {each.type_hash or 'none'}")
-            lines += [f"  QoS:  {profile}" for profile in each.qos]
+            lines.append(f"  Hash: {topic.type_hash or 'none'}")
+            lines += [f"  QoS:  {profile}" for profile in topic.qos]
     return "\n".join(lines)
 
 
@@ -135,13 +135,13 @@ def info_record(found: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
         else {name: lost._asdict() for name, lost in found.losses.items()},
         "topics": [
             {
-                "name": each.name,
-                "type": each.type,
-                "type_hash": each.type_hash,
-                "message_count": each.message_count,
-                "qos": [str(profile) for profile in each.qos],
+                "name": topic.name,
+                "type": topic.type,
+                "type_hash": topic.type_hash,
+                "message_count": topic.message_count,
+                "qos": [str(profile) for profile in topic.qos],
             }
-            for each in topics
+            for topic in topics
         ],
     }
 
@@ -266,6 +266,6 @@ def check_command(path: str, json: bool) -> None:
     from aionode import bag
 
     output = Output(json=json)
-    for each in bag.check(path):
-        state = f"repaired, {each.removed_bytes} bytes removed" if each.repaired else "ok"
-        output.item(f"{each.file}: {state}, {each.messages} messages", each._asdict())
+    for repair in bag.check(path):
+        state = f"repaired, {repair.removed_bytes} bytes removed" if repair.repaired else "ok"
+        output.item(f"{repair.file}: {state}, {repair.messages} messages", repair._asdict())

@@ -206,7 +206,7 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
         )
     latched: dict[str, int] = {
         f"/{name.removeprefix('/')}": int(depth or 0)
-        for name, _, depth in (each.partition("=") for each in values["repeat_transient_local"])
+        for name, _, depth in (option.partition("=") for option in values["repeat_transient_local"])
     }
     if values["repeat_all_transient_local"] is not None:
         latched = {"*": values["repeat_all_transient_local"], **latched}
@@ -240,8 +240,8 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
 def recording_text(recorder: Recorder) -> str:
     """Return the line of progress of a recording."""
     stats = recorder.stats.values()
-    recorded = sum(each.recorded for each in stats)
-    lost = sum(each.lost_in_transport + each.lost_in_recorder for each in stats)
+    recorded = sum(topic.recorded for topic in stats)
+    lost = sum(topic.lost_in_transport + topic.lost_in_recorder for topic in stats)
     state = "Paused   " if recorder.paused else "Recording"
     return f"{state} {recorded} messages of {len(stats)} topics, {lost} lost"
 
@@ -251,10 +251,10 @@ def recorded_record(recorder: Recorder) -> dict[str, Any]:
     stats = recorder.stats
     return {
         "path": str(recorder.path),
-        "recorded": sum(each.recorded for each in stats.values()),
-        "lost_in_transport": sum(each.lost_in_transport for each in stats.values()),
-        "lost_in_recorder": sum(each.lost_in_recorder for each in stats.values()),
-        "topics": [{"name": name, **each._asdict()} for name, each in sorted(stats.items())],
+        "recorded": sum(topic.recorded for topic in stats.values()),
+        "lost_in_transport": sum(topic.lost_in_transport for topic in stats.values()),
+        "lost_in_recorder": sum(topic.lost_in_recorder for topic in stats.values()),
+        "topics": [{"name": name, **topic._asdict()} for name, topic in sorted(stats.items())],
     }
 
 

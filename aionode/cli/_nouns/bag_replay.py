@@ -45,15 +45,15 @@ def diff_command(
 
     output = Output(json=json)
     found = compare(a, b, tolerance, time_tolerance_sec=time_tolerance, limit=limit)
-    for each in found:
+    for difference in found:
         record = {
-            "topic": each.topic,
-            "time_ns": each.time_ns,
-            "field": each.field,
-            "a": each.left,
-            "b": each.right,
+            "topic": difference.topic,
+            "time_ns": difference.time_ns,
+            "field": difference.field,
+            "a": difference.left,
+            "b": difference.right,
         }
-        output.item(str(each), record)
+        output.item(str(difference), record)
     if not found:
         output.text("no differences")
     raise click.exceptions.Exit(1 if found else 0)

@@ -41,7 +41,7 @@ def keys_pressed(actions: Mapping[str, Callable[[], object]], *, wanted: bool) -
     def read() -> None:
         typed = os.read(fd, MOST_BYTES).decode(errors="replace")
         while typed:
-            key = next((each for each in actions if typed.startswith(each)), typed[0])
+            key = next((action for action in actions if typed.startswith(action)), typed[0])
             typed = typed[len(key) :]
             actions.get(key, ignore)()
 

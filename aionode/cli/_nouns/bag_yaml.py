@@ -77,7 +77,7 @@ def bags_in(path: str, key: str) -> list[dict[str, Any]]:
     """
     listed = content_of(path).get(key)
     if not isinstance(listed, list) or not all(
-        isinstance(each, dict) and each.get("uri") for each in listed
+        isinstance(bag, dict) and bag.get("uri") for bag in listed
     ):
         raise click.BadParameter(f"{path}: it needs {key}: a list of entries with a uri")
     return listed
@@ -85,7 +85,7 @@ def bags_in(path: str, key: str) -> list[dict[str, Any]]:
 
 def inputs_in(path: str | None) -> list[str]:
     """Return the bags of a file for ``--input-options``."""
-    return [] if path is None else [str(each["uri"]) for each in bags_in(path, "input_bags")]
+    return [] if path is None else [str(bag["uri"]) for bag in bags_in(path, "input_bags")]
 
 
 def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:

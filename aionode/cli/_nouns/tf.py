@@ -255,13 +255,15 @@ def static_transform(
 
     quaternion = [numbers[name] for name in ("qx", "qy", "qz", "qw")]
     angles = [numbers[name] for name in ("roll", "pitch", "yaw")]
-    if any(one is not None for one in quaternion) and any(one is not None for one in angles):
+    if any(number is not None for number in quaternion) and any(
+        number is not None for number in angles
+    ):
         raise click.UsageError("give either --qx --qy --qz --qw or --roll --pitch --yaw, not both")
     if not frame_id.removeprefix("/") or frame_id == child_frame_id or not child_frame_id:
         raise click.UsageError("--frame-id and --child-frame-id have to be two different names")
     i, j, k, w = from_angles(*(angle or 0.0 for angle in angles))
-    if any(one is not None for one in quaternion):
-        i, j, k = (one or 0.0 for one in quaternion[:3])
+    if any(number is not None for number in quaternion):
+        i, j, k = (number or 0.0 for number in quaternion[:3])
         w = 1.0 if quaternion[3] is None else quaternion[3]
     if abs(i * i + j * j + k * k + w * w - 1.0) >= 0.01:
         raise click.UsageError("the quaternion does not have length 1, so every buffer refuses it")

@@ -122,7 +122,7 @@ class LeaseWatch:
         A handler of signals may call it: it takes no lock but those of the leases, which the thread
         has that the handler interrupts, or which are free in a moment.
         """
-        leases = [each for each in list(self._leases.items()) if not each[0].is_sent]
+        leases = [item for item in list(self._leases.items()) if not item[0].is_sent]
         for lease, record in leases:
             self._send(lease, record, STOPPED)
         self.wake()

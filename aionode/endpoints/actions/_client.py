@@ -465,10 +465,10 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _on_status(self, message: Any) -> None:
         if not self._goals:
             return
-        for each in message.status_list:
-            goal = self._goals.get(each.goal_info.goal_id.uuid.tobytes())
+        for status in message.status_list:
+            goal = self._goals.get(status.goal_info.goal_id.uuid.tobytes())
             if goal is not None:
-                goal._update_status(GoalStatus(each.status))
+                goal._update_status(GoalStatus(status.status))
 
     async def _run(self) -> None:
         """Wait for the results of all goals, until the client is destroyed.

@@ -103,7 +103,7 @@ class LifeSigns:
         """Return the time between two signs that the servers want, in nanoseconds; 0 for none."""
         servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
         lifespans = [server.qos.lifespan for server in servers]
-        limits_ns = [each.nanoseconds for each in lifespans if not is_unlimited(each)]
+        limits_ns = [lifespan.nanoseconds for lifespan in lifespans if not is_unlimited(lifespan)]
         return min(limits_ns) // SIGNS_IN_TIME if limits_ns else 0
 
     def _beat(self) -> None:

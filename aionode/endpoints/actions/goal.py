@@ -133,7 +133,7 @@ def next_status(status: GoalStatus, event: GoalEvent, goal_id: str = "") -> Goal
     """
     after = TRANSITIONS.get((status, event))
     if after is None:
-        fits = [each.name for state, each in TRANSITIONS if state is status]
+        fits = [other_event.name for state, other_event in TRANSITIONS if state is status]
         raise GoalTransitionError(goal_id, status.name, event.name, fits)
     return after
 

@@ -77,7 +77,7 @@ class LaunchConfiguration(Substitution):
             self.default = normalize_to_list_of_substitutions(default)
         elif isinstance(default, Iterable):
             self.default = normalize_to_list_of_substitutions(
-                [one if isinstance(one, str | Substitution) else str(one) for one in default]
+                [part if isinstance(part, str | Substitution) else str(part) for part in default]
             )
         else:
             self.default = normalize_to_list_of_substitutions(str(default))
@@ -140,11 +140,11 @@ class PathJoinSubstitution(Substitution):
     """Parts of a path, joined."""
 
     def __init__(self, substitutions: Iterable[Any]) -> None:
-        self.substitutions = [normalize_to_list_of_substitutions(one) for one in substitutions]
+        self.substitutions = [normalize_to_list_of_substitutions(part) for part in substitutions]
 
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
-        return os.path.join(*(perform_substitutions(context, one) for one in self.substitutions))  # noqa: PTH118  # as launch: a trailing slash stays
+        return os.path.join(*(perform_substitutions(context, part) for part in self.substitutions))  # noqa: PTH118  # as launch: a trailing slash stays
 
     def __truediv__(self, other: SomeSubstitutionsType) -> PathJoinSubstitution:
         return PathJoinSubstitution([*self.substitutions, other])
@@ -161,12 +161,12 @@ class StringJoinSubstitution(Substitution):
     """Texts, joined by a delimiter."""
 
     def __init__(self, substitutions: Iterable[Any], delimiter: SomeSubstitutionsType = "") -> None:
-        self.substitutions = [normalize_to_list_of_substitutions(one) for one in substitutions]
+        self.substitutions = [normalize_to_list_of_substitutions(part) for part in substitutions]
         self.delimiter = delimiter
 
     def perform(self, context: LaunchContext) -> str:
         """Return the text."""
-        texts = (perform_substitutions(context, one) for one in self.substitutions)
+        texts = (perform_substitutions(context, part) for part in self.substitutions)
         return text_of(context, self.delimiter).join(texts)
 
 

@@ -391,9 +391,9 @@ class LinkManager:
         connection = Connection(self._loop, sock, self.pool, self)
         self._opening[connection] = participant
         if participant is None:
-            accepted = [one for one, dialled in self._opening.items() if dialled is None]
-            for one in accepted[: max(len(accepted) - MAX_OPENING, 0)]:
-                one.close()
+            accepted = [waiting for waiting, dialled in self._opening.items() if dialled is None]
+            for waiting in accepted[: max(len(accepted) - MAX_OPENING, 0)]:
+                waiting.close()
             self.later(HELLO_S, lambda: self._close_if_silent(connection))
         connection.send(Hello(self.participant, VERSION, self._domain_id, connection.secret))
 

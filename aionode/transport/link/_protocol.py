@@ -287,10 +287,10 @@ class FrameParser:
             offset = begin + size
             payload = data[begin:offset]
             if flags:
-                one = Frame(kind, sequence, source_ns, gid, payload, True, flags == HAS_FD)
+                frame = Frame(kind, sequence, source_ns, gid, payload, True, flags == HAS_FD)
             else:
-                one = Frame(kind, sequence, source_ns, gid, payload)
-            frames.append(one)
+                frame = Frame(kind, sequence, source_ns, gid, payload)
+            frames.append(frame)
         if offset < end:
             self._pieces.append(data[offset:] if offset else data)
         self.held = end - offset

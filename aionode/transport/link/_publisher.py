@@ -126,7 +126,9 @@ class LinkWriter(Writer):
         """Send a message over links that holds views, or that some processes do not want."""
         targets = self._targets
         if self._is_filtered:
-            targets = tuple(one for one in targets if one.wants is None or one.wants(msg))
+            targets = tuple(
+                target for target in targets if target.wants is None or target.wants(msg)
+            )
             self._filtered += len(self._targets) - len(targets)
         if not targets:
             return
@@ -147,7 +149,7 @@ class LinkWriter(Writer):
     def _targets_changed(self) -> None:
         """Find out how to send from the next message on."""
         targets = self._targets = tuple(self._send_queues.values())
-        self._is_filtered = any(one.wants is not None for one in targets)
+        self._is_filtered = any(send_queue.wants is not None for send_queue in targets)
         self._encode = None
         if targets and not self._is_filtered and not has_views(self._msg_type):
             self._encode = cdr.encoder(self._msg_type)

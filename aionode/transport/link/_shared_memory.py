@@ -150,7 +150,9 @@ class BufferPool:
 
     def _taken(self, size: int) -> SharedBuffer | None:
         """Return the idle buffer that fits best; of several the last used: caches have it."""
-        fitting = [one for one in reversed(self._idle) if size <= one.size <= 4 * size + PAGE]
+        fitting = [
+            buffer for buffer in reversed(self._idle) if size <= buffer.size <= 4 * size + PAGE
+        ]
         if not fitting:
             return None
         buffer = min(fitting, key=SIZE_OF)

@@ -252,28 +252,28 @@ class RclGraphWatcher:
         with asker:
             answer = ask(asker, topic, False)
         complete = True
-        for one in answer:
-            gid = bytes(one["endpoint_gid"])
+        for info in answer:
+            gid = bytes(info["endpoint_gid"])
             if self._state.is_own(gid):
                 continue
             endpoint = self._endpoints.get(gid)
             if endpoint is None:
-                node = nodes.get((one["node_namespace"], one["node_name"]))
+                node = nodes.get((info["node_namespace"], info["node_name"]))
                 if node is None:
-                    complete &= one["node_name"].startswith(HIDDEN)
+                    complete &= info["node_name"].startswith(HIDDEN)
                     continue
-                endpoint = self._endpoint(kind, node, topic, one, gid)
+                endpoint = self._endpoint(kind, node, topic, info, gid)
             if endpoint is not None:
                 found[gid] = endpoint
         return complete
 
     def _endpoint(
-        self, kind: EndpointKind, node: NodeInfo, topic: str, one: dict[str, Any], gid: bytes
+        self, kind: EndpointKind, node: NodeInfo, topic: str, info: dict[str, Any], gid: bytes
     ) -> EndpointInfo | None:
         """Return an endpoint that was found."""
-        type_hash = one["topic_type_hash"]
+        type_hash = info["topic_type_hash"]
         try:
-            qos = profile_from(one["qos_profile"])
+            qos = profile_from(info["qos_profile"])
         except (ValueError, TypeError, AionodeError) as error:
             self._state.note_malformed(topic, f"a QoS profile ({error})")
             return None
@@ -283,7 +283,7 @@ class RclGraphWatcher:
             node=node,
             endpoint_id=self._ids,
             name=topic,
-            type_name=one["topic_type"],
+            type_name=info["topic_type"],
             type_hash=hash_text(int(type_hash["version"]), bytes(type_hash["value"])),
             qos=qos,
             gid=gid,

@@ -171,10 +171,10 @@ class RclState:
     def count_own_readers(self, writer: EndpointInfo) -> int:
         """Return how many subscriptions of this context match a publisher of it."""
         return sum(
-            one.endpoint.kind is EndpointKind.SUBSCRIPTION
-            and one.endpoint.name == writer.name
-            and writer.matches(one.endpoint)
-            for one in self._declarations
+            declaration.endpoint.kind is EndpointKind.SUBSCRIPTION
+            and declaration.endpoint.name == writer.name
+            and writer.matches(declaration.endpoint)
+            for declaration in self._declarations
         )
 
     def note_own(self, gid: bytes) -> None:

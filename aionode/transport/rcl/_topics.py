@@ -286,11 +286,11 @@ class RclReader(RclDeclaration):
         name = self.endpoint.name
         with node:
             found = rcl.module.rclpy_get_subscriptions_info_by_topic(node, name, False)
-        known = {one.gid for one in graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)}
+        known = {info.gid for info in graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)}
         known |= self.state.own_gids
-        for one in found:
-            gid = bytes(one["endpoint_gid"])
-            names = (one["node_name"], one["node_namespace"])
+        for info in found:
+            gid = bytes(info["endpoint_gid"])
+            names = (info["node_name"], info["node_namespace"])
             own = (self.endpoint.node.name, self.endpoint.node.namespace)
             if names == own and gid not in known:
                 self.state.note_own(gid)

@@ -137,21 +137,26 @@ class ProcessStdin(ProcessTargetedEvent):
 
 def matches_action(action: Any) -> Callable[[Any], bool]:
     """Return what is true of the process of one action."""
-    return lambda one: one is action
+    return lambda candidate: candidate is action
 
 
 def matches_name(name: str) -> Callable[[Any], bool]:
     """Return what is true of processes with a name."""
-    return lambda one: one.process_details is not None and one.process_details["name"] == name
+    return lambda candidate: (
+        candidate.process_details is not None and candidate.process_details["name"] == name
+    )
 
 
 def matches_pid(pid: int) -> Callable[[Any], bool]:
     """Return what is true of the process with a number."""
-    return lambda one: one.process_details is not None and one.process_details["pid"] == pid
+    return lambda candidate: (
+        candidate.process_details is not None and candidate.process_details["pid"] == pid
+    )
 
 
 def matches_executable(executable: str) -> Callable[[Any], bool]:
     """Return what is true of processes of a program."""
-    return lambda one: (
-        one.process_details is not None and one.process_details["cmd"][0].endswith(executable)
+    return lambda candidate: (
+        candidate.process_details is not None
+        and candidate.process_details["cmd"][0].endswith(executable)
     )

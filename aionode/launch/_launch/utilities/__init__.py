@@ -48,5 +48,5 @@ def ensure_argument_type(
     fitting = tuple(types) if isinstance(types, list | tuple) else (types,)
     if not isinstance(argument, fitting):
         where = f"{caller}: " if caller else ""
-        names = ", ".join(one.__name__ for one in fitting)
+        names = ", ".join(kind.__name__ for kind in fitting)
         raise TypeError(f"{where}{argument_name} is {argument!r}; expected {names}")

@@ -29,7 +29,7 @@ def is_substitution(value: Any) -> bool:
     """Return whether a value is a substitution, or a list with one."""
     if isinstance(value, Substitution):
         return True
-    return isinstance(value, list | tuple) and any(isinstance(one, Substitution) for one in value)
+    return isinstance(value, list | tuple) and any(isinstance(item, Substitution) for item in value)
 
 
 def coerce_to_type(text: str, data_type: Any = None) -> Any:

@@ -40,7 +40,7 @@ class ComposableNodeContainer(Node):
     def execute(self, context: LaunchContext) -> Any:
         """Note the container, if it needs a process, and its nodes."""
         components = components_of(context, self.composable_node_descriptions)
-        if components and all(one.is_aionode for one in components):
+        if components and all(component.is_aionode for component in components):
             self.arguments_of_ros(context)  # which settles its name
         else:
             super().execute(context)
