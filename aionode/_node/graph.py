@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from aionode import names
 from aionode._node.base import NodeBase
@@ -14,12 +14,18 @@ from aionode.errors import NodeNameNonExistentError
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable
 
-    from aionode.graph import EndpointInfo, NodeInfo
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.qos import QoSProfile
 
-__all__ = ["NodeGraphQueries", "TopicEndpointInfo", "TopicEndpointTypeEnum"]
+__all__ = [
+    "GraphAnswers",
+    "GraphQueries",
+    "NodeGraphQueries",
+    "TopicEndpointInfo",
+    "TopicEndpointTypeEnum",
+]
 
 NamesAndTypes = list[tuple[str, list[str]]]
 
@@ -61,29 +67,156 @@ class TopicEndpointInfo:
     qos_profile: QoSProfile
 
 
-class NodeGraphQueries(NodeBase):
-    """The part of `aionode.Node` that queries the graph.
+class GraphAnswers(Protocol):
+    """What `GraphQueries` asks: names are those that a program has given."""
 
-    Answers reflect the present state; ``await node.graph.changed()`` waits for the next change.
+    def nodes(self) -> Iterable[NodeInfo]:
+        """Return all nodes."""
+
+    def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
+        """Return the names that endpoints of these kinds have, with their types."""
+
+    def names_and_types_of(
+        self, kind: EndpointKind, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the names that the endpoints of a kind have in a node, with their types."""
+
+    def count(self, kind: EndpointKind, name: str) -> int:
+        """Return how many endpoints of a kind have a name."""
+
+
+class GraphQueries:
+    """The questions about the graph that nodes of both APIs answer alike.
+
+    Attributes:
+        _graph_answers: Where the answers come from. It is no base class, since a program's
+            subclass may have any attributes: each name that a node has may be taken by one.
     """
+
+    _graph_answers: GraphAnswers
 
     # Nodes
 
     def get_node_names(self) -> list[str]:
         """Return the names of all nodes, without namespaces."""
-        return [node.name for node in self.graph.nodes()]
+        return [node.name for node in self._graph_answers.nodes()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """Return the full names of all nodes."""
-        return [node.fully_qualified_name for node in self.graph.nodes()]
+        return [node.fully_qualified_name for node in self._graph_answers.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return the name and namespace of every node."""
-        return [(node.name, node.namespace) for node in self.graph.nodes()]
+        return [(node.name, node.namespace) for node in self._graph_answers.nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Return the name, namespace and security enclave of every node."""
-        return [(node.name, node.namespace, node.enclave) for node in self.graph.nodes()]
+        return [(node.name, node.namespace, node.enclave) for node in self._graph_answers.nodes()]
+
+    # Topics and services by name
+
+    def get_topic_names_and_types(
+        self,
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
+        *,
+        include_hidden: bool = True,
+    ) -> NamesAndTypes:
+        """Return every topic with its types; `no_demangle` is ignored.
+
+        Hidden topics, which have a name with a part that begins with ``_``, are those of actions
+        and of tools; without `include_hidden` they are left out, as ``ros2 topic list`` does.
+        """
+        return shown(self._graph_answers.names_and_types(TOPIC_KINDS), include_hidden)
+
+    def get_service_names_and_types(self, *, include_hidden: bool = True) -> NamesAndTypes:
+        """Return every service that has a server or a client, with its types.
+
+        Without `include_hidden`, hidden services are left out, such as those of actions.
+        """
+        return shown(self._graph_answers.names_and_types(SERVICE_KINDS), include_hidden)
+
+    def count_publishers(self, topic_name: str) -> int:
+        """Return how many publishers `topic_name` has; a relative name is this node's."""
+        return self._graph_answers.count(EndpointKind.PUBLISHER, topic_name)
+
+    def count_subscribers(self, topic_name: str) -> int:
+        """Return how many subscriptions `topic_name` has; a relative name is this node's."""
+        return self._graph_answers.count(EndpointKind.SUBSCRIPTION, topic_name)
+
+    def count_services(self, service_name: str) -> int:
+        """Return how many servers `service_name` has; a relative name is this node's."""
+        return self._graph_answers.count(EndpointKind.SERVER, service_name)
+
+    def count_clients(self, service_name: str) -> int:
+        """Return how many clients `service_name` has; a relative name is this node's."""
+        return self._graph_answers.count(EndpointKind.CLIENT, service_name)
+
+    # By node
+
+    def get_publisher_names_and_types_by_node(
+        self,
+        node_name: str,
+        node_namespace: str,
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
+    ) -> NamesAndTypes:
+        """Return what a node publishes.
+
+        Raises:
+            NodeNameNonExistentError: there is no node of this name.
+        """
+        return self._graph_answers.names_and_types_of(
+            EndpointKind.PUBLISHER, node_name, node_namespace
+        )
+
+    def get_subscriber_names_and_types_by_node(
+        self,
+        node_name: str,
+        node_namespace: str,
+        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
+    ) -> NamesAndTypes:
+        """Return what a node subscribes to.
+
+        Raises:
+            NodeNameNonExistentError: there is no node of this name.
+        """
+        return self._graph_answers.names_and_types_of(
+            EndpointKind.SUBSCRIPTION, node_name, node_namespace
+        )
+
+    def get_service_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the services that a node serves.
+
+        Raises:
+            NodeNameNonExistentError: there is no node of this name.
+        """
+        return self._graph_answers.names_and_types_of(
+            EndpointKind.SERVER, node_name, node_namespace
+        )
+
+    def get_client_names_and_types_by_node(
+        self, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the services that a node calls.
+
+        Raises:
+            NodeNameNonExistentError: there is no node of this name.
+        """
+        return self._graph_answers.names_and_types_of(
+            EndpointKind.CLIENT, node_name, node_namespace
+        )
+
+
+class NodeGraphQueries(GraphQueries, NodeBase):
+    """The part of `aionode.Node` that queries the graph.
+
+    Answers reflect the present state; ``await node.graph.changed()`` waits for the next change.
+    """
+
+    @property
+    def _graph_answers(self) -> GraphAnswers:  # type: ignore[override] # made when it is asked
+        return OwnGraph(self)
 
     @asks
     async def wait_for_node(
@@ -125,47 +258,7 @@ class NodeGraphQueries(NodeBase):
             return is_there()
         return True
 
-    # Topics and services by name
-
-    def get_topic_names_and_types(
-        self,
-        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
-        *,
-        include_hidden: bool = True,
-    ) -> NamesAndTypes:
-        """Return every topic with its types; `no_demangle` is ignored.
-
-        Hidden topics, which have a name with a part that begins with ``_``, are those of actions
-        and of tools; without `include_hidden` they are left out, as ``ros2 topic list`` does.
-        """
-        return shown(self.graph.names_and_types(*TOPIC_KINDS), include_hidden)
-
-    def get_service_names_and_types(self, *, include_hidden: bool = True) -> NamesAndTypes:
-        """Return every service that has a server or a client, with its types.
-
-        Without `include_hidden`, hidden services are left out, such as those of actions.
-        """
-        return shown(self.graph.names_and_types(*SERVICE_KINDS), include_hidden)
-
-    def get_action_names_and_types(self) -> NamesAndTypes:
-        """Return every action, with its types."""
-        return actions_among(self.get_topic_names_and_types())
-
-    def count_publishers(self, topic_name: str) -> int:
-        """Return how many publishers `topic_name` has; a relative name is this node's."""
-        return self.graph.count(EndpointKind.PUBLISHER, self.resolve_topic_name(topic_name))
-
-    def count_subscribers(self, topic_name: str) -> int:
-        """Return how many subscriptions `topic_name` has; a relative name is this node's."""
-        return self.graph.count(EndpointKind.SUBSCRIPTION, self.resolve_topic_name(topic_name))
-
-    def count_services(self, service_name: str) -> int:
-        """Return how many servers `service_name` has; a relative name is this node's."""
-        return self.graph.count(EndpointKind.SERVER, self.resolve_service_name(service_name))
-
-    def count_clients(self, service_name: str) -> int:
-        """Return how many clients `service_name` has; a relative name is this node's."""
-        return self.graph.count(EndpointKind.CLIENT, self.resolve_service_name(service_name))
+    # Topics by name
 
     def get_publishers_info_by_topic(
         self,
@@ -187,53 +280,11 @@ class NodeGraphQueries(NodeBase):
         name = self.resolve_topic_name(topic_name)
         return [topic_endpoint_info(found) for found in self.graph.endpoints(kind, name=name)]
 
-    # By node
+    # Actions
 
-    def get_publisher_names_and_types_by_node(
-        self,
-        node_name: str,
-        node_namespace: str,
-        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
-    ) -> NamesAndTypes:
-        """Return what a node publishes.
-
-        Raises:
-            NodeNameNonExistentError: there is no node of this name.
-        """
-        return self._of_node(EndpointKind.PUBLISHER, node_name, node_namespace)
-
-    def get_subscriber_names_and_types_by_node(
-        self,
-        node_name: str,
-        node_namespace: str,
-        no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
-    ) -> NamesAndTypes:
-        """Return what a node subscribes to.
-
-        Raises:
-            NodeNameNonExistentError: there is no node of this name.
-        """
-        return self._of_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace)
-
-    def get_service_names_and_types_by_node(
-        self, node_name: str, node_namespace: str
-    ) -> NamesAndTypes:
-        """Return the services that a node serves.
-
-        Raises:
-            NodeNameNonExistentError: there is no node of this name.
-        """
-        return self._of_node(EndpointKind.SERVER, node_name, node_namespace)
-
-    def get_client_names_and_types_by_node(
-        self, node_name: str, node_namespace: str
-    ) -> NamesAndTypes:
-        """Return the services that a node calls.
-
-        Raises:
-            NodeNameNonExistentError: there is no node of this name.
-        """
-        return self._of_node(EndpointKind.CLIENT, node_name, node_namespace)
+    def get_action_names_and_types(self) -> NamesAndTypes:
+        """Return every action, with its types."""
+        return actions_among(self.get_topic_names_and_types())
 
     def get_action_server_names_and_types_by_node(
         self, node_name: str, node_namespace: str
@@ -243,7 +294,7 @@ class NodeGraphQueries(NodeBase):
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return actions_among(self._of_node(EndpointKind.PUBLISHER, node_name, node_namespace))
+        return actions_among(self.get_publisher_names_and_types_by_node(node_name, node_namespace))
 
     def get_action_client_names_and_types_by_node(
         self, node_name: str, node_namespace: str
@@ -253,15 +304,45 @@ class NodeGraphQueries(NodeBase):
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return actions_among(self._of_node(EndpointKind.SUBSCRIPTION, node_name, node_namespace))
+        return actions_among(self.get_subscriber_names_and_types_by_node(node_name, node_namespace))
 
-    def _of_node(self, kind: EndpointKind, node_name: str, node_namespace: str) -> NamesAndTypes:
+
+class OwnGraph:
+    """Answers from the graph of a node's context, in the thread that asks."""
+
+    def __init__(self, node: NodeBase) -> None:
+        self._node = node
+        self.nodes = node.graph.nodes
+
+    def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
+        """Return the names that endpoints of these kinds have, with their types."""
+        return self._node.graph.names_and_types(*kinds)
+
+    def names_and_types_of(
+        self, kind: EndpointKind, node_name: str, node_namespace: str
+    ) -> NamesAndTypes:
+        """Return the names that the endpoints of a kind have in a node, with their types."""
         full_name = names.fully_qualified_name(node_namespace, node_name)
-        nodes: Iterator[NodeInfo] = self.graph.find_nodes(full_name)
-        found = next(nodes, None)
-        if found is None:
-            raise NodeNameNonExistentError(full_name)
-        return self.graph.names_and_types(kind, node=found)
+        return names_and_types_of(self._node.graph, kind, full_name)
+
+    def count(self, kind: EndpointKind, name: str) -> int:
+        """Return how many endpoints of a kind have a name."""
+        node = self._node
+        is_service = kind in SERVICE_KINDS
+        resolve = node.resolve_service_name if is_service else node.resolve_topic_name
+        return node.graph.count(kind, resolve(name))
+
+
+def names_and_types_of(graph: Graph, kind: EndpointKind, full_name: str) -> NamesAndTypes:
+    """Return the names that endpoints of a kind have in a node, with their types.
+
+    Raises:
+        NodeNameNonExistentError: there is no node of this name.
+    """
+    node = next(graph.find_nodes(full_name), None)
+    if node is None:
+        raise NodeNameNonExistentError(full_name)
+    return graph.names_and_types(kind, node=node)
 
 
 def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:

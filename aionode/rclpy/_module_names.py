@@ -38,7 +38,6 @@ EXTENSION: Final = {"aionode.rclpy._impl.errors": "rclpy._rclpy_pybind11"}
 SHARED_ELSEWHERE: Final = {
     "InvalidQoSProfileException": "rclpy.qos",
     "InvalidQosOverridesError": "rclpy.qos_overriding_options",
-    "NodeNameNonExistentError": "rclpy._rclpy_pybind11",
 }
 """The exceptions of `aionode.errors` that rclpy has outside of ``rclpy.exceptions``."""
 

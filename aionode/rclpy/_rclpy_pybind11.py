@@ -9,7 +9,6 @@ from typing import Any
 
 from aionode.arguments import remove_ros_args
 from aionode.clock import ClockChange, ClockType
-from aionode.errors import NodeNameNonExistentError
 from aionode.rclpy._impl.actions import ActionClientHandle as ActionClient
 from aionode.rclpy._impl.actions import ActionServerHandle as ActionServer
 from aionode.rclpy._impl.actions import GoalEvent
@@ -17,6 +16,7 @@ from aionode.rclpy._impl.context import ContextHandle as Context
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import (
     InvalidHandle,
+    NodeNameNonExistentError,
     RCLError,
     RCLInvalidROSArgsError,
     TimerCancelledError,

@@ -6,8 +6,8 @@ import weakref
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode import qos as core
-from aionode.errors import NodeNameNonExistentError
 from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._impl.errors import NodeNameNonExistentError
 from aionode.rclpy._impl.node import NodeHandle
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle

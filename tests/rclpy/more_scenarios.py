@@ -9,16 +9,24 @@ from __future__ import annotations
 import threading
 import time
 import warnings
+from collections.abc import Callable
 from typing import Any
 
 import rclpy
 from rcl_interfaces.srv import ListParameters
+from rclpy._rclpy_pybind11 import RCLError
+from rclpy.action import (
+    get_action_client_names_and_types_by_node,
+    get_action_names_and_types,
+    get_action_server_names_and_types_by_node,
+)
 from rclpy.clock import Clock, ClockType, JumpThreshold, ROSClock
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.guard_condition import GuardCondition
 from rclpy.logging import LoggingSeverity, get_logger
+from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.parameter_event_handler import ParameterEventHandler
@@ -523,6 +531,48 @@ def what_belongs_to_a_node(trace: Trace) -> None:
         executor.add_node(node)
         trace("executor", node.executor is executor)
     trace("after", node.executor is executor, executor.get_nodes())
+
+
+@scene
+def questions_about_the_graph_check_names(trace: Trace) -> None:
+    class Counting(Node):
+        """Has attributes of its own, as programs have."""
+
+        def __init__(self) -> None:
+            super().__init__("counting")
+            self._count = self._nodes = self._of_node = None
+
+    node = Counting()
+    questions: dict[str, Callable[[], Any]] = {
+        "nodes": lambda: node.get_node_names().count("counting"),
+        "full names": lambda: node.get_fully_qualified_node_names().count("/counting"),
+        "enclaves": lambda: node.get_node_names_and_namespaces_with_enclaves().count(
+            ("counting", "/", "/")
+        ),
+        "topics": lambda: dict(node.get_topic_names_and_types()).get("/rosout"),
+        "own": lambda: dict(node.get_publisher_names_and_types_by_node("counting", "")),
+        "invalid node": lambda: node.get_service_names_and_types_by_node("a b", "/"),
+        "invalid namespace": lambda: node.get_service_names_and_types_by_node("counting", "a b"),
+        "subscribers": lambda: node.count_subscribers("nothing"),
+        "invalid topic": lambda: node.count_subscribers("a b"),
+        "clients": lambda: node.count_clients("/nothing"),
+        "invalid service": lambda: node.count_clients("a b"),
+        "info": lambda: node.get_subscriptions_info_by_topic("nothing"),
+        "invalid info": lambda: node.get_publishers_info_by_topic("a b"),
+        "complete info": lambda: node.get_publishers_info_by_topic("rt/nothing", no_mangle=True),
+        "actions": lambda: get_action_names_and_types(node),
+        "actions of": lambda: get_action_server_names_and_types_by_node(node, "counting", "/"),
+        "nobody": lambda: node.get_client_names_and_types_by_node("nobody", "/"),
+    }
+    for what, question in questions.items():
+        attempt(trace, what, question)
+    try:
+        get_action_client_names_and_types_by_node(node, "nobody", "/")
+    except RCLError as error:
+        trace("actions of nobody", isinstance(error, RuntimeError))
+    node.destroy_node()
+    for what, question in questions.items():
+        attempt(trace, f"{what}, destroyed", question)
 
 
 @scene

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 __all__ = [
     "InvalidHandle",
+    "NodeNameNonExistentError",
     "RCLError",
     "RCLInvalidROSArgsError",
     "TimerCancelledError",
@@ -18,6 +19,10 @@ class RCLError(RuntimeError):
 
 class InvalidHandle(RuntimeError):  # noqa: N818  # rclpy's name
     """The entity, or what it belongs to, is destroyed."""
+
+
+class NodeNameNonExistentError(RCLError):
+    """There is no node of this name."""
 
 
 class UnsupportedEventTypeError(RCLError):

@@ -5,29 +5,29 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode import names
+from aionode import errors, names
+from aionode._node.graph import NamesAndTypes, names_and_types_of
 from aionode.arguments import Arguments
 from aionode.bare_node import BareNode
 from aionode.clock import MachineTime, Time
-from aionode.errors import NodeNameNonExistentError
+from aionode.errors import NameValidationException
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.logging import get_logger
 from aionode.rclpy._impl.context import parsed
 from aionode.rclpy._impl.destroyable import Arrivals, Destroyable
+from aionode.rclpy._impl.errors import NodeNameNonExistentError, RCLError
 from aionode.rclpy._impl.qos import profile_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from aionode.bare_node import BarePublisher
-    from aionode.graph import EndpointInfo, Graph
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.logging import LogEvent
     from aionode.rclpy._impl.context import ContextHandle
 
 __all__ = ["NodeHandle"]
-
-NamesAndTypes = list[tuple[str, list[str]]]
 
 NOUNS = {
     EndpointKind.PUBLISHER: "publisher",
@@ -132,48 +132,25 @@ class NodeHandle(Destroyable):
         """Return what `question` answers; it is called in the thread of the context.
 
         Raises:
+            InvalidHandle: the node is destroyed.
             RCLError: the context is shut down; the text begins with `failure`.
         """
-        self.context_handle.refuse_after_shutdown(failure)
-        return self.io.call(question, self.io.context.graph)
+        with self:
+            self.context_handle.refuse_after_shutdown(failure)
+            return self.io.call(question, self.io.context.graph)
 
-    def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
-        """Return name and namespace of every node."""
-        found: list[tuple[str, str]] = self.ask(
-            "Failed to get node names",
-            lambda graph: [(node.name, node.namespace) for node in graph.nodes()],
+    def nodes(self) -> list[NodeInfo]:
+        """Return all nodes."""
+        found: list[NodeInfo] = self.ask(
+            "Failed to get node names", lambda graph: list(graph.nodes())
         )
         return found
 
-    def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
-        """Return name, namespace and enclave of every node."""
-        found: list[tuple[str, str, str]] = self.ask(
-            "Failed to get node names",
-            lambda graph: [(node.name, node.namespace, node.enclave) for node in graph.nodes()],
-        )
-        return found
-
-    def count(self, kind: EndpointKind, name: str) -> int:
-        """Return how many endpoints of `kind` have a full name."""
-        found: int = self.ask(
-            f"Error in rcl_count_{NOUNS[kind]}s",
-            lambda graph: graph.count(kind, name),
-        )
-        return found
-
-    def topic_names_and_types(self) -> NamesAndTypes:
-        """Return every topic with its types."""
+    def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
+        """Return every topic or every service, with its types."""
+        noun = "topic" if kinds is TOPIC_KINDS else "service"
         found: NamesAndTypes = self.ask(
-            "failed to get topic names and types",
-            lambda graph: graph.names_and_types(*TOPIC_KINDS),
-        )
-        return found
-
-    def service_names_and_types(self) -> NamesAndTypes:
-        """Return every service that has a server or a client, with its types."""
-        found: NamesAndTypes = self.ask(
-            "failed to get service names and types",
-            lambda graph: graph.names_and_types(*SERVICE_KINDS),
+            f"failed to get {noun} names and types", lambda graph: graph.names_and_types(*kinds)
         )
         return found
 
@@ -184,26 +161,58 @@ class NodeHandle(Destroyable):
 
         Raises:
             NodeNameNonExistentError: there is no node of this name.
+            RCLError: the name or the namespace is invalid, or the context is shut down.
         """
-        names.validate_node_name(node_name)
-        full_name = names.fully_qualified_name(names.normalize_namespace(node_namespace), node_name)
-
-        def answer(graph: Graph) -> NamesAndTypes:
-            node = next(graph.find_nodes(full_name), None)
-            if node is None:
-                raise NodeNameNonExistentError(full_name)
-            return graph.names_and_types(kind, node=node)
-
-        found: NamesAndTypes = self.ask(f"failed to get {NOUNS[kind]} names and types", answer)
+        wanted = f"{NOUNS[kind]} names and types"
+        failure = f"failed to get {wanted}"
+        with self:
+            try:
+                names.validate_node_name(node_name)
+                namespace = names.normalize_namespace(node_namespace)
+                full_name = names.fully_qualified_name(namespace, node_name)
+                found: NamesAndTypes = self.ask(
+                    failure, lambda graph: names_and_types_of(graph, kind, full_name)
+                )
+            except NameValidationException as error:
+                raise RCLError(f"{failure}: {error}") from None
+            except errors.NodeNameNonExistentError as error:
+                raise NodeNameNonExistentError(
+                    f"cannot get {wanted} for nonexistent node: {error.node}"
+                ) from None
         return found
 
-    def endpoints(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
-        """Return the endpoints of `kind` that have a full name."""
-        found: list[EndpointInfo] = self.ask(
-            f"Failed to get information by topic for {kind.value}s",
-            lambda graph: graph.endpoints(kind, name=name),
-        )
-        return found
+    def count(self, kind: EndpointKind, name: str) -> int:
+        """Return how many endpoints of `kind` have a name, which is not remapped."""
+        with self:
+            full_name = self._expected(name, only_expand=True, is_service=kind in SERVICE_KINDS)
+            found: int = self.ask(
+                f"Error in rcl_count_{NOUNS[kind]}s", lambda graph: graph.count(kind, full_name)
+            )
+            return found
+
+    def endpoints(
+        self, kind: EndpointKind, topic_name: str, *, is_complete: bool
+    ) -> list[EndpointInfo]:
+        """Return the endpoints of a topic; its name is expanded unless it `is_complete`."""
+        with self:
+            name = topic_name if is_complete else self._expected(topic_name)
+            found: list[EndpointInfo] = self.ask(
+                f"Failed to get information by topic for {kind.value}s",
+                lambda graph: graph.endpoints(kind, name=name),
+            )
+            return found
+
+    def _expected(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
+        """Return the full name of a topic or service.
+
+        Raises:
+            ValueError: the name is invalid, in the words that rclpy has for questions.
+        """
+        try:
+            return self.resolve(name, only_expand=only_expand, is_service=is_service)
+        except NameValidationException as error:
+            what = "service" if is_service else "topic"
+            raise ValueError(f"{what} name is invalid: {error}") from None
 
     def _destroy(self) -> None:
         if self._stop_rosout is not None:
