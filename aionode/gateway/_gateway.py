@@ -279,10 +279,12 @@ def bound(host: str, port: int) -> socket.socket:
     Raises:
         OSError: it cannot be bound.
     """
-    family, kind, _, _, address = socket.getaddrinfo(
+    family, kind, protocol, _, address = socket.getaddrinfo(
         host or None, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE
     )[0]
-    listener = socket.socket(family, kind)
+    # asyncio sets TCP_NODELAY only where the protocol says TCP: without it a small frame may wait
+    # for 40 ms until the client has acknowledged the one before.
+    listener = socket.socket(family, kind, protocol)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)

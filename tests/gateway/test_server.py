@@ -74,6 +74,16 @@ def http_client() -> httpx.AsyncClient:
     return httpx.AsyncClient(trust_env=False, verify=ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT))
 
 
+async def test_small_frames_wait_for_no_acknowledgement() -> None:
+    """A client acknowledges after 40 ms; so long would each answer take that has two parts."""
+    async with serving() as gateway, connect(address(gateway), proxy=None):
+        (session,) = gateway._sessions
+        connection: Any = session.connection
+        connected = connection.transport.get_extra_info("socket")
+
+        assert connected.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+
+
 async def get(
     gateway: Gateway, path: str = "/topics", headers: dict[str, str] | None = None
 ) -> httpx.Response:
