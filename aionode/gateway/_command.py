@@ -111,7 +111,7 @@ class Commands:
                 holder.lease.publish(message)
         except LeaseExpiredError as error:
             raise RefusedError(
-                f"command to {topic}",
+                f"publish {topic}",
                 f"nothing came for {holder.rule.ttl_sec:g} s, and the stop was sent; send further "
                 "commands more often",
                 "too_old",
@@ -160,7 +160,7 @@ class Commands:
 def held(topic: str, holder: Holder) -> RefusedError:
     """Return the error for a topic that another client commands."""
     return RefusedError(
-        f"command to {topic}", f"{holder.identity.name} commands it now; ask again later", "held"
+        f"publish {topic}", f"{holder.identity.name} commands it now; ask again later", "held"
     )
 
 
@@ -189,7 +189,7 @@ def check_age(
                 ages.append(abs(now_ns - stamp_ns) / S_TO_NS)
     if max(ages) > rule.max_age_sec:
         raise RefusedError(
-            f"command to {topic}",
+            f"publish {topic}",
             f"it is {max(ages):.3f} s old, and may be {rule.max_age_sec:g} s; set the clock of the "
             "client if its stamps differ",
             "too_old",

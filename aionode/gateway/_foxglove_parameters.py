@@ -71,6 +71,8 @@ class Parameters:
         """
         given = {each.name: each for each in parameters}
         for node, own in by_node(given).items():
+            for name in own:  # before anything is read
+                self._session.decide("parameter", f"{node}:{name}", "")
             now = await self._session.get_parameters(node, own)
             changed = {
                 name: frames.parameter_of(

@@ -43,6 +43,19 @@ VERBS: Final[tuple[Verb, ...]] = (
 )
 WRITING: Final[tuple[Verb, ...]] = ("publish", "call", "goal", "parameter", "advertise")
 
+UNTYPED: Final[tuple[Verb, ...]] = ("see", "parameter")
+"""The verbs about nodes and parameters, which have no type."""
+
+LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
+    "type": ("see", "subscribe", "publish", "call", "goal", "advertise"),
+    "rate_hz": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
+    "max_bytes": ("publish", "call", "goal"),
+    "fields": ("publish", "call", "goal", "parameter"),
+    "ask": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
+    "lease": ("publish",),
+}
+"""The keys of a rule that limit what it allows, and the verbs that each of them can limit."""
+
 COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
 
@@ -135,6 +148,18 @@ class Rule(Part, frozen=True):
                     raise ValueError(f"{verb}: {name!r} is no full name; begin it with a slash")
         if not self.rate_hz > 0:
             raise ValueError("rate_hz is a number of messages a second, above 0")
+        for key, verbs in LIMITED.items():
+            without = [verb for verb in VERBS if getattr(self, verb) and verb not in verbs]
+            if without and self.has(key):
+                raise ValueError(
+                    f"{key}: it limits {', '.join(verbs)}, and not {without[0]}; write a rule of "
+                    f"its own for {without[0]}"
+                )
+
+    def has(self, key: str) -> bool:
+        """Return whether a key of `LIMITED` is given."""
+        value = getattr(self, key)
+        return value != math.inf if key == "rate_hz" else value not in (None, False, "", [], {})
 
     def is_about(self, identity: Identity) -> bool:
         """Return whether the rule names a client, or nobody and so everyone."""
@@ -327,6 +352,12 @@ class Policy(Part, frozen=True):
             raise PolicyFileError(path, "`path` is no key of a policy")
         known = {each.name for each in found.who}
         known |= {group for each in found.who for group in each.groups}
+        for rule in found.refuse:
+            for key in LIMITED:
+                if key != "type" and rule.has(key):
+                    raise PolicyFileError(
+                        path, f"{key}: a [[refuse]] has no limits, an [[allow]] has"
+                    )
         for rule in (*found.allow, *found.refuse):
             unknown = sorted(set(listed(rule.who)) - known)
             if unknown:
@@ -414,7 +445,8 @@ def first_rule(
 ) -> Rule | None:
     """Return the rule that decides: the first that refuses, else the first that allows.
 
-    A client sees what it may use, and may not use what it may not see.
+    A client sees what it may use, and may not use what it may not see. A node is seen by who may
+    see it, or set its parameters: a rule about topics of the same name says nothing about it.
     """
     refusing: tuple[Verb, ...] = (verb,) if verb == "see" else (verb, "see")
     for rule in policy.refuse:
@@ -422,8 +454,12 @@ def first_rule(
             continue
         if rule.is_about(identity) and any(rule.covers(v, name, type_name) for v in refusing):
             return rule
-    allowing = VERBS if verb == "see" else (verb,)
+    allowing: tuple[Verb, ...] = (verb,)
+    if verb == "see":
+        allowing = VERBS if type_name else UNTYPED
     for rule in policy.allow:
+        if verb == "see" and rule.type and not type_name:
+            continue
         if rule.is_about(identity) and any(rule.covers(v, name, type_name) for v in allowing):
             return rule
     return None

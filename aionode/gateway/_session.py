@@ -86,7 +86,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             InvalidServiceNameException: the name is invalid (a ValueError).
         """
         service = self.service_name(service)
-        self._count_one("services and actions", len(self._served), self._limits.advertised)
+        self._count_served(service)
         cls = await self.service_class(type_name)
         await self._allow("advertise", service, cls.__ros_type__, None)
         made = serve(self._robot.node, service, cls, answer, self._limits.calls)
@@ -109,11 +109,15 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             InvalidTopicNameException: the name is invalid (a ValueError).
         """
         action = self.topic_name(action)
-        self._count_one("services and actions", len(self._served), self._limits.advertised)
+        self._count_served(action)
         cls = await self.action_class(type_name)
         await self._allow("advertise", action, cls.__ros_type__, None)
         made = serve_action(self._robot.node, action, cls, execute, self._limits.calls)
         return self._keep(action, cls.__ros_type__, made)
+
+    def _count_served(self, name: str) -> None:
+        served = len(self._served)
+        self._count_one("advertise", name, "services and actions", served, self._limits.advertised)
 
     def _keep(self, name: str, type_name: str, served: Served) -> Served:
         """Keep what the client offers until it leaves; an older one of the same name ends."""

@@ -68,13 +68,18 @@ class SessionBase:
         """
         decision = self._robot.policy.decide(self.identity, verb, name, type_name, message)
         if not decision.allowed:
-            raise self._refused(verb, name, decision.reason, decision.code)
+            raise self._refused(verb, name, decision.reason, decision.code, message)
         return decision
 
-    def _refused(self, verb: str, name: str, reason: str, code: str) -> RefusedError:
-        """Return the error of a refusal, and write it down."""
+    def _refused(
+        self, verb: str, name: str, reason: str, code: str, message: Any = None
+    ) -> RefusedError:
+        """Return the error of a refusal, and write the refusal down."""
         self.refused += 1
-        self._robot.audit.note(self.identity, verb, name, result=f"refused: {reason}", code=code)
+        self._robot.audit.note(
+            self.identity, verb, name, arguments=message, result=f"refused: {reason}",
+            code=code, way=self.kind,
+        )  # fmt: skip
         return RefusedError(f"{verb} {name}", reason, code)
 
     async def _allow(self, verb: Verb, name: str, type_name: str, message: Any) -> Decision:
@@ -87,7 +92,7 @@ class SessionBase:
         rule = decision.rule
         if rule is not None and not self._robot.rates.allows(self.identity, rule, name):
             raise self._refused(
-                verb, name, f"more often than {rule.rate_hz:g} times a second", "too_fast"
+                verb, name, f"more often than {rule.rate_hz:g} times a second", "too_fast", message
             )
         if decision.ask:
             await self._ask(verb, name, decision.message)
@@ -97,10 +102,11 @@ class SessionBase:
         ask = self._robot.ask
         if ask is None:
             raise self._refused(
-                verb, name, "a person has to say yes, and nobody is there to ask", "not_confirmed"
-            )
+                verb, name, "a person has to say yes, and nobody is there to ask",
+                "not_confirmed", message,
+            )  # fmt: skip
         if not await ask(self.identity, verb, name, message):
-            raise self._refused(verb, name, "a person has said no", "not_confirmed")
+            raise self._refused(verb, name, "a person has said no", "not_confirmed", message)
 
     def _sees(self, name: str, type_names: list[str]) -> bool:
         policy, identity = self._robot.policy, self.identity
@@ -108,11 +114,11 @@ class SessionBase:
             policy.decide(identity, "see", name, each).allowed for each in type_names or [""]
         )
 
-    def _count_one(self, what: str, there_are: int, most: int) -> None:
+    def _count_one(self, verb: str, name: str, what: str, there_are: int, most: int) -> None:
+        """Refuse one more of what a client may have so many of."""
         if there_are >= most:
-            raise RefusedError(
-                f"one more of {what}", f"there are {there_are}, which is the limit", "too_many"
-            )
+            reason = f"the client has {there_are} {what}, which is the limit"
+            raise self._refused(verb, name, reason, "too_many")
 
     def _check_size(self, verb: Verb, name: str, decision: Decision, message: Message) -> None:
         most = None if decision.rule is None else decision.rule.max_bytes
@@ -147,8 +153,9 @@ class SessionBase:
             raise RefusedError(node, "the gateway's node remaps its services")
         return node
 
-    def _one_more(self) -> Busy:
-        self._count_one("calls and goals", self._busy, self._limits.calls)
+    def _one_more(self, verb: str, name: str) -> Busy:
+        what = "calls, goals and questions under way"
+        self._count_one(verb, name, what, self._busy, self._limits.calls)
         return Busy(self)
 
     def _visible(self, found: Any, *, hidden: bool) -> dict[str, list[str]]:

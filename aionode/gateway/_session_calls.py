@@ -176,11 +176,12 @@ class SessionCalls(SessionBase):
             message: The request or goal.
             make: Makes the client that sends it, which sessions share.
         """
+        busy = self._one_more(verb, name)
         client, give_back = self._robot.shared.take((verb, name, cls), make)
         attempt = Attempt(client)
         began_ns = self.steady_ns()
         try:
-            with self._one_more():
+            with busy:
                 yield attempt
         except AionodeError as error:
             attempt.result = f"failed: {error}"

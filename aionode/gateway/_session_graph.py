@@ -112,7 +112,7 @@ class SessionGraph(SessionBase):
             raise self._refused("see", node, "the policy does not show it", "not_allowed")
         client = AsyncParameterClient(self._robot.node, node)
         try:
-            with self._one_more():
+            with self._one_more("see", node):
                 async with asyncio.timeout(ANSWER_SEC):
                     if not await client.wait_for_services(SERVER_SEC):
                         raise ServiceError(node, "it offers no parameters")
@@ -167,7 +167,7 @@ class SessionGraph(SessionBase):
             ServiceError: the node offers no parameters.
             TimeoutError: the node has not answered within 5 s.
         """
-        node = self.node_name(node)
+        node, began_ns = self.node_name(node), self.steady_ns()
         changed = []
         for name, value in values.items():
             parameter = self._decide_parameter(node, Parameter(name, value=value))
@@ -177,7 +177,9 @@ class SessionGraph(SessionBase):
             results = await client.set_parameters(changed)
         reasons = "; ".join(each.reason for each in results if not each.successful)
         self._robot.audit.note(
-            self.identity, "parameter", node, arguments=dict(values),
-            result=f"failed: {reasons}" if reasons else "ok", way=self.kind,
+            self.identity, "parameter", node,
+            arguments={each.name: each.value for each in changed},
+            result=f"failed: {reasons}" if reasons else "ok",
+            duration_ns=self.steady_ns() - began_ns, way=self.kind,
         )  # fmt: skip
         return results

@@ -7,7 +7,7 @@ from collections.abc import Callable, Hashable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import S_TO_NS, Duration
-from aionode.errors import AionodeError
+from aionode.errors import AionodeError, RefusedError
 from aionode.gateway._command import check_age
 from aionode.gateway._session_base import SessionBase, as_message
 from aionode.message import Message
@@ -16,6 +16,7 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 if TYPE_CHECKING:
     from aionode.gateway._feed import Received
     from aionode.gateway._outbox import Frame
+    from aionode.gateway._policy import Decision
 
 __all__ = ["SessionTopics", "Subscribed"]
 
@@ -120,10 +121,12 @@ class SessionTopics(SessionBase):
             InvalidTopicNameException: the name is invalid (a ValueError).
         """
         topic = self.topic_name(topic)
-        self._count_one("subscriptions", len(self._subscribed), self._limits.subscriptions)
+        subscriptions = len(self._subscribed)
+        most = self._limits.subscriptions
+        self._count_one("subscribe", topic, "subscriptions", subscriptions, most)
         self.decide("subscribe", topic, "")  # before anybody is asked for a type
         message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
-        self.decide("subscribe", topic, message_class.__ros_type__)
+        await self._allow("subscribe", topic, message_class.__ros_type__, None)
         subscribed = Subscribed(self, topic, message_class, frame, key, depth, min_period_sec)
         self._subscribed[subscribed] = None
         subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed._take)
@@ -143,7 +146,8 @@ class SessionTopics(SessionBase):
         topic = self.topic_name(topic)
         if topic in self._published:
             return
-        self._count_one("topics", len(self._published), self._limits.advertised)
+        advertised, most = len(self._published), self._limits.advertised
+        self._count_one("publish", topic, "topics that it publishes", advertised, most)
         message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
         decision = self.decide("publish", topic, message_class.__ros_type__)
         profile = COMMANDS if decision.lease is not None else qos or PUBLISHED
@@ -190,22 +194,32 @@ class SessionTopics(SessionBase):
         message = as_message(publisher.msg_type, values, self._robot.node.get_clock())
         decision = await self._allow("publish", topic, message.__ros_type__, message)
         self._check_size("publish", topic, decision, message)
-        lease = decision.lease
-        if lease is None:
-            self._robot.commands.refuse_if_held(topic, self.owner)
-            publisher.publish(decision.message)
-        else:
-            if self._is_doubtful:
-                raise self._refused(
-                    "publish", topic, "it may be from before the silence of the client", "too_old"
-                )
-            now_ns = self._robot.node.get_clock().now().nanoseconds
-            check_age(topic, message, lease, now_ns=now_ns, arrived_ns=arrived_ns,
-                      time_base=self._robot.time_base)  # fmt: skip
-            await self._robot.commands.publish(
-                publisher, self.owner, self.identity, lease, decision.message
-            )
+        try:
+            await self._send(publisher, decision, message, arrived_ns)
+        except RefusedError as error:
+            raise self._refused("publish", topic, error.reason, error.code, message) from error
         self._note_published(topic, decision.message)
+
+    async def _send(
+        self, publisher: Any, decision: Decision, message: Message, arrived_ns: int
+    ) -> None:
+        """Publish what the policy allows, by lease if it says so.
+
+        Raises:
+            RefusedError: another client commands the topic; the command is too old.
+        """
+        lease, commands, topic = decision.lease, self._robot.commands, publisher.topic_name
+        if lease is None:
+            commands.refuse_if_held(topic, self.owner)
+            publisher.publish(decision.message)
+            return
+        if self._is_doubtful:
+            reason = "it may be from before the silence of the client"
+            raise RefusedError(f"publish {topic}", reason, "too_old")
+        now_ns = self._robot.node.get_clock().now().nanoseconds
+        check_age(topic, message, lease, now_ns=now_ns, arrived_ns=arrived_ns,
+                  time_base=self._robot.time_base)  # fmt: skip
+        await commands.publish(publisher, self.owner, self.identity, lease, decision.message)
 
     def dropped(self) -> dict[str, int]:
         """Return how many frames of each topic were dropped, as the client was too slow."""
@@ -225,8 +239,9 @@ class SessionTopics(SessionBase):
         if now_ns - self._noted_ns.get(topic, -S_TO_NS) >= S_TO_NS:
             self._noted_ns[topic] = now_ns
             self._robot.audit.note(
-                self.identity, "publish", topic, arguments=message, count=self._counts.pop(topic)
-            )
+                self.identity, "publish", topic, arguments=message,
+                count=self._counts.pop(topic), way=self.kind,
+            )  # fmt: skip
 
     async def unadvertise(self, topic: str) -> None:
         """Give a publisher back, and end the lease of its commands, which sends the stop."""

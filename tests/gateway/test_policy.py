@@ -92,9 +92,28 @@ def test_a_rule_allows_its_verb_and_its_name_only(verb: Verb, name: str, other: 
     policy = Policy(allow=[Rule(**{verb: name})])  # type: ignore[arg-type]  # a name each
 
     for asked in VERBS:
-        is_allowed = policy.decide(GUEST, asked, name, "").allowed
+        is_allowed = policy.decide(GUEST, asked, name, "a/msg/B").allowed
         assert is_allowed == (asked in {verb, "see"})
-        assert policy.decide(GUEST, asked, other, "").allowed == (is_allowed and other == name)
+        is_other_allowed = policy.decide(GUEST, asked, other, "a/msg/B").allowed
+        assert is_other_allowed == (is_allowed and other == name)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_rule_about_topics_shows_no_node(verb: Verb) -> None:
+    """Who reads all topics must not read all parameters, which may have passwords."""
+    policy = Policy(allow=[Rule(**{verb: "/**"})])  # type: ignore[arg-type]  # a name each
+
+    for name in ("/driver", "/driver:password"):
+        is_seen = policy.decide(GUEST, "see", name, "").allowed
+        assert is_seen == (verb in {"see", "parameter"})
+
+
+def test_a_rule_for_a_type_shows_no_node() -> None:
+    """Nodes and parameters have no type that could fit."""
+    policy = Policy(allow=[Rule(see="/**", type="sensor_msgs/msg/Image")])
+
+    assert policy.decide(GUEST, "see", "/camera/image", "sensor_msgs/msg/Image").allowed
+    assert not policy.decide(GUEST, "see", "/driver:password", "").allowed
 
 
 @given(verb=st.sampled_from(VERBS), name=NAMES)
@@ -233,6 +252,7 @@ def test_a_file_says_all_of_a_policy(policy: Policy) -> None:
         "[[allow]]\npublish = 'cmd_vel'",
         "[[allow]]\nwho = 'nobody'\nsee = '/**'",
         "[[allow]]\nrate_hz = 0",
+        "[[refuse]]\npublish = '/x'\nrate_hz = 10",
         "[[allow]]\npublish = '/x'\nlease = { ttl_sec = 0 }",
         "[[who]]\nname = 'anyone'",
         "[[who]]\nname = 'x'\ntoken_sha256 = 'abc'",

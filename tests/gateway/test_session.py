@@ -248,9 +248,7 @@ async def test_a_field_is_clamped_or_refused(bench: Bench) -> None:
 async def test_a_parameter_is_clamped(furnished: Bench) -> None:
     """The same limits, for the field `value`."""
     limit = FieldLimit(max=1.5, outside="clamp")
-    furnished.robot.policy = Policy(
-        allow=[Rule(see="/**", parameter="/robot", fields={"value": limit})]
-    )
+    furnished.robot.policy = Policy(allow=[Rule(parameter="/robot", fields={"value": limit})])
     async with furnished.session() as session:
         await session.set_parameters("/robot", {"speed": 2.0})
         assert await session.get_parameters("/robot", ["speed", "none"]) == {"speed": 1.5}
