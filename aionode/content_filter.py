@@ -482,10 +482,10 @@ class LikePattern:
             return at == len(text)
         *middle, last = self._rest
         for piece in middle:
-            found = piece.find(text, at)
-            if found < 0:
+            position = piece.find(text, at)
+            if position < 0:
                 return False
-            at = found + piece.length
+            at = position + piece.length
         end = len(text) - last.length
         return at <= end and last.fits(text, end)
 

@@ -108,8 +108,8 @@ def golden_bag(request: pytest.FixtureRequest) -> Callable[..., None]:
             outputs.save(path)
         elif not path.exists():
             pytest.fail(f"{path} does not exist; pytest {UPDATE} writes it", pytrace=False)
-        elif found := compare(outputs, path, **options):
-            lines = "\n".join(map(str, found))
+        elif differences := compare(outputs, path, **options):
+            lines = "\n".join(map(str, differences))
             pytest.fail(f"the outputs differ from {path}:\n{lines}", pytrace=False)
 
     return check

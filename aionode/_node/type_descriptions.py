@@ -27,14 +27,16 @@ def describe_type(
         response: The response, to be filled in.
         own_message: Returns a message in the class that the response has for it.
     """
-    found = {
+    classes = {
         type_hash(kind): kind for kind in with_nested(used) if type_name(kind) == request.type_name
     }
-    kind = found.get(request.type_hash) if request.type_hash else next(iter(found.values()), None)
+    kind = (
+        classes.get(request.type_hash) if request.type_hash else next(iter(classes.values()), None)
+    )
     if kind is None:
         response.failure_reason = (
-            f"{request.type_name} has the hash {', '.join(found)} here, not {request.type_hash}"
-            if found
+            f"{request.type_name} has the hash {', '.join(classes)} here, not {request.type_hash}"
+            if classes
             else f"{request.type_name} is not in use by this node"
         )
         return response

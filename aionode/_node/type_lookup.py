@@ -48,10 +48,10 @@ async def find_type(
     if known is not None and (not hashes or hashes & {type_hash(known), NO_TYPE_HASH, ""}):
         return known
     problems: list[str] = []
-    found = await described(node, name, users, problems)
-    if found is None:
+    interface = await described(node, name, users, problems)
+    if interface is None:
         raise InterfaceNotFoundError(name, problem=problem_of(known, users, hashes, problems))
-    return found
+    return interface
 
 
 def users_of(graph: Graph, name: str) -> list[EndpointInfo]:
@@ -92,12 +92,12 @@ async def described(
         by_node.setdefault(user.node.fully_qualified_name, {})[user.type_name] = user
     for endpoints in list(by_node.values())[:MOST_ASKED]:
         try:
-            found = await described_by(node, name, endpoints)
+            interface = await described_by(node, name, endpoints)
         except TypeDescriptionError as error:
             problems.append(str(error))
         else:
-            if found is not None:
-                return found
+            if interface is not None:
+                return interface
     return None
 
 

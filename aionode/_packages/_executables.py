@@ -47,14 +47,14 @@ class Executable(NamedTuple):
 
 def executables_in(folder: Path, package: str) -> dict[str, Executable]:
     """Return the executables of a package from its source folder, by their names."""
-    found = {
+    executables = {
         name: Executable(package, name, str(file))
         for name, file in scripts(folder, package).items()
     }
     for name, target in entry_points(folder).items():
         root = module_root(folder, target.partition(":")[0].partition(".")[0])
-        found[name] = Executable(package, name, target, root or folder)
-    return dict(sorted(found.items()))
+        executables[name] = Executable(package, name, target, root or folder)
+    return dict(sorted(executables.items()))
 
 
 def installed_executables(prefix: Path, package: str) -> dict[str, Executable]:

@@ -110,10 +110,10 @@ class Packages:
             PackageNotFoundError: There is no such package.
             ExecutableNotFoundError: The package has no executable of this name.
         """
-        found = self.executable(package, name)
+        program = self.executable(package, name)
         if package in self.sources():
             options = ("--workspace", str(self.workspace), *options)
-        return found.command(*options)
+        return program.command(*options)
 
     def module_root(self, module: str) -> Path | None:
         """Return the folder to import a Python module from that a package of the workspace has."""

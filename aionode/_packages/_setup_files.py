@@ -24,10 +24,10 @@ def entry_points(folder: Path) -> dict[str, str]:
     They stand in its setup.py, setup.cfg or pyproject.toml. What a setup.py computes by more than
     constants, names, f-strings and sums is not known.
     """
-    found: dict[str, str] = {}
+    scripts: dict[str, str] = {}
     for source in (of_pyproject(folder), of_setup_cfg(folder), of_setup_py(folder)):
-        found.update(source)
-    return found
+        scripts.update(source)
+    return scripts
 
 
 def of_pyproject(folder: Path) -> dict[str, str]:
@@ -95,9 +95,9 @@ def scripts(folder: Path, package: str) -> dict[str, Path]:
     for pair in listed(given.get("data_files")):
         if len(listed(pair)) == 2 and pair[0] == f"lib/{package}":
             files += [item for item in listed(pair[1]) if isinstance(item, str)]
-    found = {Path(file).name: folder / file for file in files}
-    found.update(of_cmake(folder, package))
-    return {name: file for name, file in found.items() if file.is_file()}
+    executables = {Path(file).name: folder / file for file in files}
+    executables.update(of_cmake(folder, package))
+    return {name: file for name, file in executables.items() if file.is_file()}
 
 
 def listed(value: Any) -> list[Any]:

@@ -61,7 +61,7 @@ def packages_in(workspace: Path) -> dict[str, Path]:
     in the outer folder counts, then the first by the names of the folders. The answer is kept for
     the life of the process.
     """
-    found: dict[str, Path] = {}
+    packages: dict[str, Path] = {}
     waiting = deque([(workspace, 0)])
     for _ in range(MAX_FOLDERS):
         if not waiting:
@@ -71,10 +71,10 @@ def packages_in(workspace: Path) -> dict[str, Path]:
         if not IGNORED.isdisjoint(files):
             continue
         if MANIFEST in files:
-            found.setdefault(package_name(folder), folder)
+            packages.setdefault(package_name(folder), folder)
         elif depth < MAX_DEPTH:
             waiting.extend((folder / name, depth + 1) for name in folders)
-    return found
+    return packages
 
 
 def content(folder: Path) -> tuple[set[str], list[str]]:

@@ -87,12 +87,12 @@ def compare(
     left, right = by_topic(a), by_topic(b)
     starts = [records[0].time_ns for records in (*left.values(), *right.values())]
     start_ns = min(starts, default=0)
-    found: list[Difference] = []
+    result: list[Difference] = []
     for topic in dict.fromkeys((*left, *right)):
         tolerances = Tolerances(topic, tolerance, round(time_tolerance_sec * 1e9))
         listed = differences(topic, left.get(topic, []), right.get(topic, []), tolerances, start_ns)
-        found += [difference for difference, _ in zip(listed, range(limit), strict=False)]
-    return sorted(found, key=lambda difference: difference.time_ns)
+        result += [difference for difference, _ in zip(listed, range(limit), strict=False)]
+    return sorted(result, key=lambda difference: difference.time_ns)
 
 
 class Tolerances:

@@ -89,15 +89,15 @@ def is_indexed(folder: Path, checked: list[Checked]) -> bool:
 
 def files_of(folder: Path) -> list[Path]:
     """Return the files of a bag in the order of their numbers."""
-    found = [*folder.glob("*.mcap"), *folder.glob("*.db3"), *folder.glob("*.zstd")]
-    if not found:
+    files = [*folder.glob("*.mcap"), *folder.glob("*.db3"), *folder.glob("*.zstd")]
+    if not files:
         raise BagError(str(folder), "there is no .mcap or .db3 file in the folder")
 
     def number(file: Path) -> tuple[int, str]:
         digits = file.name.split(".")[0].rpartition("_")[2]
         return (int(digits) if digits.isdigit() else -1, file.name)
 
-    return sorted(found, key=number)
+    return sorted(files, key=number)
 
 
 def check_file(file: Path) -> Checked:

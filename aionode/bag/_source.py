@@ -169,13 +169,13 @@ class McapSource:
     def _without_chunks(
         self, topics: AbstractSet[str] | None, start_ns: int, end_ns: int
     ) -> Iterator[Record]:
-        found = self._reader.iter_messages(
+        messages = self._reader.iter_messages(
             topics=None if topics is None else sorted(topics),
             starting_at=start_ns,
             ending_before=end_ns,
         )
         try:
-            for _, channel, message in found:
+            for _, channel, message in messages:
                 yield Record(
                     self._channels[channel.id],
                     message.log_time,

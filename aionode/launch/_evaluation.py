@@ -192,15 +192,17 @@ def unknown_option(error: Exception) -> str | None:
 
 def options_of(kind: type) -> list[str]:
     """Return the names of the arguments of a class and of its bases, as far as it takes those."""
-    found: set[str] = set()
+    argument_names: set[str] = set()
     for cls in kind.__mro__:
         if "__init__" in vars(cls):
             _, *parameters = inspect.signature(vars(cls)["__init__"]).parameters.values()
             variable = {inspect.Parameter.VAR_KEYWORD, inspect.Parameter.VAR_POSITIONAL}
-            found |= {parameter.name for parameter in parameters if parameter.kind not in variable}
+            argument_names |= {
+                parameter.name for parameter in parameters if parameter.kind not in variable
+            }
             if all(parameter.kind is not inspect.Parameter.VAR_KEYWORD for parameter in parameters):
                 break
-    return sorted(found)
+    return sorted(argument_names)
 
 
 def problem_of(error: Exception) -> str:
@@ -311,13 +313,13 @@ def arguments_of(description: Any, path: str) -> list[DeclareLaunchArgument]:
 
     Those of included files are there if the path of the file is known without the arguments.
     """
-    found: dict[str, DeclareLaunchArgument] = {}
+    declared: dict[str, DeclareLaunchArgument] = {}
     context = new_context(path, {})
 
     def collect(entities: Iterable[Any], depth: int) -> None:
         for entity in entities:
             if isinstance(entity, DeclareLaunchArgument):
-                found.setdefault(entity.name, entity)
+                declared.setdefault(entity.name, entity)
             elif isinstance(entity, LaunchDescription):
                 collect(entity.entities, depth)
             elif isinstance(entity, IncludeLaunchDescription) and depth < MAX_DEPTH:
@@ -332,4 +334,4 @@ def arguments_of(description: Any, path: str) -> list[DeclareLaunchArgument]:
                 collect(getattr(entity, "actions", ()), depth)
 
     collect([description], 0)
-    return list(found.values())
+    return list(declared.values())

@@ -98,10 +98,10 @@ class Reading:
         value = self.raw(name)
         if not isinstance(value, str):
             return value
-        found = parse_words(value)
-        if len(found) == 1 and isinstance(found[0], TextSubstitution):
+        parts = parse_words(value)
+        if len(parts) == 1 and isinstance(parts[0], TextSubstitution):
             return coerce_to_type(value, bool)
-        return found
+        return parts
 
     def inner(self, name: str) -> list[Element]:
         """Return the elements inside with this name."""
@@ -111,12 +111,12 @@ class Reading:
 
     def pairs(self, name: str, first: str, second: str) -> list[tuple[Any, Any]]:
         """Return two attributes of each element inside with this name."""
-        found = []
+        result = []
         for child in self.inner(name):
             reading = Reading(child)
-            found.append((words_of(reading.need(first)), words_of(reading.need(second))))
+            result.append((words_of(reading.need(first)), words_of(reading.need(second))))
             reading.finish()
-        return found
+        return result
 
     def finish(self) -> None:
         """Raise ValueError if there is something that nobody has asked for."""
@@ -296,17 +296,17 @@ def lifecycle_node(reading: Reading, options: Options) -> actions.Action:
 
 def parameters_of(reading: Reading) -> list[Any]:
     """Return the parameters inside an element, one by one."""
-    found: list[Any] = []
+    parameters: list[Any] = []
     for child in reading.inner("param"):
         inside = Reading(child)
         file = inside.text("from")
         if file is not None:
             allow = inside.flag("allow_substs")
-            found.append(descriptions.ParameterFile(file, allow_substs=allow or False))
+            parameters.append(descriptions.ParameterFile(file, allow_substs=allow or False))
         else:
-            found.append(parameter(inside))
+            parameters.append(parameter(inside))
         inside.finish()
-    return found
+    return parameters
 
 
 def parameter(reading: Reading) -> dict[Any, Any]:

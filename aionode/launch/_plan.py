@@ -61,10 +61,10 @@ class Process(Step):
 
     def changes(self, before: Mapping[str, str]) -> dict[str, str | None]:
         """Return which variables differ from those before; None for what is not there any more."""
-        found: dict[str, str | None] = {
+        changed: dict[str, str | None] = {
             name: value for name, value in self.env.items() if before.get(name) != value
         }
-        return found | {name: None for name in before if name not in self.env}
+        return changed | {name: None for name in before if name not in self.env}
 
 
 @dataclass(frozen=True)

@@ -50,6 +50,6 @@ def times_of(words: Iterable[str]) -> Iterator[tuple[Path, int]]:
     for word in words:
         file = Path(word.partition(".py:")[0] + ".py") if ".py:" in word else Path(word)
         with suppress(OSError, ValueError):  # it is not there now, or a word that is no path
-            found = file.stat()
-            if file.suffix and S_ISREG(found.st_mode):
-                yield file, found.st_mtime_ns
+            status = file.stat()
+            if file.suffix and S_ISREG(status.st_mode):
+                yield file, status.st_mtime_ns

@@ -23,8 +23,8 @@ def parse_words(text: str) -> list[Substitution]:
         ValueError: A name is not known, or a bracket is not closed.
     """
     reader = Reader(text)
-    found = reader.parts(until="")
-    return found or [TextSubstitution(text="")]
+    parts = reader.parts(until="")
+    return parts or [TextSubstitution(text="")]
 
 
 class Reader:
@@ -36,15 +36,15 @@ class Reader:
 
     def parts(self, until: str) -> list[Substitution]:
         """Return what comes before one of these characters, or before the end."""
-        found: list[Substitution] = []
+        texts: list[Substitution] = []
         plain = ""
         while self.at < len(self.text) and self.text[self.at] not in (until or "\0"):
             char = self.text[self.at]
             if self.text.startswith("$(", self.at):
                 if plain:
-                    found.append(TextSubstitution(text=plain))
+                    texts.append(TextSubstitution(text=plain))
                     plain = ""
-                found.append(self.substitution())
+                texts.append(self.substitution())
             elif char == "\\" and self.at + 1 < len(self.text):
                 plain += self.text[self.at + 1]
                 self.at += 2
@@ -52,8 +52,8 @@ class Reader:
                 plain += char
                 self.at += 1
         if plain:
-            found.append(TextSubstitution(text=plain))
-        return found
+            texts.append(TextSubstitution(text=plain))
+        return texts
 
     def substitution(self) -> Substitution:
         """Return the substitution that begins here."""
@@ -77,11 +77,11 @@ class Reader:
         quote = self.peek()
         if quote and quote in "'\"":
             self.at += 1
-            found = self.parts(until=quote)
+            parts = self.parts(until=quote)
             if self.peek() != quote:
                 raise ValueError(f"'{self.text}': {quote} is missing")
             self.at += 1
-            return found or [TextSubstitution(text="")]
+            return parts or [TextSubstitution(text="")]
         return self.parts(until=" )") or [TextSubstitution(text="")]
 
     def peek(self) -> str:

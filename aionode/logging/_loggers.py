@@ -185,8 +185,8 @@ def standard_name(name: str) -> str:
 
 def known_logger(name: str) -> logging.Logger | None:
     """Return the same if there is one."""
-    found = logging.Logger.manager.loggerDict.get(standard_name(name))
-    return found if isinstance(found, logging.Logger) else None
+    existing = logging.Logger.manager.loggerDict.get(standard_name(name))
+    return existing if isinstance(existing, logging.Logger) else None
 
 
 def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> RcutilsLogger:

@@ -121,12 +121,12 @@ class Answers:
         """Answer describe_parameters."""
         refuse_many(request.names)
         try:
-            found = each_once(request.names, self.parameters.describe_parameters)
+            descriptors = each_once(request.names, self.parameters.describe_parameters)
         except ParameterNotDeclaredException:
             return response
-        sizes = {name: descriptor_size(descriptor) for name, descriptor in found.items()}
+        sizes = {name: descriptor_size(descriptor) for name, descriptor in descriptors.items()}
         refuse_large(sum(sizes[name] for name in request.names), "descriptions")
-        response.descriptors = [found[name] for name in request.names]
+        response.descriptors = [descriptors[name] for name in request.names]
         return response
 
     def get_values(
@@ -135,12 +135,12 @@ class Answers:
         """Answer get_parameters."""
         refuse_many(request.names)
         try:
-            found = each_once(request.names, self.parameters.get_parameters)
+            parameters = each_once(request.names, self.parameters.get_parameters)
         except (ParameterNotDeclaredException, ParameterUninitializedException):
             return response
-        sizes = {name: size_of(parameter.value) for name, parameter in found.items()}
+        sizes = {name: size_of(parameter.value) for name, parameter in parameters.items()}
         refuse_large(sum(sizes[name] for name in request.names), "values")
-        values = {name: parameter.get_parameter_value() for name, parameter in found.items()}
+        values = {name: parameter.get_parameter_value() for name, parameter in parameters.items()}
         response.values = [values[name] for name in request.names]
         return response
 

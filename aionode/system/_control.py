@@ -94,5 +94,5 @@ class Control:
             await self._system.restart(request.name)
         elif request.command != "status":
             raise ValueError(f"{request.command!r} is unknown; use status, stop or restart")
-        found = self._system.status().values()
-        return json.dumps([status.record() for status in found])
+        statuses = self._system.status().values()
+        return json.dumps([status.record() for status in statuses])

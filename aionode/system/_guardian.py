@@ -398,10 +398,10 @@ def descendants(ancestor: int) -> list[tuple[int, int, int]]:
         if name.isdigit() and (fields := stat_of(name)) and fields[0] not in {"Z", "X"}:
             parent, session = int(fields[1]), int(fields[3])
             below.setdefault(parent, []).append((int(name), parent, session))
-    found = below.get(ancestor, [])
-    for pid, _, _ in found:  # which grows meanwhile
-        found.extend(below.get(pid, []))
-    return found
+    group = below.get(ancestor, [])
+    for pid, _, _ in group:  # which grows meanwhile
+        group.extend(below.get(pid, []))
+    return group
 
 
 def children() -> list[int]:

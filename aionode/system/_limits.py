@@ -31,12 +31,12 @@ class Limits:
 
     def settings(self) -> dict[str, str]:
         """Return what is written to which file of the cgroup."""
-        found = {}
+        files = {}
         if self.memory_bytes is not None:
-            found["memory.max"] = str(self.memory_bytes)
+            files["memory.max"] = str(self.memory_bytes)
         if self.cpu_cores is not None:
-            found["cpu.max"] = f"{round(self.cpu_cores * PERIOD_US)} {PERIOD_US}"
-        return found
+            files["cpu.max"] = f"{round(self.cpu_cores * PERIOD_US)} {PERIOD_US}"
+        return files
 
     def enter(self, name: str, log: SystemLog) -> str | None:
         """Create a cgroup with these limits, and return its folder.

@@ -172,8 +172,8 @@ class SystemLog:
         label = f"{name:>{self._width}} |"
         if self._color:
             label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
-        self._labels[name] = found = f"{label} ".encode()
-        return found
+        self._labels[name] = encoded = f"{label} ".encode()
+        return encoded
 
     def _write_file(self, name: str, lines: Sequence[Buffer]) -> None:
         try:

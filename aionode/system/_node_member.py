@@ -141,13 +141,13 @@ def ros_arguments(
 
 def flat(parameters: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
     """Return parameters by their full names: mappings within are joined by dots."""
-    found = []
+    flattened = []
     for key, value in parameters.items():
         if hasattr(value, "items"):
-            found += flat(value, f"{prefix}{key}.")
+            flattened += flat(value, f"{prefix}{key}.")
         else:
-            found.append((f"{prefix}{key}", value))
-    return found
+            flattened.append((f"{prefix}{key}", value))
+    return flattened
 
 
 def yaml_text(value: Any) -> str:

@@ -99,7 +99,7 @@ class AwaitableCore(BufferCore):
             limit_ns = 0 if timeout_sec is None else max(round(timeout_sec * S_TO_NS), 1)
             self._pending[ended] = limit_ns, self._alarm(ended, limit_ns)
         try:
-            found = await ended
+            result = await ended
         except asyncio.CancelledError as cancelled:
             cancelled.add_note(self._reason(parts))
             raise
@@ -108,11 +108,11 @@ class AwaitableCore(BufferCore):
             _, alarm = self._pending.pop(ended, (0, None))
             if alarm is not None:
                 alarm.cancel()
-        if found is DESTROYED:
+        if result is DESTROYED:
             raise self._entity._end_of_wait()
-        if found is TIMED_OUT:
+        if result is TIMED_OUT:
             raise TimeoutException(f"{self._reason(parts)}; waited {timeout_sec:g} s")
-        return found  # type: ignore[no-any-return]  # a future has one type only
+        return result  # type: ignore[no-any-return]  # a future has one type only
 
     def _reason(self, parts: tuple[Part, ...]) -> str:
         """Return what is waited for, and why it is not there."""
@@ -147,8 +147,8 @@ class AwaitableCore(BufferCore):
 
     def _latest_pose(self, target: str, source: str) -> tuple[Pose, int] | None:
         """Return the latest pose of a frame and its stamp; None if there is none."""
-        found = self._find(target, source, 0)
-        return None if isinstance(found, Failure) else (unit(found[0]), found[1])
+        result = self._find(target, source, 0)
+        return None if isinstance(result, Failure) else (unit(result[0]), result[1])
 
     def clear(self) -> None:
         """Forget the history of all frames; static transforms, names and waits stay."""

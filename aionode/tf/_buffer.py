@@ -90,8 +90,8 @@ class Buffer(AwaitableCore):
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
         """Return whether a transform is available, with `return_debug_tuple` also why not."""
-        found = self.can_transform_core(target_frame, source_frame, time)
-        return found if return_debug_tuple else found[0]
+        answer = self.can_transform_core(target_frame, source_frame, time)
+        return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
         self,
@@ -104,10 +104,10 @@ class Buffer(AwaitableCore):
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
         """Return whether a transform between two times is available; see `can_transform`."""
-        found = self.can_transform_full_core(
+        answer = self.can_transform_full_core(
             target_frame, target_time, source_frame, source_time, fixed_frame
         )
-        return found if return_debug_tuple else found[0]
+        return answer if return_debug_tuple else answer[0]
 
     # Waiting
 
@@ -192,10 +192,10 @@ class Buffer(AwaitableCore):
         """
         apply = transformer_of(type(object_stamped))
         header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
-        found = await self.wait_for_transform(
+        stamped = await self.wait_for_transform(
             target_frame, header.frame_id, header.stamp, timeout_sec=timeout_sec
         )
-        result: StampedT = apply(object_stamped, found)
+        result: StampedT = apply(object_stamped, stamped)
         return result
 
     async def transform_full(
@@ -215,7 +215,7 @@ class Buffer(AwaitableCore):
         """
         apply = transformer_of(type(object_stamped))
         header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
-        found = await self.wait_for_transform_full(
+        transform = await self.wait_for_transform_full(
             target_frame,
             target_time,
             header.frame_id,
@@ -223,7 +223,7 @@ class Buffer(AwaitableCore):
             fixed_frame,
             timeout_sec=timeout_sec,
         )
-        result: StampedT = apply(object_stamped, found)
+        result: StampedT = apply(object_stamped, transform)
         return result
 
     def follow(self, target_frame: str, source_frame: str) -> Changes:

@@ -157,9 +157,9 @@ class BufferCore:
             or not excess < TOLERANCE  # also for NaN
             or isnan(x + y + z)  # also for an infinite coordinate, which is no mistake
         ):
-            found = mistakes(child, parent, pose, authority)
-            if found:
-                self._refuse(found, authority)
+            refusals = mistakes(child, parent, pose, authority)
+            if refusals:
+                self._refuse(refusals, authority)
                 return False
         if excess > ROUNDING:
             pose = unit(pose)
@@ -231,9 +231,9 @@ class BufferCore:
         for child in [c for c, by in self._rivals.items() if by == self._authorities[c]]:
             del self._rivals[child]  # two publishers of one node
 
-    def _refuse(self, found: list[tuple[str, str]], authority: str) -> None:
+    def _refuse(self, refusals: list[tuple[str, str]], authority: str) -> None:
         """Log what is wrong with a transform."""
-        for kind, text in found:
+        for kind, text in refusals:
             self._report(kind, authority, text, is_error=True)
 
     def _report(self, kind: str, about: str, text: str, *, is_error: bool = False) -> None:
@@ -475,10 +475,10 @@ class BufferCore:
             return Walk(time_ns).pose(), time_ns
         self._expect_frame("lookupTransform argument target_frame", target)
         self._expect_frame("lookupTransform argument source_frame", source)
-        found = self._find(target, source, time_ns)
-        if isinstance(found, Failure):
-            raise found.exception()
-        return found
+        result = self._find(target, source, time_ns)
+        if isinstance(result, Failure):
+            raise result.exception()
+        return result
 
     def _find(self, target: str, source: str, time_ns: int) -> tuple[Pose, int] | Failure:
         """Return the pose of one existing frame in another, and its stamp, or why there is none."""

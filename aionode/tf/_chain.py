@@ -26,16 +26,16 @@ def chain(frames: Tree, target: tuple[str, int], source: tuple[str, int], fixed:
     Raises:
         TransformException: there is no such chain.
     """
-    found = chain_at(frames, fixed, *source)
+    way = chain_at(frames, fixed, *source)
     if source[1] == target[1]:
-        return found
+        return way
     to_target = chain_at(frames, target[0], fixed, target[1])
-    n, m = common_end(found, to_target)
+    n, m = common_end(way, to_target)
     if n:
-        del found[n - 1 :]
+        del way[n - 1 :]
     if m < len(to_target):
-        found += to_target[: m + 1]
-    return found
+        way += to_target[: m + 1]
+    return way
 
 
 def chain_at(frames: Tree, target: str, source: str, time_ns: int) -> list[str]:
@@ -63,15 +63,15 @@ def chain_at(frames: Tree, target: str, source: str, time_ns: int) -> list[str]:
 
 def to_top(frames: Tree, frame: str, time_ns: int, *, stop: str) -> list[str]:
     """Return a frame and those above it at a time, up to the last one, or to `stop`."""
-    found = [frame]
+    chain = [frame]
     while frame != stop:
         history = frames.get(frame)
         above = None if history is None else history.find(time_ns)
         if above is None:
             break
         frame = above[0]
-        found.append(frame)
-    return found
+        chain.append(frame)
+    return chain
 
 
 def common_end(first: list[str], second: list[str]) -> tuple[int, int]:

@@ -34,10 +34,10 @@ class Changes:
         """Wait for a transform that differs from the last one. Cancelling loses nothing."""
         buffer = self._buffer
         while not buffer._entity.destroyed:
-            found = buffer._latest_pose(self._target, self._source)
-            if found is not None and found != self._last:
-                self._last = found
-                pose, stamp_ns = found
+            latest = buffer._latest_pose(self._target, self._source)
+            if latest is not None and latest != self._last:
+                self._last = latest
+                pose, stamp_ns = latest
                 return buffer._message(self._target, self._source, pose, stamp_ns)
             await self._change()
         raise StopAsyncIteration

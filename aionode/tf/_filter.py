@@ -108,8 +108,8 @@ class Filtered(Generic[MsgT]):
         if failure is not None:
             self._drop(msg, OLD)
             return
-        found = self._buffer.lookup_transform_core(self._target, source, msg.header.stamp)
-        self._ready.append((msg, found))
+        transform = self._buffer.lookup_transform_core(self._target, source, msg.header.stamp)
+        self._ready.append((msg, transform))
         if self._wake is not None and not self._wake.done():
             self._wake.set_result(None)
 

@@ -121,8 +121,8 @@ class DynamicFrame:
             if stamp != time_ns:
                 ratio = (time_ns - stamp) / (stamps[index] - stamp)
                 return interpolated(self.poses[index - 1], self.poses[index], ratio)
-        found = self.find(time_ns)
-        return None if found is None else found[1][0]
+        nearest = self.find(time_ns)
+        return None if nearest is None else nearest[1][0]
 
     def find(self, time_ns: int) -> tuple[str, Edge] | None:
         """Return the parent and the pose at a time; None if the history does not reach there.

@@ -16,32 +16,32 @@ TOLERANCE = 10e-3
 
 def mistakes(child: str, parent: str, pose: Pose, authority: str) -> list[tuple[str, str]]:
     """Return everything that is wrong with a transform: kinds of mistakes, and texts."""
-    found = []
+    refusals = []
     by = f'authority "{authority}"'
     if child == parent:
         text = (
             f'Ignoring transform from {by} with frame_id and  child_frame_id "{child}" because '
             "they are the same"
         )
-        found.append(("TF_SELF_TRANSFORM", text))
+        refusals.append(("TF_SELF_TRANSFORM", text))
     if not child:
         text = f"Ignoring transform from {by} because child_frame_id not set "
-        found.append(("TF_NO_CHILD_FRAME_ID", text))
+        refusals.append(("TF_NO_CHILD_FRAME_ID", text))
     if not parent:
         text = (
             f'Ignoring transform with child_frame_id "{child}"  from {by} because frame_id not set'
         )
-        found.append(("TF_NO_FRAME_ID", text))
+        refusals.append(("TF_NO_FRAME_ID", text))
     numbers = [f"{number:f}" for number in pose]
     translation, rotation = f"({' '.join(numbers[:3])})", f"({' '.join(numbers[3:])})"
     ignoring = f'Ignoring transform for child_frame_id "{child}" from {by} because of'
     if any(isnan(number) for number in pose):
         text = f"{ignoring} a nan value in the transform {translation} {rotation}"
-        found.append(("TF_NAN_INPUT", text))
+        refusals.append(("TF_NAN_INPUT", text))
     if not abs(sum(number * number for number in pose[3:]) - 1.0) < TOLERANCE:
         text = f"{ignoring} an invalid quaternion in the transform {rotation}"
-        found.append(("TF_DENORMALIZED_QUATERNION", text))
-    return [(kind, f"{kind}: {text}") for kind, text in found]
+        refusals.append(("TF_DENORMALIZED_QUATERNION", text))
+    return [(kind, f"{kind}: {text}") for kind, text in refusals]
 
 
 def old_data(child: str, time: str, authority: str) -> str:

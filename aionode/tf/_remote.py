@@ -225,10 +225,10 @@ class BufferClient:
         """
         apply = transformer_of(type(object_stamped))
         header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
-        found = await self.lookup_transform(
+        stamped = await self.lookup_transform(
             target_frame, header.frame_id, header.stamp, timeout_sec=timeout_sec
         )
-        result: StampedT = apply(object_stamped, found)
+        result: StampedT = apply(object_stamped, stamped)
         return result
 
     async def _ask(self, goal: LookupTransform.Goal) -> TransformStamped:

@@ -94,13 +94,13 @@ class Routes:
 
     def _above(self, frame: str) -> list[str]:
         """Return a frame and those above it; empty if they form a loop."""
-        found = [frame]
+        chain = [frame]
         while (history := self._frames.get(frame)) is not None:
             latest = history.latest()
             if latest is None:
                 break
             frame = latest[1]
-            found.append(frame)
-            if len(found) > MAX_DEPTH:
+            chain.append(frame)
+            if len(chain) > MAX_DEPTH:
                 return []
-        return found
+        return chain

@@ -117,12 +117,12 @@ def walk_up(frames: Tree, way: Walk, target: str, source: str) -> dict[str, int]
         counts[frame] = len(way.up)
         way.visited.append(frame)
         history = frames.get(frame)
-        found = None if history is None else history.find(way.time_ns)
-        if found is None:
+        nearest = None if history is None else history.find(way.time_ns)
+        if nearest is None:
             return counts
         if frame == target:
             return None
-        frame, edge = found
+        frame, edge = nearest
         way.up.append(edge)
         if len(way.up) > MAX_DEPTH:
             way.failure = loop(frames)
@@ -143,11 +143,11 @@ def walk_down(frames: Tree, way: Walk, target: str, source: str, counts: dict[st
                 else unconnected(target, source)
             )
             return
-        found = history.find(way.time_ns)
-        if found is None:
+        nearest = history.find(way.time_ns)
+        if nearest is None:
             way.failure = extrapolation(frames, frame, way.time_ns, target, source)
             return
-        frame, edge = found
+        frame, edge = nearest
         way.down.append(edge)
         if len(way.down) > MAX_DEPTH:
             way.failure = loop(frames)
@@ -192,13 +192,13 @@ def lowest(stamps: list[int]) -> int:
 
 def ancestors(frames: Tree, frame: str) -> list[str]:
     """Return a frame and those above it now, up to one without a parent."""
-    found = [frame]
+    chain = [frame]
     while (history := frames.get(frame)) is not None and (latest := history.latest()) is not None:
         frame = latest[1]
-        found.append(frame)
-        if len(found) > MAX_DEPTH:
+        chain.append(frame)
+        if len(chain) > MAX_DEPTH:
             break
-    return found
+    return chain
 
 
 def loop(frames: Tree) -> Failure:

@@ -75,13 +75,13 @@ def info_command(
     from aionode import bag
 
     output = Output(json=json)
-    with bag.open(path) as found:
+    with bag.open(path) as opened:
         keys = {"name": lambda t: t.name, "type": lambda t: t.type, "count": count_of}
-        topics = sorted(found.connections, key=keys[sort])
+        topics = sorted(opened.connections, key=keys[sort])
         if topic_name:
             output.items([(topic.name, {"name": topic.name}) for topic in topics])
             return
-        output.item(info_text(found, topics, verbose=verbose), info_record(found, topics))
+        output.item(info_text(opened, topics, verbose=verbose), info_record(opened, topics))
 
 
 def count_of(topic: TopicInfo) -> int:
@@ -89,17 +89,17 @@ def count_of(topic: TopicInfo) -> int:
     return topic.message_count
 
 
-def info_text(found: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
+def info_text(opened: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
     """Return what a bag has, as rosbag2 prints it."""
     lines = [
-        f"Files:             {found.path}",
-        f"Duration:          {found.duration.nanoseconds / 1e9:.9f}s",
-        f"Start:             {found.start_ns / 1e9:.9f}",
-        f"End:               {found.end_ns / 1e9:.9f}",
-        f"Messages:          {found.message_count}",
+        f"Files:             {opened.path}",
+        f"Duration:          {opened.duration.nanoseconds / 1e9:.9f}s",
+        f"Start:             {opened.start_ns / 1e9:.9f}",
+        f"End:               {opened.end_ns / 1e9:.9f}",
+        f"Messages:          {opened.message_count}",
     ]
-    lines.append(f"Lost:              {lost_text(found)}")
-    lines += [f"Custom data:       {key}={value}" for key, value in found.custom_data.items()]
+    lines.append(f"Lost:              {lost_text(opened)}")
+    lines += [f"Custom data:       {key}={value}" for key, value in opened.custom_data.items()]
     for topic in topics:
         lines.append(f"Topic: {topic.name} | Type: {topic.type} | Count: {topic.message_count}")
         if verbose:
@@ -108,31 +108,31 @@ def info_text(found: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
     return "\n".join(lines)
 
 
-def lost_text(found: Bag) -> str:
+def lost_text(opened: Bag) -> str:
     """Return in one line what the recorder of a bag has lost."""
-    if found.losses is None:
+    if opened.losses is None:
         return "not known: its recorder does not say"
     return (
         "; ".join(
             f"{name}: {lost.in_transport} in transport, {lost.in_recorder} in recorder"
-            for name, lost in sorted(found.losses.items())
+            for name, lost in sorted(opened.losses.items())
         )
         or "nothing"
     )
 
 
-def info_record(found: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
+def info_record(opened: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
     """Return what a bag has, as a record."""
     return {
-        "path": str(found.path),
-        "start_ns": found.start_ns,
-        "end_ns": found.end_ns,
-        "duration_ns": found.duration.nanoseconds,
-        "message_count": found.message_count,
-        "custom_data": found.custom_data,
+        "path": str(opened.path),
+        "start_ns": opened.start_ns,
+        "end_ns": opened.end_ns,
+        "duration_ns": opened.duration.nanoseconds,
+        "message_count": opened.message_count,
+        "custom_data": opened.custom_data,
         "lost": None
-        if found.losses is None
-        else {name: lost._asdict() for name, lost in found.losses.items()},
+        if opened.losses is None
+        else {name: lost._asdict() for name, lost in opened.losses.items()},
         "topics": [
             {
                 "name": topic.name,

@@ -44,8 +44,8 @@ def diff_command(
     from aionode.bag import compare  # the extra `bag` may be missing
 
     output = Output(json=json)
-    found = compare(a, b, tolerance, time_tolerance_sec=time_tolerance, limit=limit)
-    for difference in found:
+    differences = compare(a, b, tolerance, time_tolerance_sec=time_tolerance, limit=limit)
+    for difference in differences:
         record = {
             "topic": difference.topic,
             "time_ns": difference.time_ns,
@@ -54,9 +54,9 @@ def diff_command(
             "b": difference.right,
         }
         output.item(str(difference), record)
-    if not found:
+    if not differences:
         output.text("no differences")
-    raise click.exceptions.Exit(1 if found else 0)
+    raise click.exceptions.Exit(1 if differences else 0)
 
 
 @click.command("shrink", context_settings={"ignore_unknown_options": True})

@@ -125,11 +125,11 @@ def file_of_package(package: str, name: str, workspace: str | None) -> str:
     from aionode.launch import share_directory
 
     share = share_directory(package, workspace)
-    found = sorted(file for file in share.rglob(name) if file.is_file())
-    if len(found) == 1:
-        return str(found[0])
-    if found:
-        places = ", ".join(str(file.relative_to(share)) for file in found)
+    files = sorted(file for file in share.rglob(name) if file.is_file())
+    if len(files) == 1:
+        return str(files[0])
+    if files:
+        places = ", ".join(str(file.relative_to(share)) for file in files)
         raise CommandError(f"{package}: {name} is there more than once: {places}; give its path")
     endings = ("launch.py", "launch.xml", "launch.yaml", "launch.yml", ".launch")
     known = sorted(file.name for file in share.rglob("*launch*") if file.name.endswith(endings))
@@ -197,8 +197,8 @@ def run_real(path: str, values: dict[str, str]) -> None:
 
 def is_installed(package: str) -> bool:
     """Return whether a package is there that is not aionode's, which says so at its beginning."""
-    found = PathFinder.find_spec(package)
-    if found is None or found.origin is None:
+    spec = PathFinder.find_spec(package)
+    if spec is None or spec.origin is None:
         return False
-    text = Path(found.origin).read_text(encoding="utf-8", errors="replace")
+    text = Path(spec.origin).read_text(encoding="utf-8", errors="replace")
     return "aionode" not in text[:300]

@@ -87,8 +87,8 @@ async def ask(node: Node, system: str, verb: str, member: str = "") -> list[dict
     response = await client.call(request, timeout_sec=ANSWER_S)
     if not response.success:
         raise CommandError(response.text)
-    found: list[dict[str, Any]] = json.loads(response.text)
-    return found
+    members: list[dict[str, Any]] = json.loads(response.text)
+    return members
 
 
 @command(system_command, "list")

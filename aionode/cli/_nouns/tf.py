@@ -83,18 +83,22 @@ async def echo(
             output.warn(text)
     while True:
         try:
-            found = buffer.lookup_transform(source_frame, target_frame)
+            transform = buffer.lookup_transform(source_frame, target_frame)
         except TransformException as error:
             output.warn(f"Exception thrown: {error}")
         else:
-            output.item(echo_text(found), record_of(found))
+            output.item(echo_text(transform), record_of(transform))
         await node.get_clock().sleep(1 / rate)
 
 
-def echo_text(found: TransformStamped) -> str:
+def echo_text(transform: TransformStamped) -> str:
     """Return a transform as tf2_echo prints it."""
-    stamp, moved, turned = found.header.stamp, found.transform.translation, found.transform.rotation
-    matrix = matrix_of(pose_of(found))
+    stamp, moved, turned = (
+        transform.header.stamp,
+        transform.transform.translation,
+        transform.transform.rotation,
+    )
+    matrix = matrix_of(pose_of(transform))
     angles = roll_pitch_yaw(matrix)
     rows = [
         *([*row, offset] for row, offset in zip(matrix, (moved.x, moved.y, moved.z), strict=True)),
@@ -130,17 +134,21 @@ def roll_pitch_yaw(matrix: Matrix) -> tuple[float, float, float]:
     )
 
 
-def record_of(found: TransformStamped) -> dict[str, Any]:
+def record_of(transform: TransformStamped) -> dict[str, Any]:
     """Return a transform as a record."""
-    stamp, moved, turned = found.header.stamp, found.transform.translation, found.transform.rotation
+    stamp, moved, turned = (
+        transform.header.stamp,
+        transform.transform.translation,
+        transform.transform.rotation,
+    )
     return {
-        "parent": found.header.frame_id,
-        "child": found.child_frame_id,
+        "parent": transform.header.frame_id,
+        "child": transform.child_frame_id,
         "sec": stamp.sec,
         "nanosec": stamp.nanosec,
         "translation": [moved.x, moved.y, moved.z],
         "rotation": [turned.x, turned.y, turned.z, turned.w],
-        "rpy": list(roll_pitch_yaw(matrix_of(pose_of(found)))),
+        "rpy": list(roll_pitch_yaw(matrix_of(pose_of(transform)))),
     }
 
 

@@ -82,16 +82,16 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
 def roots(edges: Sequence[FrameEdge]) -> list[str]:
     """Return the frames without parents; of a loop, one of its frames."""
     children = {edge.child for edge in edges}
-    found = sorted({edge.parent for edge in edges} - children)
-    reached = set(found)
-    for root in found:
+    heads = sorted({edge.parent for edge in edges} - children)
+    reached = set(heads)
+    for root in heads:
         reached.update(name for _, name, _ in walked(edges, root))
     for edge in edges:
         if edge.child not in reached:  # only a loop is left
-            found.append(edge.child)
+            heads.append(edge.child)
             reached.add(edge.child)
             reached.update(name for _, name, _ in walked(edges, edge.child))
-    return found
+    return heads
 
 
 def walked(edges: Sequence[FrameEdge], root: str) -> Iterator[tuple[str, str, FrameEdge]]:
@@ -120,9 +120,11 @@ def as_text(edges: Sequence[FrameEdge]) -> str:
     lines = []
     for root in roots(edges):
         lines.append(root)
-        found = list(walked(edges, root))
-        width = max((len(prefix) + len(name) for prefix, name, _ in found), default=0)
-        lines += [f"{prefix + name:{width}}  {edge.facts()}" for prefix, name, edge in found]
+        lines_of_tree = list(walked(edges, root))
+        width = max((len(prefix) + len(name) for prefix, name, _ in lines_of_tree), default=0)
+        lines += [
+            f"{prefix + name:{width}}  {edge.facts()}" for prefix, name, edge in lines_of_tree
+        ]
     return "\n".join(lines)
 
 

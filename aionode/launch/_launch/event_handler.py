@@ -22,12 +22,12 @@ def entities_of(result: Any) -> list[LaunchDescriptionEntity]:
         return [result]
     if not isinstance(result, Iterable):
         raise TypeError(f"expected launch actions, got {result!r}")
-    found: list[LaunchDescriptionEntity] = []
+    entities: list[LaunchDescriptionEntity] = []
     for entity in result:
         if not isinstance(entity, LaunchDescriptionEntity):
             raise TypeError(f"expected launch actions, got {entity!r} among them")
-        found.append(entity)
-    return found
+        entities.append(entity)
+    return entities
 
 
 class BaseEventHandler:

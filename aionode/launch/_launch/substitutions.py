@@ -260,10 +260,10 @@ class FindExecutable(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
         name = perform_substitutions(context, self.name)
-        found = shutil.which(name, path=context.environment.get("PATH"))
-        if found is None:
+        program = shutil.which(name, path=context.environment.get("PATH"))
+        if program is None:
             raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
-        return found
+        return program
 
 
 class FileContent(Substitution):

@@ -96,10 +96,10 @@ def values_in_file(content: Mapping[str, Any], name: str, namespace: str) -> dic
     """Return what a parameter file has for a node: for all nodes, and then for this one."""
     by_node = dict(sections(content))
     own = f"{namespace.strip('/')}/{name}".strip("/")
-    found: dict[str, Any] = {}
+    parameters: dict[str, Any] = {}
     for key in ("**", f"**/{name}", own):
-        found.update(flat(by_node.get(key, {})))
-    return found
+        parameters.update(flat(by_node.get(key, {})))
+    return parameters
 
 
 def sections(content: Mapping[str, Any], path: str = "") -> Iterable[tuple[str, Any]]:
@@ -113,10 +113,10 @@ def sections(content: Mapping[str, Any], path: str = "") -> Iterable[tuple[str, 
 
 def flat(values: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
     """Return nested parameters by their full names."""
-    found: dict[str, Any] = {}
+    flattened: dict[str, Any] = {}
     for key, value in values.items():
         if isinstance(value, Mapping):
-            found.update(flat(value, f"{prefix}{key}."))
+            flattened.update(flat(value, f"{prefix}{key}."))
         else:
-            found[f"{prefix}{key}"] = value
-    return found
+            flattened[f"{prefix}{key}"] = value
+    return flattened

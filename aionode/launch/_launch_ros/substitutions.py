@@ -82,13 +82,13 @@ class ExecutableInPackage(Substitution):
 
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
-        found = context.packages.executable(*self.names(context))
-        if found.root is not None:
+        program = context.packages.executable(*self.names(context))
+        if program.root is not None:
             raise SubstitutionFailure(
-                f"{found.name} of {found.package} is a function, {found.target}, until the package "
-                "is built; it has no path, and fits as the first word of a command"
+                f"{program.name} of {program.package} is a function, {program.target}, until the "
+                "package is built; it has no path, and fits as the first word of a command"
             )
-        return found.target
+        return program.target
 
 
 class Parameter(Substitution):

@@ -125,13 +125,13 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
     try:
         with suppress(FileExistsError):
             folder.mkdir(mode=0o700)
-        found = folder.lstat()
+        status = folder.lstat()
     except OSError as error:
         raise TransportError(f"link: {folder} cannot be used: {error}") from error
     if (
-        not stat.S_ISDIR(found.st_mode)
-        or found.st_uid != os.getuid()
-        or stat.S_IMODE(found.st_mode) & 0o077
+        not stat.S_ISDIR(status.st_mode)
+        or status.st_uid != os.getuid()
+        or stat.S_IMODE(status.st_mode) & 0o077
     ):
         raise TransportError(
             f"link: {folder} is not a folder that only this user can enter; remove it, or set "

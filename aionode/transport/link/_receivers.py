@@ -77,10 +77,10 @@ class ReceiverTable:
 
     def clear(self) -> list[Receiver]:
         """Remove and return all of them: the link has ended."""
-        found = [receiver for many in self._receivers.values() for receiver in many.values()]
+        receivers = [receiver for many in self._receivers.values() for receiver in many.values()]
         self._receivers.clear()
         self.handlers.clear()
-        return found
+        return receivers
 
 
 def handler_for(receivers: dict[bytes, Receiver]) -> Handler:

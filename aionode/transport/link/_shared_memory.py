@@ -231,16 +231,16 @@ class BufferMappings:
                 os.close(fd)
                 raise FrameError(f"more than {MAX_MAPPINGS} shared buffers")
             self._maps[number] = sealed_map(fd, size)
-        found = self._maps.get(number)
-        if found is None:
+        mapping = self._maps.get(number)
+        if mapping is None:
             raise FrameError(f"shared buffer {number}, whose descriptor never came")
-        if not 0 < size <= len(found):
-            raise FrameError(f"a payload of {size} bytes in a shared buffer of {len(found)}")
+        if not 0 < size <= len(mapping):
+            raise FrameError(f"a payload of {size} bytes in a shared buffer of {len(mapping)}")
         import numpy as np
 
         # A slice of a view keeps only the object behind the view alive. So each payload gets an
         # object of its own, which can also be weakly referenced; a mapping is shared by payloads.
-        payload: Any = np.frombuffer(found, np.uint8, size)
+        payload: Any = np.frombuffer(mapping, np.uint8, size)
         watch = weakref.ref(payload, self._on_gone)  # weakref.finalize costs three times as much
         self._watched[id(watch)] = watch, done
         return memoryview(payload)
@@ -273,11 +273,11 @@ def sealed_map(fd: int, size: int) -> mmap.mmap:
         seals = fcntl.fcntl(fd, fcntl.F_GET_SEALS)
         whole = os.fstat(fd).st_size
         fits = seals & SEALS == SEALS and 0 < size <= whole
-        found = mmap.mmap(fd, whole, mmap.MAP_SHARED, mmap.PROT_READ) if fits else None
+        mapping = mmap.mmap(fd, whole, mmap.MAP_SHARED, mmap.PROT_READ) if fits else None
     except OSError as error:
         raise FrameError(f"a shared buffer cannot be mapped: {error}") from error
     finally:
         os.close(fd)
-    if found is None:
+    if mapping is None:
         raise FrameError(f"a shared buffer is not sealed, or smaller than {size} bytes")
-    return found
+    return mapping

@@ -180,28 +180,30 @@ class RclGraphWatcher:
         for node in nodes:
             graph.add_node(node)
         yield
-        found: dict[bytes, EndpointInfo] = {}
+        endpoints: dict[bytes, EndpointInfo] = {}
         incomplete = False
         with asker:
             topics = rcl.module.rclpy_get_topic_names_and_types(asker, False)
         for topic, _ in topics:
             for kind in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
-                incomplete |= not self._ask_topic(rcl, asker, kind, topic, by_name, found)
+                incomplete |= not self._ask_topic(rcl, asker, kind, topic, by_name, endpoints)
             yield
         for node in nodes:
             for kind in SERVICE_KINDS:
-                incomplete |= not self._ask_services(rcl, asker, kind, node, found)
+                incomplete |= not self._ask_services(rcl, asker, kind, node, endpoints)
             yield
-        self._enter(graph, nodes, found)
+        self._enter(graph, nodes, endpoints)
         self._incomplete = self._incomplete + 1 if incomplete else 0
 
-    def _enter(self, graph: Graph, nodes: list[NodeInfo], found: dict[bytes, EndpointInfo]) -> None:
+    def _enter(
+        self, graph: Graph, nodes: list[NodeInfo], endpoints: dict[bytes, EndpointInfo]
+    ) -> None:
         """Enter what has changed since the last round."""
         for gid, endpoint in list(self._endpoints.items()):
-            if gid not in found:
+            if gid not in endpoints:
                 del self._endpoints[gid]
                 graph.remove_endpoint(endpoint)
-        for gid, endpoint in found.items():
+        for gid, endpoint in endpoints.items():
             if gid not in self._endpoints:
                 self._endpoints[gid] = endpoint
                 graph.add_endpoint(endpoint)
@@ -241,7 +243,7 @@ class RclGraphWatcher:
         kind: EndpointKind,
         topic: str,
         nodes: dict[tuple[str, str], NodeInfo],
-        found: dict[bytes, EndpointInfo],
+        endpoints: dict[bytes, EndpointInfo],
     ) -> bool:
         """Find the endpoints of a topic; return whether all of their nodes are known."""
         ask = (
@@ -264,7 +266,7 @@ class RclGraphWatcher:
                     continue
                 endpoint = self._endpoint(kind, node, topic, info, gid)
             if endpoint is not None:
-                found[gid] = endpoint
+                endpoints[gid] = endpoint
         return complete
 
     def _endpoint(
@@ -295,7 +297,7 @@ class RclGraphWatcher:
         asker: Any,
         kind: EndpointKind,
         node: NodeInfo,
-        found: dict[bytes, EndpointInfo],
+        endpoints: dict[bytes, EndpointInfo],
     ) -> bool:
         """Find the servers or clients of a node; return whether it is still there.
 
@@ -328,5 +330,5 @@ class RclGraphWatcher:
                         qos=qos_profile_services_default,
                         gid=gid,
                     )
-                found[gid] = endpoint
+                endpoints[gid] = endpoint
         return True

@@ -67,11 +67,11 @@ def with_endpoints(module: Any, asker: Any) -> set[bytes]:
     """Return all participants that have been discovered with an endpoint; dearer to find."""
     with asker:
         topics = module.rclpy_get_topic_names_and_types(asker, True)
-    found: set[bytes] = set()
+    prefixes_found: set[bytes] = set()
     for topic, _ in topics:
-        found |= prefixes(module.rclpy_get_publishers_info_by_topic, asker, topic)
-        found |= prefixes(module.rclpy_get_subscriptions_info_by_topic, asker, topic)
-    return found
+        prefixes_found |= prefixes(module.rclpy_get_publishers_info_by_topic, asker, topic)
+        prefixes_found |= prefixes(module.rclpy_get_subscriptions_info_by_topic, asker, topic)
+    return prefixes_found
 
 
 def prefixes(ask: Callable[..., Any], asker: Any, topic: str) -> set[bytes]:

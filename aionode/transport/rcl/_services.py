@@ -303,11 +303,11 @@ class RclRequester(RclDeclaration, Requester):
         rcl = self.state.rcl
         if rcl is None or self._handle is None:
             return True  # then sending fails
-        found = c_bool(False)
+        answer = c_bool(False)
         node = self.state.node(self.endpoint.node)
-        if rcl.is_available(node.pointer, self._handle.pointer, byref(found)):
+        if rcl.is_available(node.pointer, self._handle.pointer, byref(answer)):
             rcl.forget_error()
-        return bool(found)
+        return bool(answer)
 
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:  # noqa: ARG002  # DDS numbers them
         """Send `request` to every server."""

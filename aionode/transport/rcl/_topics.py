@@ -285,10 +285,10 @@ class RclReader(RclDeclaration):
             return None
         name = self.endpoint.name
         with node:
-            found = rcl.module.rclpy_get_subscriptions_info_by_topic(node, name, False)
+            infos = rcl.module.rclpy_get_subscriptions_info_by_topic(node, name, False)
         known = {info.gid for info in graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)}
         known |= self.state.own_gids
-        for info in found:
+        for info in infos:
             gid = bytes(info["endpoint_gid"])
             names = (info["node_name"], info["node_namespace"])
             own = (self.endpoint.node.name, self.endpoint.node.namespace)

@@ -78,14 +78,14 @@ def find(type_name: str) -> Any:
     """
     package, kind, name = type_name.split("/")
     try:
-        found: Any = importlib.import_module(f"{package}.{kind}")
+        interface: Any = importlib.import_module(f"{package}.{kind}")
         part = name.rpartition("_")[2]
         whole = name.removesuffix(f"_{part}") if kind != "msg" and part in PARTS else name
         suffix = next((end for end in IMPLEMENTED if whole.endswith(end)), "")
-        found = getattr(found, whole.removesuffix(suffix) if kind == "action" else whole)
+        interface = getattr(interface, whole.removesuffix(suffix) if kind == "action" else whole)
         if kind == "action" and suffix:
-            found = getattr(found.Impl, IMPLEMENTED[suffix])
-        return found if whole == name else getattr(found, part)
+            interface = getattr(interface.Impl, IMPLEMENTED[suffix])
+        return interface if whole == name else getattr(interface, part)
     except (ImportError, AttributeError) as error:
         raise TransportError(
             f"{type_name}: the installed ROS has no such type ({error}); transport=rcl sends only "
@@ -110,8 +110,10 @@ def type_hash_of(cls: Any) -> str:
     address = ctypes.cast(support, POINTER(c_void_p))[index]
     if not address:
         return ""
-    found = CFUNCTYPE(POINTER(TypeHash), c_void_p)(address)(support)
-    return hash_text(found.contents.version, bytes(found.contents.value)) if found else ""
+    type_hash = CFUNCTYPE(POINTER(TypeHash), c_void_p)(address)(support)
+    return (
+        hash_text(type_hash.contents.version, bytes(type_hash.contents.value)) if type_hash else ""
+    )
 
 
 def hash_text(version: int, value: bytes) -> str:

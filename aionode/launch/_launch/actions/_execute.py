@@ -128,14 +128,14 @@ class ExecuteLocal(Action):
 
     def _limits(self, context: LaunchContext) -> dict[str, float]:
         """Return how long signals are waited for, in seconds, as far as that is said."""
-        found = {}
+        times = {}
         for name, option in (("sigterm", "term_after_sec"), ("sigkill", "kill_after_sec")):
             configured = context.launch_configurations.get(f"{name}_timeout")
             given = getattr(self, f"{name}_timeout")
             given = configured if given is None else given
             if given is not None:
-                found[option] = self._number(context, f"{name}_timeout", given)
-        return found
+                times[option] = self._number(context, f"{name}_timeout", given)
+        return times
 
     def _number(self, context: LaunchContext, name: str, given: Any) -> float:
         try:

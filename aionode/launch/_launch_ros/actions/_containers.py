@@ -78,5 +78,5 @@ def components_of(
     context: LaunchContext, descriptions: Iterable[ComposableNode]
 ) -> list[Component]:
     """Return the nodes whose conditions hold."""
-    found = (description.component(context) for description in descriptions)
-    return [component for component in found if component is not None]
+    components = (description.component(context) for description in descriptions)
+    return [component for component in components if component is not None]
