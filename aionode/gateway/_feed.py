@@ -80,6 +80,10 @@ class Received:
             self._message = cdr.decode(self.message_class, self.raw)
         return self._message
 
+    def has(self, key: Hashable) -> bool:
+        """Return whether `once` has made something for a key."""
+        return key in self._kinds
+
     def once(self, key: Hashable, make: Callable[[Received], T]) -> T:
         """Return what `make` returns, which is called once for each key, whoever asks.
 

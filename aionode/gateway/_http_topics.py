@@ -19,6 +19,7 @@ from aionode.gateway._http_answers import (
     json_response,
 )
 from aionode.gateway._image import BOUNDARY, IMAGE_TYPES, part_of, picture_of
+from aionode.gateway._large_json import prepare_json
 from aionode.gateway._rosbridge_values import json_of
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ async def answer_topic(asked: Asked) -> Response:
     newest = await Newest.of(asked, topic)
     received = await newest.within(asked.number("timeout_sec", WAIT_SEC, MOST_SEC))
     if media_type == "application/json":
-        return json_response(received.once("json", lambda each: json_of(each.message)))
+        return json_response(await asked.session.json_of(received))
     picture = await picture_or_refusal(received)
     if media_type == PICTURES:
         boundary = f"{PICTURES}; boundary={BOUNDARY}"
@@ -86,6 +87,7 @@ async def events(asked: Asked, topic: str) -> Response:
         key=topic,
         depth=round(asked.number("depth", 10, 1000)) or 1,
         min_period_sec=asked.number("min_period_sec", 0.0, MOST_SEC),
+        prepare=prepare_json,
     )
     return Stream(asked.session, frames(asked.session.outbox), EVENTS, first=ALIVE, alive=ALIVE)
 

@@ -48,6 +48,7 @@ class Outbox:
         self._turns: deque[Hashable] = deque()  # each key that has frames, once
         self._filled = asyncio.Event()
         self._closed = False
+        self._is_leaving = False  # a frame, which none of a later message may overtake
 
     @property
     def waiting_bytes(self) -> int:
@@ -64,7 +65,7 @@ class Outbox:
         """
         if self._closed:
             return
-        if self.direct is not None and not self._turns and not self._answers and self.direct(frame):
+        if self.direct is not None and self._is_empty() and self.direct(frame):
             self.sent += 1
             return
         queue = self._queues.setdefault(key, deque())
@@ -118,7 +119,12 @@ class Outbox:
                 await self._filled.wait()
             else:
                 self.sent += 1
+                self._is_leaving = True
                 yield frame
+                self._is_leaving = False
+
+    def _is_empty(self) -> bool:
+        return not (self._turns or self._answers or self._is_leaving)
 
     def _next(self) -> Frame | None:
         if self._answers:

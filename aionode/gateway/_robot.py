@@ -37,8 +37,11 @@ class Robot:
         node: The node of the gateway.
         policy: Who may do what.
         audit: The audit log.
-        tasks: Run the leases.
+        tasks: Run the leases, and encode large messages.
         ask: Asks a person; None if there is nobody to ask.
+
+    Attributes:
+        turn: Held by who encodes a large message: one at a time.
     """
 
     def __init__(
@@ -52,6 +55,8 @@ class Robot:
         self.node = node
         self.policy = policy
         self.audit = audit
+        self.tasks = tasks
+        self.turn = asyncio.Lock()
         self.ask = ask
         self.time_base = node.context.time_base
         self.clock = SteadyClock(time_base=self.time_base)

@@ -11,6 +11,8 @@ from typing import Any, Final
 import cbor2
 import msgspec
 
+from aionode._concurrency import run_in_thread
+from aionode.gateway._large_json import base64_in_turns
 from aionode.gateway._rosbridge_values import cbor_values, json_of
 from aionode.message import Message
 
@@ -22,6 +24,7 @@ __all__ = [
     "json_frame",
     "op_frame",
     "png_frame",
+    "png_frame_in_turns",
 ]
 
 PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
@@ -35,11 +38,12 @@ def op_frame(op: dict[str, Any]) -> str:
     return msgspec.json.encode(op).decode()
 
 
-def json_frame(topic: str, message: Message) -> str:
-    """Return a message of a topic as JSON."""
+def json_frame(topic: str, message: Message | bytes) -> str:
+    """Return a message of a topic as JSON, from the message or its JSON."""
     head = msgspec.json.encode({"op": "publish", "topic": topic})
+    values = message if isinstance(message, bytes) else json_of(message)
     # The message is copied once: it may be an image.
-    return b"".join((head[:-1], b',"msg":', json_of(message), b"}")).decode()
+    return b"".join((head[:-1], b',"msg":', values, b"}")).decode()
 
 
 def cbor_frame(topic: str, message: Message) -> bytes:
@@ -63,14 +67,26 @@ def cbor_raw_frame(topic: str, data: bytes | memoryview, time_ns: int) -> bytes:
 
 
 def png_frame(text: str) -> str:
-    """Return a frame of JSON as a PNG of three bytes in each pixel, compressed, in base64."""
+    """Return a frame of JSON as a PNG, compressed, in base64."""
+    return op_frame({"op": "png", "data": base64.b64encode(png_of(text)).decode()})
+
+
+async def png_frame_in_turns(text: str) -> str:
+    """Return what `png_frame` does, of long text, while the event loop turns."""
+    picture = await run_in_thread(png_of, text)
+    parts = await base64_in_turns(memoryview(picture))
+    return b"".join((b'{"op":"png","data":"', *parts, b'"}')).decode()
+
+
+def png_of(text: str) -> bytes:
+    """Return text as a PNG of three bytes in each pixel."""
     data = text.encode()
     width = max(math.isqrt(-(-len(data) // 3)), 1)
     stride = 3 * width
     height = -(-len(data) // stride)
     data = data.ljust(height * stride, b"\n")
     rows = b"".join(b"\0" + data[at : at + stride] for at in range(0, len(data), stride))
-    picture = b"".join(
+    return b"".join(
         (
             PNG_SIGNATURE,
             png_chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)),
@@ -78,7 +94,6 @@ def png_frame(text: str) -> str:
             png_chunk(b"IEND", b""),
         )
     )
-    return op_frame({"op": "png", "data": base64.b64encode(picture).decode()})
 
 
 def png_chunk(kind: bytes, data: bytes) -> bytes:

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
+from aionode.gateway._large_json import prepare_json
 from aionode.gateway._rosbridge_frames import (
     Fragmented,
     cbor_frame,
     cbor_raw_frame,
     json_frame,
     png_frame,
+    png_frame_in_turns,
 )
 from aionode.gateway._rosbridge_request import (
     number,
@@ -24,11 +26,13 @@ from aionode.gateway._rosbridge_request import (
     type_text,
     values,
 )
+from aionode.gateway._rosbridge_values import json_of
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 if TYPE_CHECKING:
     from aionode.gateway._feed import Received
     from aionode.gateway._outbox import Frame
+    from aionode.gateway._preparing import Prepare
     from aionode.gateway._rosbridge_link import Link
     from aionode.gateway._session_topics import Subscribed
 
@@ -209,6 +213,7 @@ class Topics:
             topic,
             wish.type_name,
             frame=self._frames(topic, wish),
+            prepare=prepare_of(wish.compression, topic),
             key=("rosbridge", topic, queue),
             depth=wish.depth,
             qos=wish.qos,
@@ -247,13 +252,29 @@ def frame_of(compression: str, topic: str, received: Received) -> str | bytes:
         return cbor_raw_frame(topic, received.raw, received.time_ns)
     if compression == "cbor":
         return cbor_frame(topic, received.message)
-    frame = received.once(("rosbridge", "json", topic), partial(plain_frame, topic))
+    frame = json_frame(topic, received.once("json", plain_json))
     return png_frame(frame) if compression == "png" else frame
 
 
-def plain_frame(topic: str, received: Received) -> str:
+def prepare_of(compression: str, topic: str) -> Prepare | None:
+    """Return what encodes large messages; None if that takes next to no time."""
+    if compression == "none":
+        return prepare_json
+    return partial(prepare_png, topic) if compression == "png" else None
+
+
+async def prepare_png(topic: str, received: Received) -> None:
+    """Make the picture of a large message; compressing it takes most of a second."""
+    kind = ("rosbridge", "png", topic)
+    if not received.has(kind):
+        await prepare_json(received)
+        frame = await png_frame_in_turns(json_frame(topic, received.once("json", plain_json)))
+        received.once(kind, lambda _: frame)
+
+
+def plain_json(received: Received) -> bytes:
     """Return a message as JSON."""
-    return json_frame(topic, received.message)
+    return json_of(received.message)
 
 
 def refuse_more(ids: Collection[str | None], message_id: str | None, field: str) -> None:

@@ -205,15 +205,18 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         Raises:
             ClientDisconnected: it has left.
         """
-        await self.writable.wait()
-        if self.disconnected or not self.send_now(frame):
+        while not self.writable.is_set():
+            await self.writable.wait()
+        if not self._is_open():
             raise ClientDisconnected
+        self._outgoing.send(self._framing.parts(frame))
+
+    def _is_open(self) -> bool:
+        return self.handshake_complete and not (self.close_sent or self.transport.is_closing())
 
     def send_now(self, frame: bytes | str) -> bool:
         """Send a frame, if its client has read enough of the earlier ones; return whether."""
-        if not (self.handshake_complete and self.writable.is_set()) or self.close_sent:
-            return False
-        if self.transport.is_closing():
+        if not (self.writable.is_set() and self._is_open()):
             return False
         if type(frame) is not bytes and type(frame) is not str:  # a frame in parts
             return False

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.clock import S_TO_NS, Duration
 from aionode.errors import AionodeError, RefusedError
 from aionode.gateway._command import check_age
+from aionode.gateway._large_json import prepare_json
+from aionode.gateway._preparing import Preparing, prepared
+from aionode.gateway._rosbridge_values import json_of
 from aionode.gateway._session_base import SessionBase, as_message
 from aionode.message import Message
 from aionode.qos import DurabilityPolicy, QoSProfile
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
     from aionode.gateway._feed import Received
     from aionode.gateway._outbox import Frame
     from aionode.gateway._policy import Decision
+    from aionode.gateway._preparing import Prepare
 
 __all__ = ["SessionTopics", "Subscribed"]
 
@@ -48,6 +52,7 @@ class Subscribed:
         key: Hashable,
         depth: int,
         min_period_sec: float,
+        prepare: Prepare | None,
     ) -> None:
         self.topic = topic
         self.message_class = message_class
@@ -60,12 +65,27 @@ class Subscribed:
         self._min_period_ns = round(min_period_sec * S_TO_NS)
         self._due_ns = 0
         self._leave: Callable[[], None] | None = None
+        self._preparing: Preparing | None = None
+        if prepare is not None:
+            self._preparing = Preparing(session._robot, prepare, self._deliver, depth)
+
+    @property
+    def dropped(self) -> int:
+        """How many messages were dropped, as encoding them or the client was too slow."""
+        unprepared = 0 if self._preparing is None else self._preparing.dropped
+        return unprepared + self._session.outbox.dropped.get(self._key, 0)
 
     def _take(self, received: Received) -> None:
         if self._min_period_ns:
             if received.time_ns < self._due_ns:
                 return
             self._due_ns = received.time_ns + self._min_period_ns
+        if self._preparing is None:
+            self._deliver(received)
+        else:
+            self._preparing.put(received)
+
+    def _deliver(self, received: Received) -> None:
         try:
             frame = self._frame(received)
         except (AionodeError, ValueError):
@@ -79,6 +99,8 @@ class Subscribed:
         if self._leave is not None:
             self._leave()
             self._leave = None
+            if self._preparing is not None:
+                self._preparing.close()
             self._session._subscribed.pop(self, None)
             self._session.outbox.discard(self._key)
 
@@ -103,6 +125,7 @@ class SessionTopics(SessionBase):
         depth: int = 10,
         qos: QoSProfile | None = None,
         min_period_sec: float = 0.0,
+        prepare: Prepare | None = None,
     ) -> Subscribed:
         """Have each message of a topic put into the outbox.
 
@@ -114,6 +137,8 @@ class SessionTopics(SessionBase):
             depth: How many frames may wait there.
             qos: The profile; by default the strongest that all publishers offer.
             min_period_sec: The shortest time between two messages, in seconds; others are left out.
+            prepare: Encodes a large message, so that `frame` has little left to do; see
+                `Preparing`.
 
         Raises:
             RefusedError: the policy does not allow it, or there are too many.
@@ -127,7 +152,9 @@ class SessionTopics(SessionBase):
         self.decide("subscribe", topic, "")  # before anybody is asked for a type
         message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
         await self._allow("subscribe", topic, message_class.__ros_type__, None)
-        subscribed = Subscribed(self, topic, message_class, frame, key, depth, min_period_sec)
+        subscribed = Subscribed(
+            self, topic, message_class, frame, key, depth, min_period_sec, prepare
+        )
         self._subscribed[subscribed] = None
         subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed._take)
         self._robot.audit.note(self.identity, "subscribe", topic, way=self.kind)
@@ -221,11 +248,22 @@ class SessionTopics(SessionBase):
                   time_base=self._robot.time_base)  # fmt: skip
         await commands.publish(publisher, self.owner, self.identity, lease, decision.message)
 
+    async def json_of(self, received: Received) -> bytes:
+        """Return the JSON of a message of a topic, which is written once for all clients.
+
+        The event loop turns while a large one is written.
+
+        Raises:
+            DecodeError: the bytes are no message of its type (a ValueError).
+        """
+        await prepared(self._robot, prepare_json, received)
+        return received.once("json", lambda each: json_of(each.message))
+
     def dropped(self) -> dict[str, int]:
         """Return how many frames of each topic were dropped, as the client was too slow."""
         found: dict[str, int] = defaultdict(int)
         for subscribed in self._subscribed:
-            found[subscribed.topic] += self.outbox.dropped.get(subscribed._key, 0)
+            found[subscribed.topic] += subscribed.dropped
         return dict(found)
 
     def arrival_ns(self) -> int:
