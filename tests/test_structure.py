@@ -215,23 +215,94 @@ THREADS_AND_LOCKS = {
 """What makes a thread, or a lock between threads; and `run_in_executor` of every loop."""
 
 
-def test_the_design_names_each_module_that_makes_a_thread_or_a_lock() -> None:
-    """Whoever makes one adds its row to the table: who owns it, what it guards, who takes it."""
+LOCKS = {name for name in THREADS_AND_LOCKS if re.search("ock|Condition|Semaphore|Barrier", name)}
+
+
+def rows_on_threads_and_locks() -> list[str]:
+    """Return the rows of the tables in the design."""
     page = (ROOT.parent / "docs/design.md").read_text(encoding="utf-8")
     section = page.partition("\n## Threads and locks\n")[2].partition("\n## ")[0]
-    rows = [row for row in section.splitlines() if row.startswith("|")]
+    return [row for row in section.splitlines() if row.startswith("|")]
+
+
+def test_the_design_names_each_module_that_makes_a_thread_or_a_lock() -> None:
+    """Whoever makes one adds its row to the table: who owns it, what it guards, who takes it."""
+    rows = rows_on_threads_and_locks()
     named = {file for row in rows for file in re.findall(r"`([\w/]+\.py)`", row)}
     making = {path.relative_to(ROOT).as_posix() for path in MODULES if makes_threads(path)}
 
     assert making == named
 
 
-def makes_threads(path: Path) -> bool:
-    """Return whether a module makes threads, or locks between threads."""
+def test_the_design_has_the_name_of_each_thread() -> None:
+    """A reader who sees a thread in a debugger, or in ``ps -L``, looks it up by its name."""
+    shown = {name for row in rows_on_threads_and_locks() for name in re.findall(r"`([\w-]+)`", row)}
+    given = {name for path in MODULES for name in names_of_threads(path)}
+
+    assert given <= shown
+
+
+def names_of_threads(path: Path) -> set[str]:
+    """Return the names that a module gives to threads: arguments called name, or of SendThread."""
+    tree = parsed_if_it_has_threads(path)
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+    makers = [call for call in calls if ast.unparse(call.func).endswith("Thread")]
+    values = [
+        value
+        for call in makers
+        for value in [*call.args[:1], *(word.value for word in call.keywords if word.arg == "name")]
+    ]
+    return {
+        value.value
+        for value in values
+        if isinstance(value, ast.Constant) and isinstance(value.value, str)
+    }
+
+
+@cache
+def parsed_if_it_has_threads(path: Path) -> ast.Module:
+    """Return the tree of a module; an empty one if it has no word of threads."""
     text = path.read_text(encoding="utf-8")
-    if not re.search(r"thread|Executor|run_in_executor", text):
-        return False  # to parse all modules takes seconds
-    tree = ast.parse(text)
+    # To parse all modules takes seconds.
+    return ast.parse(text if re.search(r"[tT]hread|Executor|run_in_executor", text) else "")
+
+
+def test_the_design_names_each_lock() -> None:
+    """One row may stand for all locks of a kind in its modules; else each has its own."""
+    unnamed = []
+    for path in MODULES:
+        file = path.relative_to(ROOT).as_posix()
+        rows = [row for row in rows_on_threads_and_locks() if f"`{file}`" in row]
+        of_a_kind = any(row.startswith(("| those ", "| one for each ")) for row in rows)
+        unnamed += [
+            f"{file}: {lock}"
+            for lock in locks_of(path)
+            if not of_a_kind and not any(f"`{lock}`" in row for row in rows)
+        ]
+
+    assert unnamed == []
+
+
+def locks_of(path: Path) -> set[str]:
+    """Return the locks that a module assigns to something: ``Class._lock``, or ``LOCK``."""
+    tree = parsed_if_it_has_threads(path)
+    names = imported_names(tree)
+    holders = [tree, *(node for node in ast.walk(tree) if isinstance(node, ast.ClassDef))]
+    found: dict[ast.AST, str] = {}
+    for holder in holders:  # a class comes after what it is in
+        prefix = f"{holder.name}." if isinstance(holder, ast.ClassDef) else ""
+        for node in ast.walk(holder):
+            if not isinstance(node, ast.Assign | ast.AnnAssign):
+                continue
+            made = node.value
+            if isinstance(made, ast.Call) and full_name(made.func, names) in LOCKS:
+                target = node.targets[0] if isinstance(node, ast.Assign) else node.target
+                found[node] = prefix + ast.unparse(target).removeprefix("self.")
+    return set(found.values())
+
+
+def imported_names(tree: ast.Module) -> dict[str, str]:
+    """Return what the names stand for that a module imports."""
     names: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -240,6 +311,13 @@ def makes_threads(path: Path) -> bool:
             names |= {
                 alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names
             }
+    return names
+
+
+def makes_threads(path: Path) -> bool:
+    """Return whether a module makes threads, or locks between threads."""
+    tree = parsed_if_it_has_threads(path)
+    names = imported_names(tree)
     used = [
         function
         for node in ast.walk(tree)

@@ -157,7 +157,7 @@ class Rate:
         self._is_shutdown = False
         self._is_destroyed = False
         self._event = threading.Event()
-        self._lock = threading.Lock()
+        self._lock = threading.RLock()  # a handler of a signal may sleep, too
         self._num_sleepers = 0
         self._timer.callback = self._event.set
         context.on_shutdown(self._on_shutdown)

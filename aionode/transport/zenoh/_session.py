@@ -103,7 +103,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
     def deliver(result: T | None, error: BaseException | None) -> None:
         if error is None and done.cancelled() and late is not None:
-            start_thread(threading.Thread(target=late, args=(result,)))
+            start_thread(threading.Thread(target=late, args=(result,), name="aionode-zenoh"))
         elif not done.done():
             if error is None:
                 done.set_result(result)  # type: ignore[arg-type]  # there is one without an error
