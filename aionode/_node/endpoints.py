@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from aionode.content_filter import ContentFilterOptions
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints._core.subscription_reader import Take
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
     from aionode.endpoints.service import ServiceCallback
     from aionode.endpoints.subscription import SubscriptionCallback
@@ -42,6 +43,7 @@ MsgT = TypeVar("MsgT", bound=Message)
 RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 TopicT = TypeVar("TopicT", Publisher[Any], Subscription[Any])
+T = TypeVar("T")
 
 
 class NodeEndpoints(NodeParameters):
@@ -237,14 +239,54 @@ class NodeEndpoints(NodeParameters):
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
+        return self._add_subscription(subscription)
+
+    def _create_direct_subscription(
+        self, msg_type: type[Any], topic: str, take: Take, qos_profile: QoSProfile
+    ) -> Subscription[bytes]:
+        """Return a subscription that hands CDR bytes to `take` within the event that brings them.
+
+        Messages come from now on, whether the node runs or not: those that transient local
+        publishers have kept may come before this returns.
+
+        Args:
+            msg_type: A message class.
+            topic: Name of the topic.
+            take: Called with bytes, number, time of publishing and time of arrival; see `Take`.
+                It never waits and never raises: it may be called within the `publish` of a node.
+            qos_profile: A profile.
+
+        Raises:
+            InvalidTopicNameException: `topic` is invalid (a ValueError).
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        self._refuse_if_destroyed("subscription")
+        setup = self._endpoint_setup(EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
+        return self._add_subscription(
+            Subscription(
+                setup,
+                msg_type,
+                None,
+                self.context.time_base,
+                concurrent=False,
+                raw=True,
+                on_error="raise",
+                offload=False,
+                take=take,
+            )
+        )
+
+    def _add_subscription(self, subscription: Subscription[T]) -> Subscription[T]:
+        """Announce a subscription to the transports, and own it."""
         subscription._add_registrations(
             self.context._register(
                 lambda transport: transport.create_reader(
-                    setup.endpoint, msg_type, subscription._reader
+                    subscription._endpoint, subscription.msg_type, subscription._reader
                 )
             )
         )
-        return self._add_with_events(subscription)
+        self._add_with_events(subscription)
+        return subscription
 
     @in_loop_thread
     def create_service(

@@ -13,6 +13,7 @@ import os
 import struct
 import zlib
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
 import lz4.frame
@@ -60,6 +61,10 @@ INDEX_HEADER: Final = struct.Struct("<BQHI")
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 MOST_PARTS: Final = 512
 """Pieces that one `writev` takes: systems have a limit, which is 1024 on Linux."""
+
+MOST_AT_ONCE: Final = 256 << 10
+"""How many bytes one call writes. Many kernels let nothing else run on that processor meanwhile,
+and the event loop may wait for it: 6 MB were seen to take 15 ms and longer."""
 
 
 def record_bytes(*records: McapRecord) -> bytes:
@@ -470,8 +475,7 @@ class McapWriter:
             BagWriteError: the disk is full, or fails.
         """
         try:
-            for first in range(0, len(pieces), MOST_PARTS):
-                write_all(self._fd, pieces[first : first + MOST_PARTS])
+            write_all(self._fd, pieces)
         except OSError as error:
             with contextlib.suppress(OSError):
                 os.ftruncate(self._fd, self._offset)
@@ -483,11 +487,17 @@ class McapWriter:
         self._offset += sum(map(len, pieces))
 
 
-def write_all(fd: int, pieces: Sequence[bytes]) -> None:
-    """Write all pieces, in as many calls as the system needs."""
-    waiting = [memoryview(piece) for piece in pieces if piece]
+def write_all(fd: int, pieces: Iterable[bytes]) -> None:
+    """Write all pieces, in as many calls as the system needs, and none of them a long one."""
+    waiting = [
+        memoryview(piece)[at : at + MOST_AT_ONCE]
+        for piece in pieces
+        for at in range(0, len(piece), MOST_AT_ONCE)
+    ]
     while waiting:
-        written = os.writev(fd, waiting)
+        ends = accumulate(len(piece) for piece in waiting[:MOST_PARTS])
+        count = sum(end <= MOST_AT_ONCE for end in ends)
+        written = os.writev(fd, waiting[: max(count, 1)])
         while waiting and written >= len(waiting[0]):
             written -= len(waiting.pop(0))
         if written:

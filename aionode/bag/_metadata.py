@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import yaml
 
-from aionode.bag._qos import profiles_from, to_builtins
+from aionode.bag._qos import profiles_from, to_builtins, yaml_text
 from aionode.bag._record import TopicInfo
 from aionode.errors import BagError
 
@@ -89,8 +89,7 @@ def topic_metadata(topic: TopicInfo) -> dict[str, Any]:
 
 def metadata_text(metadata: Mapping[str, Any]) -> str:
     """Return metadata as the text of ``metadata.yaml``."""
-    text: str = yaml.safe_dump({ROOT: dict(metadata)}, sort_keys=False)
-    return text
+    return yaml_text({ROOT: dict(metadata)})
 
 
 def write_metadata(folder: Path, metadata: Mapping[str, Any]) -> None:

@@ -56,7 +56,7 @@ class Player:
         path: The bag, or several, which are played as one, in order of time.
         context: The context of its node; `Context.default()` by default.
         node_name: The name of its node.
-        rate: How fast: 2 plays in half of the time.
+        rate: How fast, positive and finite: 2 plays in half of the time.
         loop: Whether it begins again at the end, until it is stopped.
         start_offset: Where to begin, after the start of the bag.
         duration: How long to play, in the time of the recording; to the end by default.
@@ -84,7 +84,7 @@ class Player:
         played: How many messages it has published.
 
     Raises:
-        ValueError: the rate is not positive, or there is no such source of requests.
+        ValueError: the rate is not positive and finite, or there is no such source of requests.
     """
 
     def __init__(
@@ -285,7 +285,7 @@ class Player:
         """Play faster or slower from now on.
 
         Raises:
-            ValueError: the rate is not positive.
+            ValueError: the rate is not positive and finite.
         """
         if not 0 < rate < float("inf"):
             raise ValueError(f"rate: {rate} is not positive and finite; 1 is as it was recorded")

@@ -21,7 +21,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
     from os import PathLike
 
-__all__ = ["profile_from", "profiles_from", "profiles_to_yaml", "qos_overrides", "to_builtins"]
+__all__ = [
+    "profile_from",
+    "profiles_from",
+    "profiles_to_yaml",
+    "qos_overrides",
+    "to_builtins",
+    "yaml_text",
+]
+
+FAST_DUMPER: Final = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
 
 POLICIES: Final = {
     "history": HistoryPolicy,
@@ -60,7 +69,15 @@ def seconds_of(value: Duration) -> dict[str, int]:
 def profiles_to_yaml(profiles: Iterable[QoSProfile]) -> str:
     """Return profiles as the text of a YAML list; empty if there are none."""
     listed = [to_builtins(qos) for qos in profiles]
-    return yaml.safe_dump(listed, sort_keys=False) if listed else ""
+    return yaml_text(listed) if listed else ""
+
+
+def yaml_text(value: object) -> str:
+    """Return builtin values as YAML, by the C library where PyYAML has it: threads wait for it."""
+    try:
+        return str(yaml.dump(value, Dumper=FAST_DUMPER, sort_keys=False))
+    except UnicodeEncodeError:  # of a name that is not UTF-8
+        return yaml.safe_dump(value, sort_keys=False)
 
 
 def profiles_from(value: object) -> tuple[QoSProfile, ...]:

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.context import Context
-    from aionode.endpoints.subscription import MessageInfo
     from aionode.graph import EndpointInfo
 
 __all__ = ["Recorder", "TopicStats", "adapted_qos"]
@@ -106,6 +105,9 @@ class Recorder:
     Attributes:
         path: The folder of the bag.
         node: Its node.
+
+    Raises:
+        BagError: `max_files` is given without a size, duration or count of one file.
     """
 
     def __init__(
@@ -437,21 +439,24 @@ class Recorder:
     def _go_on(self) -> None:
         self._paused = False
 
-    def _take(self, number: int, raw: bytes, info: MessageInfo) -> None:
-        """Take one message of a subscription."""
-        time_ns = self._now_ns() if self._use_sim_time else info["received_timestamp"]
-        sent_ns = info["source_timestamp"] or time_ns
+    def _take(
+        self, number: int, raw: bytes, sequence: int, source_ns: int, received_ns: int
+    ) -> None:
+        """Take one message of a subscription, within the event that brings it."""
+        time_ns = self._now_ns() if self._use_sim_time else received_ns
+        sent_ns = source_ns if source_ns > 0 else time_ns  # a peer may say anything
         if self._due:
             self._act_on(number, time_ns, sent_ns)
         if self._paused or self._recording is None:
             return
         if time_ns < self._last_ns - BACK_NS:
+            back_sec, self._last_ns = (self._last_ns - time_ns) / 1e9, time_ns
             self._warn(
-                f"the clock was set back by {(self._last_ns - time_ns) / 1e9:.1f} s; the bag has "
-                "the times as they were shown"
+                f"the clock was set back by {back_sec:.1f} s; the bag has the times as they were "
+                "shown"
             )
         self._last_ns = time_ns
-        self._recording.put(Row(number, time_ns, sent_ns, info["publication_sequence_number"], raw))
+        self._recording.put(Row(number, time_ns, sent_ns, sequence, raw))
 
     def _warn(self, text: str) -> None:
         self.node.get_logger().warning(text)
@@ -513,8 +518,8 @@ class Recorder:
         info.type_hash = key[2] if key[2].startswith("RIHS") else info.type_hash
         number = recording.number_of(info, self._repeated_depth(name, profile, offered))
         recording.numbers[key] = number  # the graph may show no hash
-        recording.subscriptions[number] = self.node.create_subscription(
-            msg_type, name, partial(self._take, number), profile, raw=True
+        recording.subscriptions[number] = self.node._create_direct_subscription(
+            msg_type, name, partial(self._take, number), profile
         )
 
     def _repeated_depth(self, name: str, profile: QoSProfile, offered: list[QoSProfile]) -> int:

@@ -104,15 +104,13 @@ class Recording:
         found: dict[str, TopicStats] = {}
         for number, (info, _) in enumerate(self._topics):
             subscription = self.subscriptions.get(number)
-            transport = dropped = 0
-            if subscription is not None:
-                transport, dropped = subscription.stats.lost, subscription.stats.dropped
+            transport = 0 if subscription is None else subscription.stats.lost
             not_written = self.thread.lost.get(number, 0)
             before = found.get(info.name, TopicStats(0, 0, 0))
             found[info.name] = TopicStats(
                 before.recorded + self._taken[number] - not_written,
                 before.lost_in_transport + transport,
-                before.lost_in_recorder + self._refused[number] + dropped + not_written,
+                before.lost_in_recorder + self._refused[number] + not_written,
             )
         return found
 

@@ -30,9 +30,14 @@ SYNC_NS: Final = 250_000_000
 """How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
 the last second, and writing takes time as well, on a busy machine most of it."""
 
-
 TURN: Final = 32
 """Rows that are taken before other threads get their turn."""
+
+TURN_BYTES: Final = 32 << 10
+"""A row counts as one more for each so many bytes: large ones take long."""
+
+MOST_ROWS: Final = 1_000_000
+"""How many rows may wait, or are kept for a snapshot: small messages take more than their bytes."""
 
 LEAST_WAITING: Final = 16 << 20
 """Bytes that may wait for the thread in snapshot mode, however few are kept."""
@@ -114,7 +119,10 @@ class WriterThread:
     def put(self, row: Row) -> bool:
         """Hand a row over, and return whether there was room for it."""
         size = len(row.raw)
-        if self._rows and self._put_bytes - self._taken_bytes + size > self._waiting_bytes:
+        waiting = len(self._rows)
+        if waiting and (
+            self._put_bytes - self._taken_bytes + size > self._waiting_bytes or waiting >= MOST_ROWS
+        ):
             return False
         self._put_bytes += size
         self._rows.append(row)
@@ -134,7 +142,8 @@ class WriterThread:
     def _run(self) -> None:
         while not self._stopping.wait(BATCH_S):
             self._guarded(self._step)
-        self._guarded(self._take_all)
+        while self._rows:  # an error leaves the rest, which is counted then
+            self._guarded(self._take_all)
         self._before_close()
         try:
             self._writer.close()
@@ -164,6 +173,10 @@ class WriterThread:
         if not self._is_dirty:
             self._synced_ns = perf_ns()
         self._take_all()
+        self._sync_in_time()
+
+    def _sync_in_time(self) -> None:
+        """Have the disk confirm what was written, if that is due."""
         if self._is_dirty and perf_ns() - self._synced_ns >= SYNC_NS:
             self._is_dirty = False
             self._synced_ns = perf_ns()
@@ -173,14 +186,17 @@ class WriterThread:
         rows = self._rows
         taken = 0
         while rows:
-            taken += 1
-            if not taken % TURN:
+            if taken >= TURN:
+                taken = 0
                 sleep(0)  # the event loop may wait for its turn
+                self._sync_in_time()  # where more comes all the time, nothing else does
             row = rows.popleft()
             if not isinstance(row, Row):
                 row()
                 continue
-            self._taken_bytes += len(row.raw)
+            size = len(row.raw)
+            taken += 1 + size // TURN_BYTES
+            self._taken_bytes += size
             if self.failure is not None:
                 self.lost[row.topic] = self.lost.get(row.topic, 0) + 1
             elif self._kept is None:
@@ -228,7 +244,7 @@ class WriterThread:
 
     def _is_too_much(self, kept: deque[Row]) -> bool:
         """Return whether the oldest row has to go."""
-        if self._kept_bytes > self._cache_bytes:
+        if self._kept_bytes > self._cache_bytes or len(kept) > MOST_ROWS:
             return True
         return 0 < self._cache_ns < kept[-1].time_ns - kept[0].time_ns
 

@@ -17,7 +17,11 @@ from aionode.endpoints._core.callback_runner import (
 )
 from aionode.endpoints._core.endpoint import Endpoint, report_heavy
 from aionode.endpoints._core.silence_watch import Silence, SilenceWatch
-from aionode.endpoints._core.subscription_reader import MessageInfo, SubscriptionReader
+from aionode.endpoints._core.subscription_reader import (
+    DirectReader,
+    MessageInfo,
+    SubscriptionReader,
+)
 from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
@@ -33,6 +37,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.endpoint import EndpointSetup
+    from aionode.endpoints._core.subscription_reader import Take
     from aionode.endpoints.events import (
         EventStream,
         SubscriptionEvent,
@@ -77,11 +82,12 @@ class Subscription(Endpoint, Generic[ItemT]):
         offload: bool,
         event_callbacks: SubscriptionEventCallbacks | None = None,
         silence: Silence | None = None,
+        take: Take | None = None,
     ) -> None:
         super().__init__(f"subscription of {setup.endpoint.name}", setup)
         self.msg_type = msg_type
         self.raw = raw
-        self.callback = callback
+        self.callback = callback or take
         self.stats = CallbackStats()
         self._registrations: list[Registration] = []  # one for each transport
         self._content_filter: ContentFilterOptions | None = None
@@ -96,9 +102,12 @@ class Subscription(Endpoint, Generic[ItemT]):
             self._runner = setup.callbacks.make_runner(
                 callback, self, self.stats, on_error=on_error, offload=offload
             )
-        self._reader = SubscriptionReader(
-            setup.endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2
-        )
+        if take is None:
+            self._reader = SubscriptionReader(
+                setup.endpoint, self.stats, time_base, raw=raw, wants_info=wants == 2
+            )
+        else:
+            self._reader = DirectReader(setup.endpoint, self.stats, time_base, take)
         size_of = len if raw else memory_size(msg_type)
         if size_of is not None:
             self._reader.weigh_messages(
@@ -280,7 +289,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         return taken
 
     def _refuse_if_it_has_a_callback(self) -> None:
-        if self._runner is not None:
+        if self.callback is not None:
             raise RuntimeError(
                 f"{self._subject}: its callback gets the messages; to read them yourself, create "
                 "the subscription without a callback"

@@ -17,6 +17,7 @@ import pytest
 
 from aionode import bag
 from aionode.bag._recorder import adapted_qos
+from aionode.bare_node import BareNode
 from aionode.clock import ClockType, Time
 from aionode.context import Context
 from aionode.errors import BagError, BagWriteError, InterfaceNotFoundError
@@ -169,8 +170,8 @@ async def test_a_clock_that_is_set_back_is_one_line_and_no_message_is_lost(
     async with local_context() as context, Node("talker", context=context) as node:
         words = node.create_publisher(String, "words", 10)
         clock = node.create_publisher(Clock, "/clock", 10)
-        async with bag.Recorder(
-            tmp_path / "run", topics=["/words"], context=context, use_sim_time=True
+        async with bag.Recorder(  # of the log as well, in which the line is
+            tmp_path / "run", topics=["/words", "/rosout"], context=context, use_sim_time=True
         ):
             for sec in (100, 101, 40, 41):
                 clock.publish(Clock(clock=Time(seconds=sec).to_msg()))
@@ -182,6 +183,27 @@ async def test_a_clock_that_is_set_back_is_one_line_and_no_message_is_lost(
     assert len(told) == 1
     assert "61.0 s" in told[0]
     assert not bag.check(tmp_path / "run")[0].repaired
+
+
+async def test_a_message_without_a_credible_stamp_is_recorded_with_the_time_of_its_arrival(
+    tmp_path: Path,
+) -> None:
+    """A publisher may stamp as it likes, before 1970 as well; a bag has no place for that."""
+    async with (
+        local_context() as context,
+        bag.Recorder(tmp_path / "run", topics=["/words"], context=context) as recorder,
+    ):
+        node = BareNode(context, "odd")
+        words = node.create_publisher(String, "/words", QoSProfile(depth=10))
+        await settle()
+        for stamp_ns in (-5, 0, 7):
+            words.publish(String(data="a"), stamp_ns)
+        assert recorder.stats["/words"] == (3, 0, 0)
+        node.destroy_node()
+    with bag.open(tmp_path / "run") as run:
+        records = list(run.read())
+    assert [record.publish_time_ns for record in records[2:]] == [7]
+    assert all(record.publish_time_ns == record.time_ns for record in records[:2])
 
 
 async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from aionode.clock import Duration
 from aionode.context import Context
 from aionode.errors import (
     CallbackSignatureError,
@@ -203,6 +204,46 @@ async def test_raw_subscriptions_get_cdr_bytes_in_process_too(node: Node) -> Non
     reader = node.create_subscription(String, "words", raw=True)
     fill(node.create_publisher(String, "words", 10), "a")
     assert await reader.receive() == cdr.encode(String(data="a"))
+
+
+async def test_a_direct_subscription_takes_messages_within_publish_until_it_is_destroyed(
+    node: Node,
+) -> None:
+    """A recorder puts them elsewhere at once: no queue, no task and no loop has a part in it."""
+    taken: list[tuple[bytes, int]] = []
+    subscription = node._create_direct_subscription(
+        String,
+        "words",
+        lambda raw, sequence, *_: taken.append((raw, sequence)),
+        QoSProfile(depth=1),
+    )
+    publisher = node.create_publisher(String, "words", 10)
+    fill(publisher, "a", "b")
+    assert taken == [(cdr.encode(String(data=text)), at) for at, text in ((1, "a"), (2, "b"))]
+    with pytest.raises(RuntimeError, match="its callback gets the messages"):
+        await subscription.receive()
+    subscription.destroy()
+    fill(publisher, "c")
+    assert len(taken) == 2
+    assert (subscription.stats.received, subscription.stats.dropped) == (2, 0)
+
+
+async def test_a_direct_subscription_counts_what_is_missing_and_leaves_out_what_has_expired(
+    node: Node,
+) -> None:
+    """It is past the queue, and not past the numbers of publishers and the policies."""
+    taken: list[int] = []
+    subscription = node._create_direct_subscription(
+        String, "words", lambda _raw, sequence, *_: taken.append(sequence), QoSProfile(depth=1)
+    )
+    deliver = subscription._reader.deliver
+    for sequence in (1, 2, 5):
+        deliver(b"", b"g" * 16, sequence, 0)
+    assert (taken, subscription.stats.lost) == ([1, 2, 5], 2)
+    short = QoSProfile(depth=1, lifespan=Duration(nanoseconds=1))
+    limited = node.create_publisher(String, "words", short)
+    deliver(b"", limited._endpoint.gid, 1, 1)  # published in 1970
+    assert (taken, subscription.stats.expired) == ([1, 2, 5], 1)
 
 
 async def test_two_classes_of_one_definition_understand_each_other(node: Node) -> None:

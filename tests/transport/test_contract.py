@@ -219,6 +219,27 @@ async def test_raw_readers_get_the_bytes(pair: Pair) -> None:
     assert bytes(await reader.receive()) == cdr.encode(Int32(data=5))
 
 
+async def test_direct_subscriptions_get_the_bytes_and_times_of_every_message(pair: Pair) -> None:
+    """Recorders take them as they arrive, and miss none."""
+    taken: list[tuple[bytes, int]] = []
+    times: list[int] = []
+
+    def take(raw: bytes, sequence: int, source_ns: int, received_ns: int) -> None:
+        taken.append((bytes(raw), sequence))
+        times.extend((source_ns, received_ns))
+
+    reader = pair.right._create_direct_subscription(Int32, "numbers", take, QoSProfile(depth=10))
+    writer = pair.left.create_publisher(Int32, "numbers", 10)
+    await writer.wait_for_subscribers()
+    for number in range(5):
+        writer.publish(Int32(data=number))
+    await until(lambda: len(taken) == 5)
+    assert [raw for raw, _ in taken] == [cdr.encode(Int32(data=number)) for number in range(5)]
+    assert [sequence for _, sequence in taken] == [1, 2, 3, 4, 5]
+    assert min(times) > 0
+    assert reader.stats.lost == 0
+
+
 async def test_a_value_that_does_not_fit_is_refused_by_publish(pair: Pair) -> None:
     """No subscription gets it, and the next one arrives."""
     reader = pair.right.create_subscription(Int8, "numbers")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from asyncio import CancelledError
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict
 
 from aionode.clock import perf_ns
@@ -12,14 +13,18 @@ from aionode.qos import HistoryPolicy, depth_of
 from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Coroutine
+    from collections.abc import Coroutine
 
     from aionode.clock import TimeBase
     from aionode.endpoints._core.callback_runner import CallbackRunner
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
 
-__all__ = ["MessageInfo", "SubscriptionReader"]
+__all__ = ["DirectReader", "MessageInfo", "SubscriptionReader", "Take"]
+
+Take = Callable[[Any, int, int, int], None]
+"""Takes a message, its number by its publisher, and when it was published and received, in
+nanoseconds since 1970."""
 
 REMEMBERED_PUBLISHERS = 1024
 """For how many publishers a subscription keeps the last sequence number."""
@@ -222,21 +227,25 @@ class SubscriptionReader(MessageQueue[Any]):
 
     def _deliver_with(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int) -> None:
         """Deliver a message to a filter, a monitor, or a callback that takes its info."""
+        if not self._admits(msg, sample_info):
+            return
+        item = (msg, self._info(sample_info)) if self.wants_info else msg
+        if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
+            self.put(item)
+
+    def _admits(self, msg: Any, sample_info: SampleInfo) -> bool:
+        """Return whether filter, monitor and watch let a message pass; count what is missing."""
         if self._accepts is not None:
             if not self._accepts(msg):
                 self.stats.filtered += 1
                 if self.monitor is not None:
                     self.monitor.note_filtered(sample_info.gid)
-                return
+                return False
         else:
             self._note_sequence(sample_info.gid, sample_info.sequence)
         if self.on_arrival is not None and not self.on_arrival(sample_info):
-            return
-        if self.watch is not None and not self.watch.admits(sample_info):
-            return
-        item = (msg, self._info(sample_info)) if self.wants_info else msg
-        if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
-            self.put(item)
+            return False
+        return self.watch is None or self.watch.admits(sample_info)
 
     def weigh_messages(
         self, size_of: Callable[[Any], int], limit_bytes: int, on_heavy: Callable[[], None]
@@ -307,6 +316,48 @@ class SubscriptionReader(MessageQueue[Any]):
             reception_sequence_number=self._reception_sequence,
             publisher_gid=sample_info.gid,
         )
+
+
+class DirectReader(SubscriptionReader):
+    """Hands each message on within the event that brings it, past the queue.
+
+    For aionode's own subscriptions that only put messages elsewhere: nothing is woken, no call is
+    timed, and the queue stays empty. The event may be the `publish` of another node.
+
+    Args:
+        endpoint: The subscription in the graph.
+        stats: Where lost and invalid messages are counted.
+        time_base: Where the time of arrival comes from.
+        take: Takes the messages; it never waits and never raises.
+    """
+
+    __slots__ = ("_take",)
+
+    def __init__(
+        self, endpoint: EndpointInfo, stats: CallbackStats, time_base: TimeBase, take: Take
+    ) -> None:
+        super().__init__(endpoint, stats, time_base, raw=True, wants_info=False)
+        self._take = take
+
+    def deliver(
+        self,
+        msg: Any,
+        gid: bytes,
+        sequence: int,
+        source_ns: int,
+        inline_deadline_ns: int = 0,  # noqa: ARG002  # it always hands on at once
+        arrived_ns: int = 0,
+    ) -> None:
+        """Take one message from a transport; see `Reader` for the arguments."""
+        if self._accepts is not None or self.on_arrival is not None:
+            if not self._admits(msg, SampleInfo(gid, sequence, source_ns, arrived_ns)):
+                return
+        elif self._last_sequences.get(gid) == sequence - 1:
+            self._last_sequences[gid] = sequence
+        else:
+            self._note_sequence(gid, sequence)
+        self.stats.received += 1
+        self._take(msg, sequence, source_ns, arrived_ns or self._now_ns())
 
 
 def admit(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`
