@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from aionode.clock import S_TO_NS, Time
 from aionode.endpoints._core.entity import EndStage
@@ -62,16 +62,27 @@ class TimeSource:
             self._subscription = None
 
     def _on_tick(self, msg: ClockMsg) -> None:
-        if msg.clock.sec >= 0 and msg.clock.nanosec < S_TO_NS:
+        problem = why_no_time(msg.clock)
+        if not problem:
             self._clock.set_ros_time_override(Time.from_msg(msg.clock))
             return
-        # Any node can publish on /clock; an invalid message must not end this one.
         if self._subscription is not None:
             self._subscription.stats.errors += 1
         if not self._warned:
             self._warned = True
-            self._node.get_logger().warning(
-                f"/clock: ignored an invalid time: {msg.clock.sec} s and {msg.clock.nanosec} ns; "
-                f"seconds must be at least 0, and nanoseconds less than {S_TO_NS}. Further ones "
-                "are only counted; `aionode topic info -v /clock` names the publishers"
-            )
+            self._node.get_logger().warning(f"{problem}. Further ones are only counted")
+
+
+def why_no_time(clock: Any) -> str:
+    """Return why the `clock` of a message on ``/clock`` is no time; empty if it is one.
+
+    Any node can publish there, so a message that holds no time ends no node: it is left out, and
+    the log says so once.
+    """
+    if clock.sec >= 0 and clock.nanosec < S_TO_NS:
+        return ""
+    return (
+        f"/clock: ignored an invalid time: {clock.sec} s and {clock.nanosec} ns; seconds must be "
+        f"at least 0, and nanoseconds less than {S_TO_NS}; `aionode topic info -v /clock` names "
+        "the publishers"
+    )

@@ -31,8 +31,6 @@ from aionode.rclpy.utilities import (
 )
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from aionode.rclpy.executors import Executor
     from aionode.rclpy.node import Node
 
@@ -84,12 +82,7 @@ class InitContextManager:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         # None, so that the next `init` makes a new default context.
         context = None if self.context is get_default_context() else self.context
         try_shutdown(context=context, uninstall_handlers=self.installed_signal_handlers)

@@ -9,7 +9,6 @@ from aionode.rclpy._impl.destroyable import Destroyable, Wakeup
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
     from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
     from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
@@ -48,12 +47,7 @@ class HandleOwner(Generic[HandleT]):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.destroy()
 
 

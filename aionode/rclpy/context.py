@@ -15,7 +15,6 @@ from aionode.rclpy._impl.context import ContextHandle
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
-    from types import TracebackType
 
 __all__ = ["Context"]
 
@@ -196,10 +195,5 @@ class Context:
             self.init()
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.try_shutdown()

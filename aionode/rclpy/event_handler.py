@@ -25,7 +25,6 @@ from aionode.rclpy.waitable import NumberOfEntities, Waitable
 if TYPE_CHECKING:
     from collections.abc import Callable
     from enum import IntEnum
-    from types import TracebackType
 
     from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
     from aionode.rclpy._impl.wait_set import WaitSet
@@ -132,13 +131,8 @@ class EventHandler(Waitable[Any]):
     def __enter__(self) -> None:
         self._event.__enter__()
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._event.__exit__(exc_type, exc, traceback)
+    def __exit__(self, *exc: object) -> None:
+        self._event.__exit__(*exc)
 
     def destroy(self) -> None:
         """Destroy it; its publisher or subscription does that."""

@@ -28,7 +28,6 @@ from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine, Generator, Iterable, Iterator
-    from types import TracebackType
 
     from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.callback_groups import Entity
@@ -492,12 +491,7 @@ class Executor:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.shutdown()
 
 

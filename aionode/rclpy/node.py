@@ -52,7 +52,6 @@ from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from types import TracebackType
 
     from aionode.logging import RcutilsLogger
     from aionode.rclpy.context import Context
@@ -554,12 +553,7 @@ class Node(NodeParameters, NodeGraph):
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.destroy_node()
 
 

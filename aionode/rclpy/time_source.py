@@ -5,7 +5,8 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import S_TO_NS, ClockType
+from aionode._node.time_source import why_no_time
+from aionode.clock import ClockType
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.clock import ROSClock
 from aionode.rclpy.parameter import Parameter
@@ -119,27 +120,21 @@ class TimeSource:
         self._associated_clocks.add(clock)
 
     def clock_callback(self, message: Any) -> None:
-        """Take the time from a message.
-
-        Any node can publish on ``/clock``: a message that holds no time ends nothing.
-        """
-        if message.clock.sec < 0 or message.clock.nanosec >= S_TO_NS:
-            self._refuse(message.clock)
+        """Take the time from a message, if it holds one."""
+        problem = why_no_time(message.clock)
+        if problem:
+            self._refuse(problem)
             return
         self._last_time_set = Time.from_msg(message.clock)
         for clock in self._associated_clocks:
             clock.set_ros_time_override(self._last_time_set)
 
-    def _refuse(self, time: Any) -> None:
+    def _refuse(self, problem: str) -> None:
         """Say once that a message of ``/clock`` was left out."""
         node = self._get_node()
         if node is not None and not self._warned:
             self._warned = True
-            node.get_logger().warning(
-                f"{CLOCK_TOPIC}: ignored an invalid time: {time.sec} s and {time.nanosec} ns; "
-                f"seconds must be at least 0, and nanoseconds less than {S_TO_NS}. Further ones "
-                f"are not told; `aionode topic info -v {CLOCK_TOPIC}` names the publishers"
-            )
+            node.get_logger().warning(f"{problem}. Further ones are not told")
 
     def _on_parameter_event(self, parameters: list[Parameter[Any]]) -> Any:
         for parameter in parameters:

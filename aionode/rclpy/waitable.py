@@ -5,8 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.task import Future
@@ -84,12 +82,7 @@ class Waitable(Generic[T]):
         """Keep its handles in use."""
         raise NotImplementedError("Must be implemented by subclass")
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         """Release its handles."""
         raise NotImplementedError("Must be implemented by subclass")
 

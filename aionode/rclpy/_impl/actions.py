@@ -76,12 +76,46 @@ def goal_key(info: Any, status: GoalStatus = GoalStatus.UNKNOWN) -> GoalKey:
     return GoalKey(bytes(info.goal_id.uuid), stamp_ns, status)
 
 
-class Parts(Destroyable):
-    """A handle made of others."""
+class ActionHandle(Destroyable):
+    """One end of an action: its ends of three services and two topics.
 
-    def __init__(self, node: NodeHandle) -> None:
+    Args:
+        node: Its node.
+        service_class: `ServiceHandle` for the server, `ClientHandle` for the client.
+        topic_class: `PublisherHandle` or `SubscriptionHandle` likewise.
+        action_type: The action class.
+        action_name: Its name.
+        goal_qos, result_qos, cancel_qos, feedback_qos, status_qos: QoS of the parts.
+    """
+
+    def __init__(
+        self,
+        node: NodeHandle,
+        service_class: Any,
+        topic_class: Any,
+        action_type: Any,
+        action_name: str,
+        goal_qos: Any,
+        result_qos: Any,
+        cancel_qos: Any,
+        feedback_qos: Any,
+        status_qos: Any,
+    ) -> None:
         super().__init__(node.signal)
         self.parts: list[Any] = []
+        impl = action_type.Impl
+        name = f"{node.resolve(action_name)}/_action"
+
+        def add(handle_class: Any, type_: Any, part_name: str, qos: Any) -> Any:
+            part = handle_class(node, type_, f"{name}/{part_name}", qos)
+            self.parts.append(part)  # now: if a later one cannot be made, this one is destroyed
+            return part
+
+        self.goal = add(service_class, impl.SendGoalService, "send_goal", goal_qos)
+        self.cancel = add(service_class, impl.CancelGoalService, "cancel_goal", cancel_qos)
+        self.result = add(service_class, impl.GetResultService, "get_result", result_qos)
+        self.feedback = add(topic_class, impl.FeedbackMessage, "feedback", feedback_qos)
+        self.status = add(topic_class, impl.GoalStatusMessage, "status", status_qos)
 
     def add_to_waitset(self, wait_set: Any) -> None:
         """Add the handles whose readiness counts."""
@@ -95,43 +129,24 @@ class Parts(Destroyable):
             elif isinstance(part, Expiry):
                 wait_set.add_timer(part)
 
+    def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
+        """Tell of the calls of the three services."""
+        for service in (self.goal, self.result, self.cancel):
+            service.configure_introspection(clock, qos_profile, state)
+
     def _destroy(self) -> None:
         for part in getattr(self, "parts", ()):
             part.destroy_when_not_in_use()
 
 
-class ActionClientHandle(Parts):
-    """The client's end of an action."""
+class ActionClientHandle(ActionHandle):
+    """The client's end of an action; the arguments are those of `ActionHandle`."""
 
-    def __init__(
-        self,
-        node: NodeHandle,
-        action_type: Any,
-        action_name: str,
-        goal_qos: Any,
-        result_qos: Any,
-        cancel_qos: Any,
-        feedback_qos: Any,
-        status_qos: Any,
-    ) -> None:
-        super().__init__(node)
-        impl = action_type.Impl
-        name = f"{node.resolve(action_name)}/_action"
+    def __init__(self, node: NodeHandle, action_type: Any, action_name: str, *qos: Any) -> None:
+        super().__init__(node, ClientHandle, SubscriptionHandle, action_type, action_name, *qos)
         self.name = action_name
         self.io = node.io
         self.context_handle = node.context_handle
-        self.goal = ClientHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
-        self.parts.append(self.goal)
-        self.result = ClientHandle(node, impl.GetResultService, f"{name}/get_result", result_qos)
-        self.parts.append(self.result)
-        self.cancel = ClientHandle(node, impl.CancelGoalService, f"{name}/cancel_goal", cancel_qos)
-        self.parts.append(self.cancel)
-        self.feedback = SubscriptionHandle(
-            node, impl.FeedbackMessage, f"{name}/feedback", feedback_qos
-        )
-        self.parts.append(self.feedback)
-        self.status = SubscriptionHandle(node, impl.GoalStatusMessage, f"{name}/status", status_qos)
-        self.parts.append(self.status)
 
     def is_action_server_available(self) -> bool:
         """Return whether all that belongs to a server is there.
@@ -144,11 +159,6 @@ class ActionClientHandle(Parts):
         return all(client.service_server_is_available() for client in services) and all(
             topic.get_publisher_count() for topic in (self.feedback, self.status)
         )
-
-    def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
-        """Tell of the calls of the three services."""
-        for client in (self.goal, self.result, self.cancel):
-            client.configure_introspection(clock, qos_profile, state)
 
 
 class Expiry(Destroyable):
@@ -190,8 +200,18 @@ class Expiry(Destroyable):
         return forgotten + self.goals.expire()
 
 
-class ActionServerHandle(Parts):
-    """The server's end of an action, and its goals."""
+class ActionServerHandle(ActionHandle):
+    """The server's end of an action, and its goals.
+
+    Args:
+        node: Its node.
+        clock: Shows how long results have been kept.
+        action_type: The action class.
+        action_name: Its name.
+        qos: The profiles, in the order of `ActionHandle`.
+        result_timeout: For how many seconds results are kept; negative for ever.
+        max_goals: How many goals may be active at once.
+    """
 
     def __init__(
         self,
@@ -199,20 +219,10 @@ class ActionServerHandle(Parts):
         clock: ClockHandle,
         action_type: Any,
         action_name: str,
-        goal_qos: Any,
-        result_qos: Any,
-        cancel_qos: Any,
-        feedback_qos: Any,
-        status_qos: Any,
+        *qos: Any,
         result_timeout: float,
         max_goals: int,
     ) -> None:
-        super().__init__(node)
-        impl = action_type.Impl
-        name = f"{node.resolve(action_name)}/_action"
-        self._io = node.io
-        self.action_type = action_type
-        self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
         # Held until the states are sent: none may arrive after a newer one. A handler of a signal
         # that ends a goal meanwhile leaves the states to the thread that it has interrupted.
         self._status_lock = threading.RLock()
@@ -220,19 +230,11 @@ class ActionServerHandle(Parts):
         self._has_newer_status = False
         self._waits_to_send = False
         self._spacing = StatusSpacing()
+        super().__init__(node, ServiceHandle, PublisherHandle, action_type, action_name, *qos)
+        self._io = node.io
+        self.action_type = action_type
+        self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
         self.goals = GoalStore(clock.clock.now_ns, max_goals, int(result_timeout * 1e9))
-        self.goal = ServiceHandle(node, impl.SendGoalService, f"{name}/send_goal", goal_qos)
-        self.parts.append(self.goal)
-        self.cancel = ServiceHandle(node, impl.CancelGoalService, f"{name}/cancel_goal", cancel_qos)
-        self.parts.append(self.cancel)
-        self.result = ServiceHandle(node, impl.GetResultService, f"{name}/get_result", result_qos)
-        self.parts.append(self.result)
-        self.feedback = PublisherHandle(
-            node, impl.FeedbackMessage, f"{name}/feedback", feedback_qos
-        )
-        self.parts.append(self.feedback)
-        self.status = PublisherHandle(node, impl.GoalStatusMessage, f"{name}/status", status_qos)
-        self.parts.append(self.status)
         self.expiry = Expiry(node, clock, self.goals)
         self.parts.append(self.expiry)
 
@@ -316,8 +318,3 @@ class ActionServerHandle(Parts):
         response.return_code = int(code)
         response.goals_canceling = [self.goals[goal_id].info for goal_id in selected]
         return response
-
-    def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
-        """Tell of the calls of the three services."""
-        for service in (self.goal, self.result, self.cancel):
-            service.configure_introspection(clock, qos_profile, state)

@@ -11,7 +11,6 @@ from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from types import TracebackType
 
 __all__ = ["LONGEST_WAIT_S", "Arrivals", "Destroyable", "Signal", "Wakeup"]
 
@@ -148,12 +147,7 @@ class Destroyable:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
         return self
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
+    def __exit__(self, exc_type: object, exc: object, traceback: object) -> None:
         self._leave()
 
     def _leave(self) -> None:

@@ -8,8 +8,6 @@ from aionode.rclpy._impl.actions import ActionClientHandle, ActionServerHandle
 from aionode.rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
-    from types import TracebackType
-
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.clock import Clock
     from aionode.rclpy.node import Node
@@ -34,13 +32,8 @@ class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
     def __enter__(self) -> None:
         self._handle.__enter__()
 
-    def __exit__(
-        self,
-        exc_type: type[BaseException] | None,
-        exc: BaseException | None,
-        traceback: TracebackType | None,
-    ) -> None:
-        self._handle.__exit__(exc_type, exc, traceback)
+    def __exit__(self, *exc: object) -> None:
+        self._handle.__exit__(*exc)
 
     def configure_introspection(
         self,

@@ -231,8 +231,8 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 cancel_service_qos_profile,
                 feedback_pub_qos_profile,
                 status_pub_qos_profile,
-                result_timeout,
-                checked_max_goals(max_goals, f"action server {action_name}"),
+                result_timeout=result_timeout,
+                max_goals=checked_max_goals(max_goals, f"action server {action_name}"),
             )
         self._action_name = action_name
         self._goal_handles: dict[bytes, AnyGoalHandle] = {}
