@@ -148,7 +148,8 @@ class Client:
                 for channel_id in asked.channel_ids:
                     await self._put(("publish", channel_id), self._unadvertise, channel_id)
             case frames.ClientMessage():
-                await self._put(("publish", asked.channel_id), self._publish, asked)
+                arrived_ns = self._session.arrival_ns()  # it may wait, and be too old then
+                await self._put(("publish", asked.channel_id), self._publish, asked, arrived_ns)
             case frames.ServiceCall():
                 self._start(self._call, asked)
             case frames.PlaybackRequest():
@@ -216,13 +217,15 @@ class Client:
             raise MessageError("unadvertise", f"there is no channel {channel_id} of this client")
         await self._session.unadvertise(channel.topic)
 
-    async def _publish(self, given: frames.ClientMessage) -> None:
+    async def _publish(self, given: frames.ClientMessage, arrived_ns: int) -> None:
         channel = self._published.get(given.channel_id)
         if channel is None:
             problem = f"there is no channel {given.channel_id} of this client; advertise it first"
             raise MessageError("message", problem)
         values = values_of(channel.encoding, given.data)
-        await self._session.publish(channel.topic, values, channel.schema_name)
+        await self._session.publish(
+            channel.topic, values, channel.schema_name, arrived_ns=arrived_ns
+        )
 
     async def _call(self, call: frames.ServiceCall) -> None:
         try:

@@ -112,7 +112,7 @@ class Gateway(Clients):
             for work in (audit.run(), self._follow_policy()):
                 stack.callback(tasks.create_task(work).cancel)
             app = Door(self._application(), self)
-            server = Server(server_config(app, lambda: self._policy))
+            self._server = server = Server(server_config(app, lambda: self._policy))
             serving = tasks.create_task(server.serve(sockets=[listener]))
             stack.push_async_callback(self._stop, server, serving)
             await server.has_started.wait()
@@ -167,15 +167,23 @@ class Gateway(Clients):
             await until(session.ended, serving, self._watch(session))
 
     async def _watch(self, session: Session) -> None:
-        """End the session of a client that has goals, and gives no sign any more."""
+        """End the session of a client that gives no sign any more, though it has goals or commands.
+
+        And that of a client that does not read its answers: it reads no goodbye either.
+        """
         while True:
             limit = self._policy.limits.client_lost_sec
             await self.robot.clock.sleep(limit / 3)
-            if session.has_goals and session.connection is not None:
-                session.connection.ping()
-                if session.connection.silent_sec() > limit:
-                    session.ended.set()
-                    session.connection.abort()
+            connection = session.connection
+            if connection is None:
+                continue
+            is_lost = session.outbox.overflowed
+            if session.has_goals or session.is_doubtful:
+                session.ask_for_sign()
+                is_lost = is_lost or connection.silent_sec() > limit
+            if is_lost:
+                session.ended.set()
+                connection.abort()
 
     # The policy file
 

@@ -150,11 +150,16 @@ class Rule(Part, frozen=True):
             raise ValueError("rate_hz is a number of messages a second, above 0")
         for key, verbs in LIMITED.items():
             without = [verb for verb in VERBS if getattr(self, verb) and verb not in verbs]
-            if without and limits(self, key):
+            if without and self.has(key):
                 raise ValueError(
                     f"{key}: it limits {', '.join(verbs)}, and not {without[0]}; write a rule of "
                     f"its own for {without[0]}"
                 )
+
+    def has(self, key: str) -> bool:
+        """Return whether a key of `LIMITED` is given."""
+        value = getattr(self, key)
+        return value != math.inf if key == "rate_hz" else value not in (None, False, "", [], {})
 
     def is_about(self, identity: Identity) -> bool:
         """Return whether the rule names a client, or nobody and so everyone."""
@@ -166,12 +171,6 @@ class Rule(Part, frozen=True):
         if type_name and not matches_type(self.type, type_name):
             return False
         return matches(getattr(self, verb), name)
-
-
-def limits(rule: Rule, key: str) -> bool:
-    """Return whether a key of `LIMITED` is given in a rule."""
-    value = getattr(rule, key)
-    return value != math.inf if key == "rate_hz" else value not in (None, False, "", [], {})
 
 
 class Who(Part, frozen=True):
@@ -237,8 +236,10 @@ class Limits(Part, frozen=True):
         subscriptions: For each client.
         advertised: Topics, services and actions that one client offers.
         calls: Calls and goals of one client at once.
-        handshake_sec: How long a request may take to arrive, in seconds.
-        client_lost_sec: After how long without a sign a client with goals is lost, in seconds.
+        handshake_sec: How long a request may take to arrive, and for how long the client may read
+            nothing of the answer, in seconds.
+        client_lost_sec: After how long without a sign a client with goals or commands is lost, in
+            seconds.
     """
 
     clients: int = 64
@@ -355,7 +356,7 @@ class Policy(Part, frozen=True):
         known |= {group for each in found.who for group in each.groups}
         for rule in found.refuse:
             for key in LIMITED:
-                if key != "type" and limits(rule, key):
+                if key != "type" and rule.has(key):
                     raise PolicyFileError(
                         path, f"{key}: a [[refuse]] has no limits, an [[allow]] has"
                     )

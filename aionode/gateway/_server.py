@@ -4,26 +4,45 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import secrets
 import socket
 import ssl
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any, Final
 
 import uvicorn
+from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
+from aionode._socket_queue import queued_bytes
+from aionode.clock import S_TO_NS
 from aionode.gateway._outgoing import Framing, Outgoing
+from aionode.gateway._portions import Portions
+from aionode.gateway._robot import Bucket
 
 if TYPE_CHECKING:
-    from aionode.gateway._policy import Policy
+    from aionode.gateway._policy import Limits, Policy
 
 __all__ = ["HttpConnection", "Server", "WebSocketConnection", "server_config"]
 
 PING_SEC: Final = 20.0
 DATE_SEC: Final = 1.0
 CLOSING_SEC: Final = 1.0
+
+GOODBYE_SEC: Final = 5.0
+"""How long a client may take to read the end of a WebSocket, in seconds."""
+
+ANSWERED: Final = "aionode.answered"
+"""The type of a message of ASGI for the answer to a ping, which the application does not see."""
+
+MOST_ASKED: Final = 16
+"""How many pings at once may wait for their answers."""
+
+MOST_PARTS: Final = 10_000
+"""How many parts a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
+
 SPARE: Final = 16
 """How many more connections there may be than clients: those for pages, and those that are told
 that there are too many."""
@@ -87,46 +106,114 @@ class Server(uvicorn.Server):
             await server.wait_closed()
 
 
+class Flow(FlowControl):
+    """The flow of a connection, which begins again with what waits."""
+
+    def __init__(self, transport: asyncio.Transport, portions: Portions) -> None:
+        super().__init__(transport)
+        self._portions = portions
+
+    def resume_reading(self) -> None:
+        """Take further bytes of the client."""
+        super().resume_reading()
+        self._portions.go_on()
+
+
 class HttpConnection(H11Protocol):
-    """A connection that has to say within some seconds what it wants.
+    """A connection that has to say within some seconds what it wants, and to read the answer.
 
     The application finds in the state of the scope who the client is by its TLS certificate.
     """
 
-    _handshake: asyncio.TimerHandle | None = None
+    _timer: asyncio.TimerHandle | None = None
+    _unread_bytes: int | None = None
+    _made_s: float = 0.0
     _is_upgraded = False
+    config: ServerConfig
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin the time within which a request has to arrive."""
         super().connection_made(transport)
         self.access_log = False  # it would have the paths of requests, and belongs to the program
-        limits = self.config.policy().limits  # type: ignore[attr-defined]  # a ServerConfig
-        if len(self.connections) > limits.clients + SPARE:
+        self._portions = Portions(
+            transport, super().data_received, lambda: not self.flow.read_paused
+        )
+        self.flow = Flow(transport, self._portions)
+        self._made_s = self.loop.time()
+        if len(self.connections) > self._limits.clients + SPARE and not self._make_room():
             transport.abort()
             return
         state = {"aionode_certificate": common_name(transport), "aionode_connection": self}
         self.app_state = {**self.app_state, **state}
-        self._handshake = self.loop.call_later(limits.handshake_sec, self._give_up)
+        self._begin_time()
 
-    def _give_up(self) -> None:
-        scope: object = self.scope  # None until the head of a request has arrived
-        cycle: Any = self.cycle  # None until the first request
-        is_answered = cycle is not None and cycle.response_complete
-        if not self._is_upgraded and (scope is None or is_answered):
+    @property
+    def _limits(self) -> Limits:
+        return self.config.policy().limits
+
+    def _make_room(self) -> bool:
+        """Close the oldest connection whose request is not there yet, and return whether one was.
+
+        A client says at once what it wants; those who only keep connections must not keep it out.
+        """
+        waiting = [
+            each
+            for each in self.connections
+            if isinstance(each, HttpConnection) and each is not self and each.is_waiting
+        ]
+        oldest = min(waiting, key=lambda each: each._made_s, default=None)
+        if oldest is not None:
+            oldest.transport.abort()
+            self.connections.discard(oldest)  # its end is told in the next turn only
+        return oldest is not None
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether the gateway waits for a request, or for the rest of one."""
+        cycle: Any = self.cycle  # None until the head of a request has arrived
+        return cycle is None or cycle.response_complete or cycle.more_body
+
+    def data_received(self, data: bytes) -> None:
+        """Take what was received, some of it at a time."""
+        self._portions.add(data)
+
+    def _begin_time(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+        self._timer = self.loop.call_later(self._limits.handshake_sec, self._look)
+
+    def _look(self) -> None:
+        """Close the connection if its client has not sent its request, or reads nothing."""
+        if self._is_upgraded:
+            return
+        left = unread_bytes(self.transport)
+        cycle: Any = self.cycle
+        if left:
+            is_idle = self._unread_bytes is not None and left >= self._unread_bytes
+        else:  # the application itself limits the time for the body
+            is_idle = cycle is None or cycle.response_complete
+        self._unread_bytes = left or None
+        if is_idle:
             self.transport.abort()
+        else:
+            self._begin_time()
+
+    def resume_writing(self) -> None:
+        """Note that the client reads."""
+        self._unread_bytes = None
+        super().resume_writing()
 
     def on_response_complete(self) -> None:
         """Begin the time within which the next request has to arrive whole."""
         super().on_response_complete()
-        if self._handshake is not None:
-            self._handshake.cancel()
         if not self.transport.is_closing():
-            limits = self.config.policy().limits  # type: ignore[attr-defined]  # a ServerConfig
-            self._handshake = self.loop.call_later(limits.handshake_sec, self._give_up)
+            self._begin_time()
 
     def handle_websocket_upgrade(self, event: Any) -> None:
-        """Let a WebSocket have all the time."""
+        """Let a WebSocket have all the time, and frames as large as the policy says now."""
         self._is_upgraded = True
+        self._portions.close()
+        self.config.ws_max_size = self._limits.frame_bytes
         super().handle_websocket_upgrade(event)
 
     def lose_after(self, seconds: float) -> None:
@@ -143,30 +230,43 @@ class HttpConnection(H11Protocol):
             timeout_ms = round(seconds * 1000)
             connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, timeout_ms)
 
+    def shutdown(self) -> None:
+        """End, without a request that is not there yet."""
+        super().shutdown()
+        if self.is_waiting:
+            self.transport.abort()
+
     def connection_lost(self, exc: Exception | None) -> None:
-        """Forget the time limit."""
-        if self._handshake is not None:
-            self._handshake.cancel()
+        """Forget the time limit, and what waits."""
+        if self._timer is not None:
+            self._timer.cancel()
+        self._portions.close()
         super().connection_lost(exc)
-        self.config.has_lost_one.set()  # type: ignore[attr-defined]  # a ServerConfig
+        self.config.has_lost_one.set()
 
 
 class WebSocketConnection(WebSocketsSansIOProtocol):
     """A WebSocket that says how long its client is silent, and whether it answers now."""
 
     _heard_s: float = 0.0
-    _pings: int = 0
-    _on_pong: tuple[bytes, Callable[[], None]] | None = None
+    config: ServerConfig
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self.conn.debug = False  # it would write the tokens of addresses and headers into the log
+        self._asked: dict[bytes, Callable[[], None]] = {}  # by the payloads of pings
+        limits = self.config.policy().limits
+        self._bucket = Bucket(limits.frames_per_sec, lambda: round(self.loop.time() * S_TO_NS))
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Have frames leave as the client reads them."""
+        """Have frames leave as the client reads them, and arrive as the application does."""
         super().connection_made(transport)
-        self._framing = self.config.framing  # type: ignore[attr-defined]  # a ServerConfig
+        self._framing = self.config.framing
         self.transport = self._outgoing = Outgoing(transport, self.writable)
+        self._portions = Portions(transport, super().data_received, self._is_ready)
+
+    def _is_ready(self) -> bool:
+        return self.queue.empty() or self.close_sent
 
     def pause_writing(self) -> None:
         """Send nothing until the client has read what was sent."""
@@ -182,9 +282,23 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         super().handle_connect(event)
 
     def data_received(self, data: bytes) -> None:
-        """Note the time."""
+        """Note the time, and take what was received, some of it at a time."""
         self._heard_s = self.loop.time()
-        super().data_received(data)
+        self._portions.add(data)
+
+    async def receive(self) -> Any:
+        """Return the next frame.
+
+        The answer to a ping has its place among the frames: those before it were sent earlier.
+        """
+        while True:
+            message: Any = await self.queue.get()
+            if self.queue.empty():
+                self.read_paused = False
+                self._portions.go_on()
+            if message["type"] != ANSWERED:
+                return message
+            message["answered"]()
 
     async def send(self, message: Any) -> None:
         """Send what the application does; a client that it has refused is no fault of it.
@@ -198,6 +312,8 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         await super().send(message)
         if message["type"] == "websocket.http.response.body":
             self.handshake_complete = True
+        elif message["type"] == "websocket.close":
+            self._portions.go_on()  # the client's answer may be behind what waits
 
     async def _send_frame(self, frame: bytes | str) -> None:
         """Send a frame when the client has read the earlier ones.
@@ -228,11 +344,17 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         return self.loop.time() - self._heard_s
 
     def ping(self, answered: Callable[[], None] | None = None) -> None:
-        """Ask the client for a sign, and call `answered` with it: what comes then is no older."""
-        self._pings += 1
-        payload = b"aionode%d" % self._pings
-        if answered is not None:  # a mere sign of life takes no answer from who waits for one
-            self._on_pong = (payload, answered)
+        """Ask the client for a sign, and call `answered` with it: what comes then is no older.
+
+        Nobody can answer before: what a ping carries is random. A client that gets several pings
+        at once may answer the last one only, and one far away answers after the next ping is out,
+        so any answer to a ping with `answered` counts.
+        """
+        payload = secrets.token_bytes(8)
+        if answered is not None:
+            if len(self._asked) >= MOST_ASKED:
+                del self._asked[next(iter(self._asked))]
+            self._asked[payload] = answered
         if not (self.close_sent or self.transport.is_closing()):
             self.conn.send_ping(payload)
             self.transport.write(b"".join(self.conn.data_to_send()))
@@ -243,16 +365,62 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Tell the server, which may wait for its last connection to end."""
+        self._portions.close()
         super().connection_lost(exc)
-        self.config.has_lost_one.set()  # type: ignore[attr-defined]  # a ServerConfig
+        self.config.has_lost_one.set()
+
+    def keepalive_timeout(self) -> None:
+        """Close the connection of a client that answers nothing, and reads no goodbye either."""
+        super().keepalive_timeout()
+        self.transport.abort()
+
+    async def run_asgi(self) -> None:
+        """Serve the client; it has a moment to read the goodbye."""
+        await super().run_asgi()
+        if not self.disconnected:
+            self.loop.call_later(GOODBYE_SEC, self.transport.abort)
+
+    # Frames that reach no application: they are read no faster than others
+
+    def handle_ping(self) -> None:
+        """Answer a ping."""
+        self._count()
+        super().handle_ping()
 
     def handle_pong(self, event: Any) -> None:
         """Take the answer to a ping."""
-        if self._on_pong is not None and bytes(event.data) == self._on_pong[0]:
-            answered, self._on_pong = self._on_pong[1], None
-            answered()
-        else:
+        self._count()
+        answered = self._asked.pop(bytes(event.data), None)
+        if answered is None:
             super().handle_pong(event)
+        else:
+            self._asked.clear()
+            message: Any = {"type": ANSWERED, "answered": answered}
+            self.queue.put_nowait(message)
+
+    def handle_cont(self, event: Any) -> None:
+        """Take a part of a message; without any bytes in them, there could be any number."""
+        self._count()
+        if len(self.frames) >= MOST_PARTS:
+            self.transport.abort()
+        else:
+            super().handle_cont(event)
+
+    def _count(self) -> None:
+        if self._bucket.wait_sec():
+            self._portions.owed_sec += 1.0 / self.config.policy().limits.frames_per_sec
+
+
+def unread_bytes(transport: asyncio.Transport) -> int:
+    """Return how much of what was sent is on its way: here, and in the buffers of the kernel.
+
+    A socket tells that it has room only when a third of its buffer has left.
+    """
+    waiting = transport.get_write_buffer_size()
+    connected = transport.get_extra_info("socket")
+    with contextlib.suppress(OSError):
+        waiting += queued_bytes(connected)
+    return waiting
 
 
 def common_name(transport: asyncio.Transport) -> str:

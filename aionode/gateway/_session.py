@@ -33,6 +33,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         credentials: What the client has shown; None if the program made the session itself.
         outbox: What waits for it.
         ended: Set when the policy does not know the client any more.
+        is_doubtful: Whether it was silent for too long, so that commands may be from before that.
         owner: Who holds the topics that the client commands: the session, which ends the leases
             when it ends, or something that outlives it.
     """

@@ -31,7 +31,7 @@ class Connection(Protocol):
     def silent_sec(self) -> float:
         """Return how long nothing has arrived, in seconds."""
 
-    def ping(self, answered: Callable[[], None] = ...) -> None:
+    def ping(self, answered: Callable[[], None] | None = None) -> None:
         """Ask the client for a sign, and call `answered` with it."""
 
     def abort(self) -> None:
@@ -56,7 +56,8 @@ class SessionBase:
         self.refused = 0
         self.connection: Connection | None = None
         self._frame_ns: int | None = None  # when the frame arrived that is handled
-        self._is_doubtful = False
+        self.is_doubtful = False
+        self._doubted_ns = -1
 
     # The policy
 
@@ -171,17 +172,25 @@ class SessionBase:
         What a link that was cut delivers later was sent before that answer.
         """
         if self.connection is not None:
-            self._is_doubtful = True
-            self.connection.ping(self._trust)
+            self.is_doubtful = True
+            self._doubted_ns = self._robot.time_base.steady_ns() - 1
+            self.ask_for_sign()
+
+    def ask_for_sign(self) -> None:
+        """Send a ping; if the session is doubtful, its answer ends the doubt."""
+        if self.connection is not None:
+            self.connection.ping(self._trust if self.is_doubtful else None)
 
     def note_frame(self) -> None:
         """Take that a frame is handled now, which arrived with the last bytes of the client."""
         if self.connection is not None:
             age_ns = round(self.connection.silent_sec() * S_TO_NS)
             self._frame_ns = self._robot.time_base.steady_ns() - age_ns
+            if self.is_doubtful:  # what waits in a lane is handled when the doubt is over, perhaps
+                self._doubted_ns = max(self._doubted_ns, self._frame_ns)
 
     def _trust(self) -> None:
-        self._is_doubtful = False
+        self.is_doubtful = False
 
     # Types and names
 

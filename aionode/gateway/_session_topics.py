@@ -240,7 +240,7 @@ class SessionTopics(SessionBase):
             commands.refuse_if_held(topic, self.owner)
             publisher.publish(decision.message)
             return
-        if self._is_doubtful:
+        if self.is_doubtful or arrived_ns <= self._doubted_ns:
             reason = "it may be from before the silence of the client"
             raise RefusedError(f"publish {topic}", reason, "too_old")
         now_ns = self._robot.node.get_clock().now().nanoseconds

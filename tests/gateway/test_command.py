@@ -50,9 +50,10 @@ class Connection:
         """Return how long nothing has arrived."""
         return 0.0
 
-    def ping(self, answered: Callable[[], None] = lambda: None) -> None:
+    def ping(self, answered: Callable[[], None] | None = None) -> None:
         """Keep the answer."""
-        self.pongs.append(answered)
+        if answered is not None:
+            self.pongs.append(answered)
 
     def abort(self) -> None:
         """Close nothing."""
@@ -213,6 +214,25 @@ async def test_what_a_link_delivers_after_a_silence_is_refused(
         assert await refusal(session) == "too_old"
         (pong,) = connection.pongs
         pong()
+        await drive(session, 2.0)
+    await settle()
+    assert wheels == [(1, 0), (0, 0), (2, 0), (0, 0)]
+
+
+async def test_a_command_that_waits_while_the_ping_is_answered_is_refused(
+    bench: Bench, wheels: list[tuple[float, float]]
+) -> None:
+    """It came before the answer, and waits in a lane behind the description of its type."""
+    async with bench.session("high") as session:
+        session.connection = connection = Connection()
+        await drive(session, 1.0)
+        await bench.advance(0.3)
+        session.note_frame()
+        arrived_ns = session.arrival_ns()
+        connection.pongs.pop()()
+        assert await refusal(session, arrived_ns=arrived_ns) == "too_old"
+        await bench.advance(0.001)
+        session.note_frame()
         await drive(session, 2.0)
     await settle()
     assert wheels == [(1, 0), (0, 0), (2, 0), (0, 0)]

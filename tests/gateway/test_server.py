@@ -8,15 +8,12 @@ import json
 import logging
 import signal
 import socket
-import ssl
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
 from pathlib import Path
 from typing import Any
 
-import httpx
 import pytest
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.typing import Origin
 
@@ -29,6 +26,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import local_context, settle
 from tests.support.gateway_bench import Bench
+from tests.support.gateway_server import address, drive, get, http_client, raw_connect, serving
 from tests.support.waiting import until
 
 TOKEN = "a-token-that-nobody-may-read"
@@ -43,35 +41,7 @@ loopback = true
 see = "/**"
 publish = "/**"
 """
-DRIVE = json.dumps(
-    {
-        "op": "publish",
-        "topic": "/cmd_vel",
-        "type": "geometry_msgs/Twist",
-        "msg": {"linear": {"x": 1.0}},
-    }
-)
-
-
-@asynccontextmanager
-async def serving(policy: Policy | None = None, **options: Any) -> AsyncIterator[Gateway]:
-    """Yield a gateway on a free port, in a context of its own."""
-    async with (
-        local_context() as context,
-        Node("gateway", context=context) as node,
-        Gateway(node, policy, port=0, **options) as gateway,
-    ):
-        yield gateway
-
-
-def address(gateway: Gateway, path: str = "/") -> str:
-    """Return the address of a WebSocket."""
-    return f"ws://127.0.0.1:{gateway.port}{path}"
-
-
-def http_client() -> httpx.AsyncClient:
-    """Return a client that loads no certificates, which takes it a tenth of a second."""
-    return httpx.AsyncClient(trust_env=False, verify=ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT))
+DRIVE = drive(1.0)
 
 
 async def test_small_frames_wait_for_no_acknowledgement() -> None:
@@ -82,14 +52,6 @@ async def test_small_frames_wait_for_no_acknowledgement() -> None:
         connected = connection.transport.get_extra_info("socket")
 
         assert connected.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
-
-
-async def get(
-    gateway: Gateway, path: str = "/topics", headers: dict[str, str] | None = None
-) -> httpx.Response:
-    """Return the answer to a request."""
-    async with http_client() as client:
-        return await client.get(f"http://127.0.0.1:{gateway.port}{path}", headers=headers)
 
 
 STRANGERS = (
@@ -117,24 +79,6 @@ async def test_strangers_are_refused_on_every_way_in() -> None:
                         pass
                 assert refused.value.response.status_code == 401
         assert gateway.stats.sessions == {}
-
-
-@asynccontextmanager
-async def raw_connect(
-    gateway: Gateway, path: str, headers: dict[str, str], protocols: list[str]
-) -> AsyncIterator[ClientConnection]:
-    """Connect with headers of one's own, as no library lets a page do."""
-    host = headers.get("host", f"127.0.0.1:{gateway.port}")
-    others = {name: value for name, value in headers.items() if name != "host"}
-    async with connect(
-        f"ws://{host}{path}" if ":" in host else f"ws://{host}:{gateway.port}{path}",
-        host="127.0.0.1",
-        port=gateway.port,
-        additional_headers=others,
-        subprotocols=protocols or None,  # type: ignore[arg-type]  # names of protocols
-        proxy=None,
-    ) as websocket:
-        yield websocket
 
 
 async def test_a_refused_client_is_no_error_in_the_log(caplog: pytest.LogCaptureFixture) -> None:

@@ -24,6 +24,7 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
+from aionode._socket_queue import queued_bytes
 from aionode.transport._network import is_near
 from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._descriptors import (
@@ -80,16 +81,6 @@ ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
 
 SETTLE_S: Final = 0.5
 """How long after a new connection its socket is looked for; several are made at once."""
-
-
-def queued_bytes(one: socket.socket) -> int:
-    """Return how many bytes wait in a socket; 0 where the system does not tell."""
-    try:
-        import fcntl
-        import termios
-    except ImportError:  # Windows
-        return 0
-    return int.from_bytes(fcntl.ioctl(one, termios.TIOCOUTQ, bytes(4)), sys.byteorder)
 
 
 def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:

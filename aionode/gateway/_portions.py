@@ -1,0 +1,101 @@
+"""What a connection has received, handed to its parser in parts."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Final
+
+__all__ = ["Portions"]
+
+PART: Final = 1024
+"""How many bytes a parser gets at a time: some 170 frames or chunks of one byte."""
+
+TURN_SEC: Final = 0.002
+"""How long parts are handed on before timers, I/O and callbacks of the robot have their turn."""
+
+
+class Portions:
+    """Hands on what a connection has received, in parts, with turns of the event loop between.
+
+    One read brings up to 256 kB. A parser that gets them at once takes a second if they are tiny
+    frames or chunks, for which the robot's event loop would stand still.
+
+    Args:
+        transport: Is not read while something waits.
+        take: Takes a part.
+        is_ready: Returns whether `take` can be called now; by default it always can. If it could
+            not, `go_on` has to be called as soon as it can.
+
+    Attributes:
+        owed_sec: For how long nothing more is handed on, in seconds, as `take` has set it.
+    """
+
+    def __init__(
+        self,
+        transport: asyncio.Transport,
+        take: Callable[[bytes], None],
+        is_ready: Callable[[], bool] = lambda: True,
+    ) -> None:
+        self._transport = transport
+        self._take = take
+        self._is_ready = is_ready
+        self._loop = asyncio.get_running_loop()
+        self._waiting = bytearray()
+        self._turn: asyncio.Handle | None = None
+        self._is_closed = False
+        self.owed_sec = 0.0
+
+    def add(self, data: bytes) -> None:
+        """Take what was received."""
+        if not self._waiting and self._turn is None and len(data) <= PART and self._is_ready():
+            self._take(data)
+            self._wait_if_owed()
+        else:
+            self._waiting += data
+            if self._turn is None:
+                self._hand_on()
+
+    def go_on(self) -> None:
+        """Hand on what waits, from the next turn of the event loop on."""
+        if self._turn is None and not self._is_closed:
+            self._turn = self._loop.call_soon(self._next_turn)
+
+    def close(self) -> None:
+        """Forget what waits."""
+        self._is_closed = True
+        self._waiting.clear()
+        if self._turn is not None:
+            self._turn.cancel()
+
+    def _next_turn(self) -> None:
+        self._turn = None
+        self._hand_on()
+
+    def _hand_on(self) -> None:
+        until_s = self._loop.time() + TURN_SEC
+        while self._waiting and self._is_ready():
+            if self._transport.is_closing():  # nobody reads what a parser would say of the rest
+                self._waiting.clear()
+                return
+            part = bytes(self._waiting[:PART])
+            del self._waiting[:PART]
+            self._take(part)
+            if self._wait_if_owed():
+                return
+            if self._waiting and self._loop.time() > until_s:
+                self.go_on()
+                break
+        if self._waiting:
+            self._transport.pause_reading()
+        elif not self._is_closed and self._is_ready():
+            self._transport.resume_reading()
+
+    def _wait_if_owed(self) -> bool:
+        """Hand nothing more on for the time that is owed, and return whether there is one."""
+        if not self.owed_sec or self._is_closed:
+            return False
+        self._transport.pause_reading()
+        self._turn = self._loop.call_later(self.owed_sec, self._next_turn)
+        self.owed_sec = 0.0
+        return True

@@ -1,0 +1,457 @@
+"""Connections that break without a word, stall, or never say what they want."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import socket
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+import pytest
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
+
+from aionode.action import CancelResponse
+from aionode.gateway import Gateway, Policy
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.interfaces.std_msgs.msg import String
+from tests.support.gateway_server import (
+    Cable,
+    busiest_turn,
+    cable,
+    drive,
+    get,
+    raw_connect,
+    serving,
+    upgraded,
+)
+from tests.support.waiting import until
+
+TTL_SEC = 0.15
+
+POLICY = f"""
+[[who]]
+name = "local"
+loopback = true
+[[allow]]
+publish = "/cmd_vel"
+lease = {{ ttl_sec = {TTL_SEC}, max_age_sec = 60.0 }}
+[[allow]]
+see = "/**"
+subscribe = "/**"
+publish = "/**"
+goal = "/**"
+[limits]
+"""
+
+CLOSED = (ConnectionResetError, BrokenPipeError, asyncio.IncompleteReadError)
+
+
+def listen(gateway: Gateway) -> list[float]:
+    """Return the speeds that the wheels get."""
+    got: list[float] = []
+    gateway.node.create_subscription(Twist, "/cmd_vel", lambda msg: got.append(msg.linear.x), 100)
+    return got
+
+
+@asynccontextmanager
+async def through(line: Cable) -> AsyncIterator[ClientConnection]:
+    """Connect a client through a cable."""
+    async with connect(f"ws://127.0.0.1:{line.port}/", proxy=None, close_timeout=1) as client:
+        yield client
+
+
+# A client whose packets vanish
+
+
+async def test_the_stop_is_sent_when_packets_vanish_and_nobody_else_notices() -> None:
+    """A cable that is pulled ends no connection: the lease ends, and the others hear all."""
+    async with (
+        serving(Policy.parse(POLICY)) as gateway,
+        cable(gateway) as line,
+        raw_connect(gateway, "/", {}, []) as other,
+    ):
+        got = listen(gateway)
+        words = gateway.node.create_publisher(String, "/words", 10)
+        subscribing = json.dumps({"op": "subscribe", "topic": "/words", "queue_length": 5})
+        async with through(line) as client:
+            for each in (client, other):
+                await each.send(subscribing)
+            await until(lambda: len([s for s in gateway._sessions if s._subscribed]) == 2)
+            await client.send(drive(1.0))
+            await until(lambda: got == [1.0])
+            line.cut()
+            for number in range(100):
+                words.publish(String(data=f"{number}:" + "x" * 100_000))
+                assert json.loads(await other.recv())["msg"]["data"].startswith(f"{number}:")
+            await until(lambda: got == [1.0, 0.0])
+            assert max(s.outbox.waiting_bytes for s in gateway._sessions) <= 5 * 101_000
+            line.join()
+
+
+@pytest.mark.parametrize("is_one_way", [False, True], ids=["both ways", "to the gateway only"])
+async def test_commands_of_a_cut_count_only_behind_the_answer_to_a_ping(is_one_way: bool) -> None:
+    """What was sent before or during the cut arrives at its end; it must move nothing."""
+    limits = "client_lost_sec = 30.0"
+    async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
+        got = listen(gateway)
+        async with through(line) as client:
+            await client.send(drive(1.0))
+            await until(lambda: got == [1.0])
+            sent = line.sent_bytes
+            line.to_gateway.clear()
+            if not is_one_way:
+                line.to_client.clear()
+            for _ in range(20):
+                await client.send(drive(100.0))
+            await until(lambda: got == [1.0, 0.0])
+            if is_one_way:  # the ping is answered, behind the commands
+                commands = 20 * len(frame(drive(100.0).encode()))
+                await until(lambda: line.sent_bytes > sent + commands)
+            (session,) = gateway._sessions
+            line.join()
+            await until(lambda: not session.is_doubtful)
+            while got == [1.0, 0.0]:
+                await client.send(drive(2.0))
+                await asyncio.sleep(0.01)  # noqa: TID251  # as often as a page sends them
+
+            assert set(got) == {1.0, 0.0, 2.0}
+
+
+async def test_a_commander_that_gives_no_sign_is_disconnected_and_may_come_back() -> None:
+    """After `client_lost_sec`: what the cut has kept goes nowhere, a new connection counts."""
+    limits = "client_lost_sec = 0.3"
+    async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
+        got = listen(gateway)
+        async with through(line) as client:
+            await client.send(drive(1.0))
+            await until(lambda: got == [1.0])
+            line.cut()
+            for _ in range(20):
+                await client.send(drive(100.0))
+            await until(lambda: not gateway.stats.sessions)
+            line.join()
+            with pytest.raises(ConnectionClosed):
+                await client.recv()
+        assert got == [1.0, 0.0]
+        async with through(line) as client:
+            await client.send(drive(2.0))
+            await until(lambda: got[2:3] == [2.0])
+
+
+async def test_a_goal_of_a_client_that_gives_no_sign_is_cancelled() -> None:
+    """After `client_lost_sec`; a client that is only silent answers pings, and keeps its goal."""
+    limits = "client_lost_sec = 0.3"
+    ends: list[str] = []
+    async with serving(Policy.parse(POLICY + limits)) as gateway, cable(gateway) as line:
+
+        async def execute(goal: Any) -> Any:
+            try:
+                await asyncio.Event().wait()
+            finally:
+                ends.append(str(goal.request.order))
+
+        gateway.node.create_action_server(
+            Fibonacci, "count", execute, cancel_callback=lambda _: CancelResponse.ACCEPT
+        )
+        async with through(line) as lost, raw_connect(gateway, "/", {}, []) as silent:
+            for order, client in enumerate((lost, silent)):
+                op = {"op": "send_action_goal", "action": "/count", "args": {"order": order}}
+                op |= {"action_type": "example_interfaces/action/Fibonacci", "id": str(order)}
+                await client.send(json.dumps(op))
+            await until(lambda: all(s.has_goals for s in gateway._sessions))
+            line.cut()
+            await until(lambda: len(gateway._sessions) == 1 and ends)
+            assert ends == ["0"]
+            (session,) = gateway._sessions
+            assert session.has_goals
+            line.join()
+
+
+# Pings
+
+
+async def test_a_ping_cannot_be_answered_before_it_is_sent() -> None:
+    """What it carries is random: it ends a doubt about when commands were sent."""
+    async with serving(Policy.parse(POLICY)) as gateway:
+        got = listen(gateway)
+        reader, writer, _ = await upgraded(gateway)
+        writer.write(frame(drive(1.0).encode()))
+        for number in range(10):
+            writer.write(frame(b"aionode%d" % number, PONG))
+        await until(lambda: got == [1.0, 0.0])
+        for number in range(10):
+            writer.write(frame(b"aionode%d" % number, PONG))
+        writer.write(frame(drive(2.0).encode()))
+        (session,) = gateway._sessions
+        await until(lambda: session.refused)
+        assert got == [1.0, 0.0]
+        asked = [await ping_of(reader) for _ in range(2)]
+        assert len({*asked}) == 2
+        assert min(map(len, asked)) >= 8
+        writer.write(frame(asked[0], PONG))  # RFC 6455 lets a client answer any of them
+        await until(lambda: not session.is_doubtful)
+        writer.close()
+
+
+async def test_a_sign_that_is_asked_for_meanwhile_leaves_the_doubt() -> None:
+    """A client with goals is asked again and again: its answer ends the doubt as well."""
+    limits = "client_lost_sec = 0.3"
+    async with serving(Policy.parse(POLICY + limits)) as gateway:
+        got = listen(gateway)
+        reader, writer, _ = await upgraded(gateway)
+        writer.write(frame(drive(1.0).encode()))
+        await until(lambda: got == [1.0, 0.0])
+        (session,) = gateway._sessions
+        for _ in range(3):
+            payload = await ping_of(reader)
+            assert session.is_doubtful
+            writer.write(frame(b"", PONG))  # a sign, but no answer
+        writer.write(frame(payload, PONG))
+        await until(lambda: not session.is_doubtful)
+        writer.close()
+
+
+TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
+
+
+def frame(payload: bytes, opcode: int = TEXT, *, first: int = 0x80) -> bytes:
+    """Return a frame of a client, masked with zeros."""
+    size = len(payload)
+    if size < 126:
+        length = bytes([0x80 | size])
+    elif size < 1 << 16:
+        length = bytes([0x80 | 126]) + size.to_bytes(2, "big")
+    else:
+        length = bytes([0x80 | 127]) + size.to_bytes(8, "big")
+    return bytes([first | opcode]) + length + bytes(4) + payload
+
+
+async def ping_of(reader: asyncio.StreamReader) -> bytes:
+    """Return what the next ping carries, beyond all other frames."""
+    while True:
+        first, size = await reader.readexactly(2)
+        if size == 126:
+            size = int.from_bytes(await reader.readexactly(2), "big")
+        payload = await reader.readexactly(size)
+        if first & 0x0F == PING:
+            return payload
+
+
+# Connections that say nothing, or read nothing
+
+
+async def closed(reader: asyncio.StreamReader) -> bytes:
+    """Wait until the gateway closes a connection, and return what it said."""
+    said = b""
+    with contextlib.suppress(*CLOSED):
+        while data := await reader.read(1 << 16):
+            said += data
+    return said
+
+
+async def trickle(writer: asyncio.StreamWriter, beginning: bytes, period_sec: float) -> None:
+    """Send a beginning, and then a byte at a time for ever."""
+    with contextlib.suppress(*CLOSED):
+        writer.write(beginning)
+        while True:
+            await writer.drain()
+            await asyncio.sleep(period_sec)  # noqa: TID251  # that is the attack
+            writer.write(b"x")
+
+
+SLOW = {
+    "head": b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Slow: ",
+    "upgrade": b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nSec-WebSocket-Key: ",
+    "body": b"POST /topics/x HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9999\r\n\r\n",
+    "body of the page": b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 9999\r\n\r\n",
+    "second head": b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\nGET /topics HTTP/1.1\r\nX: ",
+}
+
+
+@pytest.mark.parametrize("what", SLOW)
+async def test_a_request_that_arrives_byte_by_byte_is_given_up(what: str) -> None:
+    """However many bytes come: the time counts for the whole of it, the first or a later one."""
+    limits = "handshake_sec = 0.2"
+    async with serving(Policy.parse(POLICY + limits)) as gateway, asyncio.TaskGroup() as tasks:
+        reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
+        trickling = tasks.create_task(trickle(writer, SLOW[what], 0.02))
+        await closed(reader)
+        trickling.cancel()
+        writer.close()
+
+
+async def test_an_idle_connection_is_closed_after_its_answer() -> None:
+    """Kept open, it would take the place of a client; uvicorn's own limit is a header away."""
+    request = b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+    limits = "handshake_sec = 0.2"
+    async with serving(Policy.parse(POLICY + limits)) as gateway:
+        reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
+        for _ in range(2):
+            writer.write(request)
+            head = (await reader.readuntil(b"\r\n\r\n")).decode()
+            size = int(head.partition("content-length: ")[2].split()[0])
+            assert await reader.readexactly(size)
+        writer.write(request[:20])  # it stops the keep-alive time of uvicorn
+        assert await closed(reader) == b""
+        writer.close()
+
+
+async def test_five_hundred_connections_that_say_nothing_keep_nobody_out() -> None:
+    """Their number is bounded, and one that asks for something takes the place of the oldest."""
+    limits = "clients = 4\nhandshake_sec = 30.0"
+    async with (
+        serving(Policy.parse(POLICY + limits)) as gateway,
+        raw_connect(gateway, "/", {}, []) as client,
+    ):
+        slow: list[socket.socket] = []
+        for _ in range(25):
+            for _ in range(20):
+                each = socket.create_connection(("127.0.0.1", gateway.port))
+                each.send(SLOW["head"])
+                slow.append(each)
+            assert (await get(gateway)).status_code == 200
+        assert len(gateway._server.server_state.connections) <= 4 + 16 + 1
+        op = {"op": "call_service", "service": "/rosapi/get_time"}
+        await client.send(json.dumps(op))
+        assert json.loads(await client.recv())["op"] == "service_response"
+        for each in slow:
+            each.close()
+
+
+async def test_an_answer_that_nobody_reads_is_given_up() -> None:
+    """A caller that asks for much and reads nothing must not keep a session for ever."""
+    limits = "handshake_sec = 0.2"
+    path = "/topics/words?type=std_msgs/msg/String"
+    async with serving(Policy.parse(POLICY + limits)) as gateway:
+        words = gateway.node.create_publisher(String, "/words", 10)
+        head = f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n\r\n"
+        with slow_reader(gateway.port) as caller:
+            caller.send(head.encode())
+            await until(lambda: gateway._sessions)
+            while gateway._sessions:
+                words.publish(String(data="x" * 100_000))
+                await asyncio.sleep(0.01)  # noqa: TID251  # a topic's rate
+            await until(lambda: not gateway._server.server_state.connections)
+
+
+async def test_a_large_answer_has_as_long_as_its_reader_takes() -> None:
+    """What is read slowly is no attack: the answer goes on while some of it is taken."""
+    limits = "handshake_sec = 0.2"
+    size = 400_000
+    async with serving(Policy.parse(POLICY + limits)) as gateway:
+        words = gateway.node.create_publisher(String, "/words", 1)
+        head = "GET /topics/words?type=std_msgs/msg/String HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+        with slow_reader(gateway.port) as caller:
+            caller.send(head.encode())
+            await until(lambda: [s for s in gateway._sessions if s._subscribed])
+            words.publish(String(data="x" * size))
+            loop, got = asyncio.get_running_loop(), 0
+            caller.setblocking(False)
+            while got < size:
+                await asyncio.sleep(0.02)  # noqa: TID251  # a slow link
+                data = await loop.sock_recv(caller, 1 << 16)
+                assert data
+                got += len(data)
+
+
+@contextlib.contextmanager
+def slow_reader(port: int) -> Any:
+    """Connect with a small buffer in the kernel."""
+    with socket.socket() as caller:
+        caller.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        caller.connect(("127.0.0.1", port))
+        yield caller
+
+
+async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A frozen page: what waits for it keeps the connection open if nobody cuts it."""
+    monkeypatch.setattr("aionode.gateway._server.PING_SEC", 0.2)
+    async with serving(Policy.parse(POLICY)) as gateway:
+        words = gateway.node.create_publisher(String, "/words", 10)
+        reader, writer, _ = await upgraded(gateway)
+        reader._transport.pause_reading()  # type: ignore[attr-defined]  # the stream's own
+        writer.write(frame(json.dumps({"op": "subscribe", "topic": "/words"}).encode()))
+        await until(lambda: [s for s in gateway._sessions if s._subscribed])
+        for _ in range(100):
+            words.publish(String(data="x" * 100_000))
+        await until(lambda: not gateway._sessions)
+        await until(lambda: not gateway._server.server_state.connections)
+        writer.transport.abort()
+
+
+async def test_a_client_that_reads_no_answers_is_disconnected() -> None:
+    """It asks again and again: what waits is bounded, and so is the time."""
+    limits = "client_lost_sec = 0.3\nframes_per_sec = 1e6"
+    async with serving(Policy.parse(POLICY + limits)) as gateway:
+        reader, writer, _ = await upgraded(gateway)
+        reader._transport.pause_reading()  # type: ignore[attr-defined]  # the stream's own
+        await until(lambda: gateway._sessions)
+        asking = json.dumps({"op": "call_service", "service": "/rosapi/topics_and_raw_types"})
+        with contextlib.suppress(*CLOSED):
+            while gateway._sessions:
+                writer.write(frame(asking.encode()) * 20)
+                await asyncio.sleep(0)  # noqa: TID251  # the gateway has its turn
+        writer.transport.abort()
+
+
+# Bytes that are made to cost
+
+
+def tiny(kind: str) -> bytes:
+    """Return what a parser takes long for: as many parts as fit into 256 kB."""
+    if kind == "chunks":
+        head = b"POST /topics/x HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
+        return head + b"1\r\nx\r\n" * 43_000
+    beginning, opcode = {"pings": (b"", PING), "frames": (b"", TEXT), "parts": (b"", 0)}[kind]
+    if kind == "parts":
+        return frame(b"", TEXT, first=0) + frame(b"", 0, first=0) * 43_000
+    return frame(beginning, opcode) * 43_000
+
+
+@pytest.mark.parametrize("kind", ["pings", "frames", "parts", "chunks"])
+async def test_a_burst_of_tiny_parts_leaves_the_loop_to_the_robot(kind: str) -> None:
+    """One read has 40,000 of them, for which a parser takes the better part of a second."""
+    data = tiny(kind)
+    async with serving(Policy.parse(POLICY)) as gateway:
+        if kind == "chunks":
+            _, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
+        else:
+            _, writer, _ = await upgraded(gateway)
+            await until(lambda: gateway._sessions)
+        async with busiest_turn() as busy:
+            writer.write(data)
+            await until(lambda: busy.turns > 300)
+            longest_sec = busy.longest_sec
+        assert longest_sec < 0.1
+        writer.transport.abort()
+
+
+async def test_parts_without_bytes_do_not_pile_up() -> None:
+    """No limit of bytes counts them."""
+    async with serving(Policy.parse(POLICY + "frames_per_sec = 1e6")) as gateway:
+        reader, writer, _ = await upgraded(gateway)
+        with contextlib.suppress(*CLOSED):
+            writer.write(frame(b"", TEXT, first=0) + frame(b"", 0, first=0) * 10_001)
+            await writer.drain()
+        assert await closed(reader) == b""
+        await until(lambda: not gateway._sessions)
+        writer.close()
+
+
+async def test_pings_are_read_no_faster_than_frames() -> None:
+    """The answers to them must cost the robot no more than what it is asked to do."""
+    async with serving(Policy.parse(POLICY + "frames_per_sec = 100")) as gateway:
+        reader, writer, _ = await upgraded(gateway)
+        began = asyncio.get_running_loop().time()
+        writer.write(frame(b"", PING) * 200)
+        pongs = await reader.readexactly(2 * 200)
+        assert pongs == bytes([0x80 | PONG, 0]) * 200
+        assert asyncio.get_running_loop().time() - began > 0.2
+        writer.close()

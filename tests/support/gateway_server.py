@@ -1,0 +1,204 @@
+"""A gateway on a port of this host, clients with headers of their own, and a cable to cut."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import ssl
+import time  # noqa: TID251  # how long the loop's thread is busy
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from typing import Any
+
+import httpx
+from websockets.asyncio.client import ClientConnection, connect
+
+from aionode.gateway import Gateway, Policy
+from aionode.node import Node
+from aionode.testing import local_context
+
+__all__ = ["Cable", "address", "busiest_turn", "cable", "drive", "get", "http_client"]
+__all__ += ["raw_connect", "serving", "upgraded"]
+
+UPGRADE = (
+    "GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    "Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n{more}\r\n"
+)
+"""The request by which a WebSocket begins."""
+
+
+@asynccontextmanager
+async def serving(policy: Policy | None = None, **options: Any) -> AsyncIterator[Gateway]:
+    """Yield a gateway on a free port, in a context of its own."""
+    async with (
+        local_context() as context,
+        Node("gateway", context=context) as node,
+        Gateway(node, policy, port=0, **options) as gateway,
+    ):
+        yield gateway
+
+
+def address(gateway: Gateway, path: str = "/") -> str:
+    """Return the address of a WebSocket."""
+    return f"ws://127.0.0.1:{gateway.port}{path}"
+
+
+def http_client() -> httpx.AsyncClient:
+    """Return a client that loads no certificates, which takes it a tenth of a second."""
+    return httpx.AsyncClient(trust_env=False, verify=ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT))
+
+
+async def get(
+    gateway: Gateway, path: str = "/topics", headers: dict[str, str] | None = None
+) -> httpx.Response:
+    """Return the answer to a request."""
+    async with http_client() as client:
+        return await client.get(f"http://127.0.0.1:{gateway.port}{path}", headers=headers)
+
+
+@asynccontextmanager
+async def raw_connect(
+    gateway: Gateway, path: str, headers: dict[str, str], protocols: list[str]
+) -> AsyncIterator[ClientConnection]:
+    """Connect with headers of one's own, as no library lets a page do."""
+    host = headers.get("host", f"127.0.0.1:{gateway.port}")
+    others = {name: value for name, value in headers.items() if name != "host"}
+    async with connect(
+        f"ws://{host}{path}" if ":" in host else f"ws://{host}:{gateway.port}{path}",
+        host="127.0.0.1",
+        port=gateway.port,
+        additional_headers=others,
+        subprotocols=protocols or None,  # type: ignore[arg-type]  # names of protocols
+        proxy=None,
+    ) as websocket:
+        yield websocket
+
+
+async def upgraded(
+    gateway: Gateway, more: str = "", path: str = "/"
+) -> tuple[asyncio.StreamReader, asyncio.StreamWriter, str]:
+    """Begin a WebSocket whose frames the test writes itself.
+
+    Args:
+        gateway: The gateway.
+        more: Further headers, each with its line break.
+        path: The path.
+
+    Returns:
+        What reads, what writes, and the head of the answer.
+    """
+    reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
+    writer.write(UPGRADE.format(path=path, more=more).encode())
+    head = await reader.readuntil(b"\r\n\r\n")
+    return reader, writer, head.decode()
+
+
+def drive(speed: float) -> str:
+    """Return a command, as a client of rosbridge sends it."""
+    command = {"linear": {"x": speed}}
+    op = {"op": "publish", "topic": "/cmd_vel", "type": "geometry_msgs/Twist", "msg": command}
+    return json.dumps(op)
+
+
+Kept = asyncio.Queue[bytes]
+
+
+class Cable:
+    """What is between a client and the gateway; it keeps what is sent while it is cut.
+
+    TCP does the same: it sends again what was lost.
+
+    Attributes:
+        port: Where the client connects.
+        to_gateway: Set while bytes of the client arrive.
+        to_client: Set while bytes of the gateway arrive.
+        sent_bytes: How many bytes the client has sent.
+    """
+
+    def __init__(self, gateway_port: int) -> None:
+        self.port = 0
+        self.to_gateway = asyncio.Event()
+        self.to_client = asyncio.Event()
+        self.sent_bytes = 0
+        self._gateway_port = gateway_port
+        self.join()
+
+    def cut(self) -> None:
+        """Let nothing through."""
+        self.to_gateway.clear()
+        self.to_client.clear()
+
+    def join(self) -> None:
+        """Let everything through, and what was sent meanwhile first."""
+        self.to_gateway.set()
+        self.to_client.set()
+
+    async def serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        """Connect one client."""
+        far_reader, far_writer = await asyncio.open_connection("127.0.0.1", self._gateway_port)
+
+        async def take(source: asyncio.StreamReader, kept: Kept) -> None:
+            data = b"first"
+            while data:
+                try:
+                    data = await source.read(1 << 16)
+                except OSError:
+                    data = b""
+                self.sent_bytes += len(data) if source is reader else 0
+                kept.put_nowait(data)
+
+        async def give(target: asyncio.StreamWriter, whole: asyncio.Event, kept: Kept) -> None:
+            with suppress(OSError):
+                while data := await kept.get():
+                    await whole.wait()
+                    target.write(data)
+                    await target.drain()
+                await whole.wait()
+            target.close()
+
+        there, back = Kept(), Kept()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(take(reader, there))
+            tasks.create_task(take(far_reader, back))
+            tasks.create_task(give(far_writer, self.to_gateway, there))
+            tasks.create_task(give(writer, self.to_client, back))
+
+
+@asynccontextmanager
+async def cable(gateway: Gateway) -> AsyncIterator[Cable]:
+    """Yield a cable to a gateway, which is whole at the end."""
+    made = Cable(gateway.port)
+    server = await asyncio.start_server(made.serve, "127.0.0.1", 0)
+    made.port = server.sockets[0].getsockname()[1]
+    try:
+        yield made
+    finally:
+        made.join()
+        server.close()
+
+
+class Busy:
+    """How long the loop's thread was busy in one turn at most, in seconds, and of how many."""
+
+    longest_sec = 0.0
+    turns = 0
+
+
+@asynccontextmanager
+async def busiest_turn() -> AsyncIterator[Busy]:
+    """Yield how long turns of the event loop take: processor time, not waits for a core."""
+    busy = Busy()
+
+    async def watch() -> None:
+        last = time.thread_time()
+        while True:
+            await asyncio.sleep(0)  # noqa: TID251  # each turn is measured
+            now = time.thread_time()
+            busy.longest_sec = max(busy.longest_sec, now - last)
+            last = now
+            busy.turns += 1
+
+    async with asyncio.TaskGroup() as tasks:
+        watching = tasks.create_task(watch())
+        yield busy
+        watching.cancel()
