@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import rclpy
+from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
-from aionode.rclpy._impl import topics
 from aionode.rclpy._impl.topics import SubscriptionHandle
 from aionode.rclpy._rosidl import action_class, message_class, service_class
 from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
@@ -71,7 +71,7 @@ def test_few_lifespans_of_publishers_are_remembered() -> None:
     for number in range(5000):
         handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0))
 
-    assert len(handle._lifespans) == topics.REMEMBERED_PUBLISHERS
+    assert len(handle._lifespans) == REMEMBERED_PUBLISHERS
 
 
 @pytest.mark.usefixtures("initialised")

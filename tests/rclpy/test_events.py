@@ -10,6 +10,7 @@ import pytest
 import aionode.rclpy
 from aionode.clock import Duration
 from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.message import SerializedMessage
 from aionode.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from aionode.rclpy.executors import SingleThreadedExecutor
 from aionode.rclpy.node import Node
@@ -135,3 +136,20 @@ def test_a_publisher_that_gives_no_sign_within_the_lease_is_not_alive(
 
     assert changes[:2] == [(1, 0), (0, 1)]
     assert changes[-1] == (0, 0)
+
+
+def test_a_message_that_comes_late_makes_no_other_one_lost(
+    contexts: list[aionode.rclpy.Context],
+) -> None:
+    """A message that was sent again comes behind newer ones; those were counted before."""
+    node = Node("node", context=contexts[0])
+    lost: list[Any] = []
+    callbacks = SubscriptionEventCallbacks(message_lost=lost.append)
+    subscription = node.create_subscription(Int32, "gaps", print, 10, event_callbacks=callbacks)
+    inbox = subscription.handle.inbox
+
+    for sequence in (1, 3, 2, 4, 6):
+        inbox.deliver(SerializedMessage(b""), bytes(16), sequence, 0)
+
+    until(lost, 1, node)
+    assert lost[-1].total_count == 2

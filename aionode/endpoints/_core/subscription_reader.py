@@ -20,7 +20,14 @@ if TYPE_CHECKING:
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
 
-__all__ = ["DirectReader", "MessageInfo", "SubscriptionReader", "Take"]
+__all__ = [
+    "REMEMBERED_PUBLISHERS",
+    "DirectReader",
+    "MessageInfo",
+    "SubscriptionReader",
+    "Take",
+    "missing_before",
+]
 
 Take = Callable[[Any, int, int, int], None]
 """Takes a message, its number by its publisher, and when it was published and received, in
@@ -294,18 +301,11 @@ class SubscriptionReader(MessageQueue[Any]):
 
     def _note_sequence(self, gid: bytes, sequence: int) -> None:
         """Take the number of a message, and count those before it that are missing."""
-        last_sequences = self._last_sequences
-        last = last_sequences.get(gid)
-        if last is None:
-            if len(last_sequences) >= REMEMBERED_PUBLISHERS:
-                del last_sequences[next(iter(last_sequences))]
-        elif sequence <= last:  # an old one again
-            return
-        elif sequence > last + 1:
-            self.stats.lost += sequence - last - 1
+        missing = missing_before(self._last_sequences, gid, sequence)
+        if missing:
+            self.stats.lost += missing
             if self.on_lost is not None:
-                self.on_lost(sequence - last - 1)
-        last_sequences[gid] = sequence
+                self.on_lost(missing)
 
     def _info(self, sample_info: SampleInfo) -> MessageInfo:
         self._reception_sequence += 1
@@ -358,6 +358,26 @@ class DirectReader(SubscriptionReader):
             self._note_sequence(gid, sequence)
         self.stats.received += 1
         self._take(msg, sequence, source_ns, arrived_ns or self._now_ns())
+
+
+def missing_before(last_sequences: dict[bytes, int], gid: bytes, sequence: int) -> int:
+    """Take the number of a message; return how many before it are missing from its publisher.
+
+    Args:
+        last_sequences: The last number of each publisher, by gid. Of the publishers it keeps only
+            so many, as messages may carry any number of invented gids.
+        gid: The publisher.
+        sequence: The number. One that is not newer than the last counts for nothing.
+    """
+    last = last_sequences.get(gid)
+    if last is None:
+        if len(last_sequences) >= REMEMBERED_PUBLISHERS:
+            del last_sequences[next(iter(last_sequences))]
+        last = sequence - 1
+    elif sequence <= last:
+        return 0
+    last_sequences[gid] = sequence
+    return sequence - last - 1
 
 
 def admit(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`

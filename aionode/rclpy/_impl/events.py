@@ -12,6 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import SilenceAlarm
+from aionode.endpoints._core.subscription_reader import missing_before
 from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (
@@ -291,10 +292,9 @@ class MessageLostWatch(Watch):
         last: dict[bytes, int] = {}
 
         def note(sample_info: SampleInfo) -> None:
-            before = last.get(sample_info.gid)
-            last[sample_info.gid] = sample_info.sequence
-            if before is not None and sample_info.sequence > before + 1:
-                self.count(sample_info.sequence - before - 1)
+            missing = missing_before(last, sample_info.gid, sample_info.sequence)
+            if missing:
+                self.count(missing)
 
         self.listen(self.feed, note)
 

@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
+from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.destroyable import Destroyable
@@ -33,9 +34,6 @@ Feed = list["Callable[[SampleInfo | None], None]"]
 
 Sample = tuple[Any, SampleInfo, int, int]
 """A message, where it comes from, when it arrived, and its number among those that were taken."""
-
-REMEMBERED_PUBLISHERS = 1024
-"""Publishers that are remembered; messages may carry any number of invented gids."""
 
 UNWEIGHED = 2
 """So many messages wait before their bytes count."""
