@@ -252,7 +252,8 @@ class NodeEndpoints(NodeParameters):
         Args:
             msg_type: A message class.
             topic: Name of the topic.
-            take: Called with bytes, number, time of publishing and time of arrival; see `Take`.
+            take: Called with the bytes, or a list of their parts if they are many, the number, and
+                the times of publishing and arrival; see `Take`.
                 It never waits and never raises: it may be called within the `publish` of a node.
             qos_profile: A profile.
 

@@ -40,7 +40,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
-__all__ = ["COMPRESSIONS", "MAGIC", "ChunkWriter", "McapWriter", "record_bytes"]
+__all__ = ["COMPRESSIONS", "MAGIC", "ChunkWriter", "McapWriter", "Parts", "record_bytes"]
+
+Pieces = list[bytes | memoryview]
+Parts = bytes | Pieces
+"""The bytes of a message, or a list of their parts."""
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 LIBRARY: Final = "aionode"
@@ -98,22 +102,23 @@ class ChunkWriter:
     """Collects the messages of one chunk."""
 
     def __init__(self) -> None:
-        self.parts: list[bytes] = []
+        self.parts: list[bytes | memoryview] = []
         self.size = 0
         self.start_ns = 2**64 - 1
         self.end_ns = 0
         self.entries: dict[int, list[int]] = {}
         """For each channel the time and the offset of each message, in one list."""
-        self.largest: bytes = b""
+        self.largest: bytes | memoryview = b""
 
     def add_record(self, data: bytes) -> None:
         """Add a schema or a channel."""
         self.parts.append(data)
         self.size += len(data)
 
-    def add(self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: bytes) -> None:
+    def add(self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: Parts) -> None:
         """Add a message. Its bytes are kept, and must not change."""
-        size = len(raw)
+        parts = raw if isinstance(raw, list) else (raw,)
+        size = sum(map(len, parts))
         entries = self.entries.get(channel)
         if entries is None:
             entries = self.entries[channel] = []
@@ -122,7 +127,7 @@ class ChunkWriter:
             MESSAGE_HEADER.pack(
                 Opcode.MESSAGE, 22 + size, channel, sequence & 0xFFFFFFFF, log_ns, publish_ns
             ),
-            raw,
+            *parts,
         )
         self.size += MESSAGE_HEADER.size + size
         if log_ns < self.start_ns:  # noqa: PLR1730  # for each message: a call takes longer
@@ -130,14 +135,14 @@ class ChunkWriter:
         if log_ns > self.end_ns:  # noqa: PLR1730  # as above
             self.end_ns = log_ns
         if size >= LARGE_BYTES:
-            self.largest = raw
+            self.largest = max(parts, key=len)
 
-    def joined(self) -> list[bytes]:
+    def joined(self) -> list[bytes | memoryview]:
         """Return the bytes of the chunk, with small pieces joined and large messages as given."""
         if not self.largest:
             return [b"".join(self.parts)]
-        pieces: list[bytes] = []
-        small: list[bytes] = []
+        pieces: list[bytes | memoryview] = []
+        small: list[bytes | memoryview] = []
         for part in self.parts:
             if len(part) < LARGE_BYTES:
                 small.append(part)
@@ -288,7 +293,7 @@ class McapWriter:
         return channel.id
 
     def add_message(
-        self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: bytes
+        self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: Parts
     ) -> None:
         """Add a message, and write the chunk if it is full.
 
@@ -363,7 +368,7 @@ class McapWriter:
         counts = {channel: len(entries) // 2 for channel, entries in chunk.entries.items()}
         self.spans.append(Span(index, counts))
 
-    def _saves(self, raw: bytes) -> bool:
+    def _saves(self, raw: bytes | memoryview) -> bool:
         """Return whether compression makes a large message smaller, by a sample of its middle."""
         middle = len(raw) // 2
         sample = bytes(raw[middle - LARGE_BYTES // 2 : middle + LARGE_BYTES // 2])
@@ -468,7 +473,7 @@ class McapWriter:
             schema_count=len(self._schemas),
         )
 
-    def _write(self, pieces: Sequence[bytes]) -> None:
+    def _write(self, pieces: Sequence[bytes | memoryview]) -> None:
         """Write pieces at the end of the file, all or none.
 
         Raises:
@@ -487,7 +492,7 @@ class McapWriter:
         self._offset += sum(map(len, pieces))
 
 
-def write_all(fd: int, pieces: Iterable[bytes]) -> None:
+def write_all(fd: int, pieces: Iterable[bytes | memoryview]) -> None:
     """Write all pieces, in as many calls as the system needs, and none of them a long one."""
     waiting = [
         memoryview(piece)[at : at + MOST_AT_ONCE]
@@ -511,7 +516,7 @@ def index_record(channel: int, entries: list[int]) -> bytes:
     return header + struct.pack(f"<{len(entries)}Q", *entries)
 
 
-def compressor(compression: str) -> Callable[[list[bytes], int], list[bytes]]:
+def compressor(compression: str) -> Callable[[Pieces, int], Pieces]:
     """Return what compresses the pieces of a chunk, whose size is its second argument."""
     if compression == "lz4":
         return lambda pieces, _: [lz4.frame.compress(b"".join(pieces))]
@@ -519,7 +524,7 @@ def compressor(compression: str) -> Callable[[list[bytes], int], list[bytes]]:
         return lambda pieces, _: pieces
     context = zstandard.ZstdCompressor(level=LEVELS[compression])
 
-    def compress(pieces: list[bytes], size: int) -> list[bytes]:
+    def compress(pieces: Pieces, size: int) -> Pieces:
         if len(pieces) == 1:
             return [context.compress(pieces[0])]
         stream: Any = context.compressobj(size=size)

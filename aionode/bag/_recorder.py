@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from os import PathLike
     from types import TracebackType
 
+    from aionode.bag._mcap_writer import Parts
     from aionode.context import Context
     from aionode.graph import EndpointInfo
 
@@ -241,7 +242,8 @@ class Recorder:
         time_ns = self._now_ns() if time is None else time.nanoseconds
         recording = self._open_recording
         number = recording.number_of(info, 0)
-        recording.put(Row(number, time_ns, time_ns, 0, cdr.encode(msg)))
+        raw = cdr.encode(msg)
+        recording.put(Row(number, time_ns, time_ns, 0, len(raw), raw))
 
     @property
     def stats(self) -> dict[str, TopicStats]:
@@ -440,7 +442,7 @@ class Recorder:
         self._paused = False
 
     def _take(
-        self, number: int, raw: bytes, sequence: int, source_ns: int, received_ns: int
+        self, number: int, raw: Parts, sequence: int, source_ns: int, received_ns: int
     ) -> None:
         """Take one message of a subscription, within the event that brings it."""
         time_ns = self._now_ns() if self._use_sim_time else received_ns
@@ -456,7 +458,8 @@ class Recorder:
                 "shown"
             )
         self._last_ns = time_ns
-        self._recording.put(Row(number, time_ns, sent_ns, sequence, raw))
+        size = sum(map(len, raw)) if isinstance(raw, list) else len(raw)
+        self._recording.put(Row(number, time_ns, sent_ns, sequence, size, raw))
 
     def _warn(self, text: str) -> None:
         self.node.get_logger().warning(text)

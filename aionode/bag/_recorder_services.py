@@ -112,7 +112,7 @@ class RecorderServices:
 
     def tell_split(self, closed: str, opened: str) -> None:
         """Publish that the recorder went on to its next file."""
-        if self._splits is None:
+        if self._splits is None or self._splits.destroyed:  # the last rows outlive the node
             return
         self._splits.publish(
             bag_msg.WriteSplitEvent(

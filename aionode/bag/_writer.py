@@ -13,7 +13,7 @@ from aionode._distribution import choose_distribution
 from aionode.bag._mcap_writer import COMPRESSIONS, McapWriter
 from aionode.bag._metadata import FilePart, metadata_of, metadata_text, sync_folder, write_metadata
 from aionode.bag._qos import profiles_to_yaml
-from aionode.bag._record import Record, TopicInfo
+from aionode.bag._record import TopicInfo
 from aionode.bag._types import definition_of
 from aionode.errors import BagError, BagWriteError
 from aionode.message import type_name
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from os import PathLike
     from types import TracebackType
 
+    from aionode.bag._mcap_writer import Parts
+    from aionode.bag._record import Record
     from aionode.clock import Time
 
 __all__ = ["BagWriter", "topic_info"]
@@ -104,7 +106,7 @@ class BagWriter:
         self._closed: list[tuple[FilePart, dict[int, int]]] = []
         self._channels: dict[int, int] = {}
         self._numbers: dict[tuple[str, str, str], int] = {}
-        self._latched: dict[int, deque[Record]] = {}
+        self._latched: dict[int, deque[tuple[int, int, Parts]]] = {}  # number, time, bytes
         self._file_number = 0
         self._is_open = True
         try:
@@ -167,7 +169,7 @@ class BagWriter:
         self,
         topic: int,
         time_ns: int,
-        raw: bytes,
+        raw: Parts,
         *,
         publish_time_ns: int | None = None,
         sequence: int = 0,
@@ -177,7 +179,7 @@ class BagWriter:
         Args:
             topic: The number of its topic.
             time_ns: When it was received, in nanoseconds since 1970.
-            raw: Its CDR bytes, which are kept and must not change.
+            raw: Its CDR bytes, or a list of their parts, which are kept and must not change.
             publish_time_ns: When it was published; the same if not given.
             sequence: Its number, given by its publisher.
 
@@ -189,7 +191,7 @@ class BagWriter:
         sent_ns = time_ns if publish_time_ns is None else publish_time_ns
         latched = self._latched.get(topic) if self._latched else None
         if latched is not None:
-            latched.append(Record(self.topics[topic], time_ns, sent_ns, sequence, raw))
+            latched.append((sequence, sent_ns, raw))
         channel = self._channels.get(topic)
         if channel is None:
             channel = self._open_channel(topic)
@@ -243,12 +245,10 @@ class BagWriter:
         self._file_number += 1
         self._file = self._new_file()
         self._remove_oldest()
-        for number, records in self._latched.items():
-            for record in records:
+        for number, kept in self._latched.items():
+            for sequence, sent_ns, raw in kept:
                 channel = self._channels.get(number) or self._open_channel(number)
-                self._file.add_message(
-                    channel, record.sequence, time_ns, record.publish_time_ns, record.raw
-                )
+                self._file.add_message(channel, sequence, time_ns, sent_ns, raw)
                 self.topics[number].message_count += 1
         self.write_metadata()
         if self._on_split is not None:

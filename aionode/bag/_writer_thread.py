@@ -19,6 +19,7 @@ from aionode.errors import BagWriteError
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.bag._mcap_writer import Parts
     from aionode.bag._record import TopicInfo
 
 __all__ = ["Row", "WriterThread"]
@@ -51,14 +52,16 @@ class Row(NamedTuple):
         time_ns: When it was received, in nanoseconds since 1970.
         publish_time_ns: When it was published.
         sequence: Its number, given by its publisher.
-        raw: Its bytes.
+        size: How many bytes it has.
+        raw: Its bytes, or a list of their parts.
     """
 
     topic: int
     time_ns: int
     publish_time_ns: int
     sequence: int
-    raw: bytes
+    size: int
+    raw: Parts
 
 
 class WriterThread:
@@ -118,7 +121,7 @@ class WriterThread:
 
     def put(self, row: Row) -> bool:
         """Hand a row over, and return whether there was room for it."""
-        size = len(row.raw)
+        size = row.size
         waiting = len(self._rows)
         if waiting and (
             self._put_bytes - self._taken_bytes + size > self._waiting_bytes or waiting >= MOST_ROWS
@@ -194,9 +197,8 @@ class WriterThread:
             if not isinstance(row, Row):
                 row()
                 continue
-            size = len(row.raw)
-            taken += 1 + size // TURN_BYTES
-            self._taken_bytes += size
+            taken += 1 + row.size // TURN_BYTES
+            self._taken_bytes += row.size
             if self.failure is not None:
                 self.lost[row.topic] = self.lost.get(row.topic, 0) + 1
             elif self._kept is None:
@@ -234,10 +236,10 @@ class WriterThread:
     def _keep(self, row: Row, kept: deque[Row]) -> None:
         """Keep a row for a snapshot, and let go of the oldest."""
         kept.append(row)
-        self._kept_bytes += len(row.raw)
+        self._kept_bytes += row.size
         while len(kept) > 1 and self._is_too_much(kept):
             oldest = kept.popleft()
-            self._kept_bytes -= len(oldest.raw)
+            self._kept_bytes -= oldest.size
             depth = self._topics[oldest.topic][1]
             if depth:
                 self._latched.setdefault(oldest.topic, deque(maxlen=depth)).append(oldest)

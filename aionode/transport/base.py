@@ -13,7 +13,7 @@ a loop runs; they are reached by other processes once `Transport.open` has retur
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
 
 import msgspec
 
@@ -29,6 +29,7 @@ __all__ = [
     "NOT_INLINE_NS",
     "Call",
     "LinkStatus",
+    "Raw",
     "Reader",
     "ReaderRegistration",
     "Registration",
@@ -41,6 +42,11 @@ __all__ = [
     "Transport",
     "Writer",
 ]
+
+Raw = bool | Literal["parts"]
+"""Whether a reader wants CDR bytes; ``"parts"``: a large message of this context may come as a list
+of its parts, of which some are views of the message, so that nothing is copied.
+"""
 
 NOT_INLINE_NS: Final = 1
 """A `perf_ns` time in the past: the message is of another process, and no callback runs at once."""
@@ -77,8 +83,10 @@ class Reader(Protocol):
     """The receiving end of a subscription, as a transport sees it."""
 
     endpoint: EndpointInfo
-    raw: bool
-    """Whether `deliver` wants the message as CDR bytes."""
+
+    @property
+    def raw(self) -> Raw:
+        """Whether `deliver` wants the message as CDR bytes; ``"parts"`` if in parts as well."""
 
     def deliver(
         self,

@@ -140,7 +140,9 @@ class LocalReader(Registration):
         if self.reader.raw:
             from aionode.wire import cdr  # nodes without raw readers need no codec
 
-            encode = cdr.encoder(msg_type)
+            encode: Callable[[Any], Any] = cdr.encoder(msg_type)
+            if self.reader.raw == "parts" and cdr.has_views(msg_type):
+                encode = cdr.parts_encoder(msg_type)
             return lambda msg, *rest: deliver(encode(msg), *rest)
         if self.msg_type is not msg_type:
             return lambda msg, *rest: deliver(_in_class(msg, self.msg_type), *rest)

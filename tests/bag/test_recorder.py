@@ -13,6 +13,7 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from aionode import bag
@@ -24,10 +25,11 @@ from aionode.errors import BagError, BagWriteError, InterfaceNotFoundError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rosbag2_interfaces.srv import IsPaused, Snapshot
 from aionode.interfaces.rosgraph_msgs.msg import Clock
-from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.interfaces.std_msgs.msg import Float64MultiArray, Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from aionode.testing import local_context, settle
+from aionode.wire import cdr
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
@@ -204,6 +206,45 @@ async def test_a_message_without_a_credible_stamp_is_recorded_with_the_time_of_i
         records = list(run.read())
     assert [record.publish_time_ns for record in records[2:]] == [7]
     assert all(record.publish_time_ns == record.time_ns for record in records[:2])
+
+
+async def test_a_split_at_the_end_of_a_recording_is_no_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The node has ended when the last rows are written; nobody can be told of the file then."""
+    monkeypatch.setattr("aionode.bag._writer_thread.BATCH_S", 60)
+    async with local_context() as context:
+        async with bag.Recorder(
+            tmp_path / "run", topics=[], context=context, max_messages=1
+        ) as recorder:
+            for text in "ab":
+                recorder.write("/words", String(data=text))
+        await settle()
+    assert texts(tmp_path / "run") == ["a", "b"]
+    assert not [each for each in caplog.records if each.name == "asyncio"]
+
+
+@pytest.mark.parametrize("compression", ["zstd", "lz4", "none"])
+async def test_a_large_message_is_recorded_as_it_was_published_and_again_in_each_file(
+    compression: str, tmp_path: Path
+) -> None:
+    """Its array is written from where it is, and the program may go on with it at once."""
+    array = np.arange(100_000, dtype=np.float64)
+    wanted = cdr.encode(Float64MultiArray(data=array))
+    async with local_context() as context, Node("map", context=context) as node:
+        maps = node.create_publisher(Float64MultiArray, "map", LATCHED)
+        words = node.create_publisher(String, "words", 10)
+        async with bag.Recorder(
+            tmp_path / "run", context=context, compression=compression, max_messages=2
+        ) as recorder:
+            maps.publish(Float64MultiArray(data=array))
+            array[:] = 0
+            for text in "abc":
+                words.publish(String(data=text))
+            assert recorder.stats["/map"] == (1, 0, 0)
+    with bag.open(tmp_path / "run") as run:
+        raws = [record.raw for record in run.read("/map")]
+    assert raws == [wanted, wanted]
 
 
 async def test_a_service_is_recorded_by_its_events(tmp_path: Path) -> None:

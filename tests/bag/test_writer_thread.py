@@ -15,7 +15,7 @@ from aionode.bag._writer_thread import Row, WriterThread
 from aionode.errors import BagWriteError
 from aionode.interfaces.std_msgs.msg import String
 
-ROW = Row(0, 1, 1, 1, b"0123")
+ROW = Row(0, 1, 1, 1, 4, b"0123")
 
 
 def thread_of(writer: BagWriter, *, snapshot: bool = False) -> WriterThread:

@@ -19,7 +19,13 @@ from aionode.errors import (
     QueueFullError,
 )
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
-from aionode.interfaces.std_msgs.msg import Float64MultiArray, Int8, Int32, String
+from aionode.interfaces.std_msgs.msg import (
+    Float64MultiArray,
+    Int8,
+    Int32,
+    String,
+    UInt8MultiArray,
+)
 from aionode.message import Message, int32
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
@@ -30,6 +36,7 @@ from aionode.wire import cdr
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.endpoints._core.subscription_reader import Parts
     from aionode.endpoints.subscription import MessageInfo
 
 KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
@@ -226,6 +233,22 @@ async def test_a_direct_subscription_takes_messages_within_publish_until_it_is_d
     fill(publisher, "c")
     assert len(taken) == 2
     assert (subscription.stats.received, subscription.stats.dropped) == (2, 0)
+
+
+async def test_a_direct_subscription_gets_a_large_message_in_parts_without_a_copy(
+    node: Node,
+) -> None:
+    """A copy of a large image takes the event loop milliseconds."""
+    taken: list[Parts] = []
+    node._create_direct_subscription(
+        UInt8MultiArray, "pixels", lambda raw, *_: taken.append(raw), QoSProfile(depth=1)
+    )
+    publisher = node.create_publisher(UInt8MultiArray, "pixels", 10)
+    pixels = bytes(range(256)) * 1000
+    publisher.publish(UInt8MultiArray(data=pixels))
+    (parts,) = taken
+    assert b"".join(parts) == cdr.encode(UInt8MultiArray(data=pixels))  # type: ignore[arg-type]  # a list
+    assert any(part is pixels for part in parts)
 
 
 async def test_a_direct_subscription_counts_what_is_missing_and_leaves_out_what_has_expired(

@@ -35,6 +35,8 @@ from tests.support.waiting import until
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
+    from aionode.endpoints._core.subscription_reader import Parts
+
 Request = BasicTypes.Request
 Response = BasicTypes.Response
 
@@ -224,7 +226,8 @@ async def test_direct_subscriptions_get_the_bytes_and_times_of_every_message(pai
     taken: list[tuple[bytes, int]] = []
     times: list[int] = []
 
-    def take(raw: bytes, sequence: int, source_ns: int, received_ns: int) -> None:
+    def take(raw: Parts, sequence: int, source_ns: int, received_ns: int) -> None:
+        assert not isinstance(raw, list)
         taken.append((bytes(raw), sequence))
         times.extend((source_ns, received_ns))
 

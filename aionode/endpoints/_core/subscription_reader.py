@@ -19,17 +19,22 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.callback_runner import CallbackRunner
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
+    from aionode.transport.base import Raw
 
 __all__ = [
     "REMEMBERED_PUBLISHERS",
     "DirectReader",
     "MessageInfo",
+    "Parts",
     "SubscriptionReader",
     "Take",
     "missing_before",
 ]
 
-Take = Callable[[Any, int, int, int], None]
+Parts = bytes | list[bytes | memoryview]
+"""A message as CDR bytes, or as a list of parts."""
+
+Take = Callable[[Parts, int, int, int], None]
 """Takes a message, its number by its publisher, and when it was published and received, in
 nanoseconds since 1970."""
 
@@ -74,7 +79,7 @@ class SubscriptionReader(MessageQueue[Any]):
         endpoint: The subscription in the graph.
         stats: Where lost, dropped and invalid messages are counted.
         time_base: Where the arrival time in a `MessageInfo` comes from.
-        raw: Whether messages come as CDR bytes.
+        raw: Whether messages come as CDR bytes, or in parts.
         wants_info: Whether the items are pairs of a message and its `MessageInfo`.
 
     Attributes:
@@ -108,7 +113,7 @@ class SubscriptionReader(MessageQueue[Any]):
         stats: CallbackStats,
         time_base: TimeBase,
         *,
-        raw: bool,
+        raw: Raw,
         wants_info: bool,
     ) -> None:
         keep_all = endpoint.qos.history is HistoryPolicy.KEEP_ALL
@@ -336,7 +341,7 @@ class DirectReader(SubscriptionReader):
     def __init__(
         self, endpoint: EndpointInfo, stats: CallbackStats, time_base: TimeBase, take: Take
     ) -> None:
-        super().__init__(endpoint, stats, time_base, raw=True, wants_info=False)
+        super().__init__(endpoint, stats, time_base, raw="parts", wants_info=False)
         self._take = take
 
     def deliver(
