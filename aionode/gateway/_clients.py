@@ -102,8 +102,15 @@ class Clients:
     def session_of(
         self, scope: MutableMapping[str, Any], kind: str
     ) -> contextlib.AbstractAsyncContextManager[Session]:
-        """Return the session of a request, whose client the door has identified."""
-        return self.session(scope["aionode.identity"], kind, scope["aionode.credentials"])
+        """Return the session of a request, which the door has let in.
+
+        Its client is identified anew: the policy may have changed while the request arrived.
+
+        Raises:
+            RefusedError: the policy does not know the client any more.
+        """
+        credentials = scope["aionode.credentials"]
+        return self.session(self._policy.identify(credentials), kind, credentials)
 
     @property
     def stats(self) -> GatewayStats:

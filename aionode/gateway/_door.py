@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode.errors import RefusedError
-from aionode.gateway._identity import Identity, check_browser, from_scope, take_token
+from aionode.gateway._identity import check_browser, from_scope, take_token
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import Clients
@@ -48,7 +48,7 @@ STATUS: Final = {
 class Door:
     """Identifies the client of each request, and refuses what pages of other origins ask for.
 
-    In the scope it leaves ``aionode.identity`` and ``aionode.credentials``.
+    In the scope it leaves ``aionode.credentials``.
     """
 
     def __init__(self, app: Any, gateway: Clients) -> None:
@@ -70,10 +70,8 @@ class Door:
                 return
             if is_public(scope):
                 check_browser(credentials, policy.hosts, policy.page_origins)
-                identity = Identity("page", address=credentials.address)
             else:
-                identity = policy.identify(credentials)
-            scope["aionode.identity"] = identity
+                policy.identify(credentials)
             scope["aionode.credentials"] = credentials
             limited = limit_body(scope, receive, policy.limits.frame_bytes)
             await self._app(scope, limited, answer)

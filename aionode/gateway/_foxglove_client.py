@@ -19,6 +19,7 @@ from aionode.gateway._foxglove_parameters import Parameters
 from aionode.gateway._foxglove_playback import Playback
 from aionode.gateway._lanes import Lanes
 from aionode.gateway._rosbridge_values import json_of
+from aionode.graph import EndpointKind
 from aionode.wire import cdr
 
 if TYPE_CHECKING:
@@ -118,6 +119,7 @@ class Client:
         with suppress(EntityDestroyedError):  # the context has closed
             while True:
                 changed = robot.node.graph.changed()
+                await self._session.turn()
                 await self._channels.announce()
                 if self._graph is not None:
                     self._graph.tell()
@@ -195,6 +197,7 @@ class Client:
             case frames.UnsubscribeParameterUpdates():
                 self._parameters.unfollow(op.parameter_names)
             case frames.SubscribeConnectionGraph():
+                await self._session.turn()
                 self._graph = Connections(self._session)
                 self._graph.tell()
             case frames.UnsubscribeConnectionGraph():
@@ -206,10 +209,16 @@ class Client:
         if channel.encoding not in ENCODINGS:
             problem = f"{channel.encoding!r}; use one of {', '.join(ENCODINGS)}"
             raise MessageError(f"advertise {channel.topic}: encoding", problem)
+        if channel.id in self._published:
+            raise MessageError("advertise", f"the channel {channel.id} is advertised already")
         if len(self._published) >= MOST_CHANNELS:
             raise MessageError("advertise", f"there are {MOST_CHANNELS} channels, the limit")
-        await self._session.advertise(channel.topic, channel.schema_name)
-        self._published[channel.id] = channel
+        self._published[channel.id] = channel  # before it waits: others advertise meanwhile
+        try:
+            await self._session.advertise(channel.topic, channel.schema_name)
+        except BaseException:
+            del self._published[channel.id]
+            raise
 
     async def _unadvertise(self, channel_id: int) -> None:
         channel = self._published.pop(channel_id, None)
@@ -309,14 +318,8 @@ class Connections:
 
     def _connections(self) -> list[dict[str, list[str]]]:
         """Return the nodes by what they publish, subscribe and serve."""
-        found: list[dict[str, list[str]]] = [{}, {}, {}]
-        for node in sorted(self._session.nodes()):
-            details = self._session.node_details(node)
-            kinds = (details.publishers, details.subscriptions, details.services)
-            for names, nodes in zip(kinds, found, strict=True):
-                for name in names:
-                    nodes.setdefault(name, []).append(node)
-        return found
+        kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVER)
+        return [self._session.connections(kind) for kind in kinds]
 
 
 def listed(nodes: dict[str, list[str]], ids: str) -> list[dict[str, Any]]:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.errors import AionodeError, MessageError
+from aionode.errors import MessageError
 from aionode.gateway import _foxglove_frames as frames
 from aionode.parameter import Parameter
 
@@ -22,10 +20,11 @@ __all__ = ["Parameters"]
 EVENTS: Final = "/parameter_events"
 EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 
-MOST_QUESTIONS: Final = 8
 MOST_FOLLOWED: Final = 10_000
+"""How many parameters a client follows at most."""
+
 MOST_CHARACTERS: Final = 1000
-"""How many nodes are asked at a time."""
+"""The longest name of a parameter that a client follows, in characters."""
 
 
 class Parameters:
@@ -50,7 +49,7 @@ class Parameters:
             MessageError: a name is not that of a node, a dot, and a parameter.
             RefusedError: the policy hides a node.
         """
-        wanted = by_node(names) if names else await self._all()
+        wanted = by_node(names) if names else await self._session.all_parameter_names()
         shown: list[dict[str, Any]] = []
         for node, own in wanted.items():
             found = await self._session.get_parameters(node, own)
@@ -86,21 +85,6 @@ class Parameters:
                     raise MessageError(f"{node}.{name}", result.reason)
         if request_id is not None:
             await self.get(list(given), request_id)
-
-    async def _all(self) -> dict[str, list[str]]:
-        """Return the names of all parameters by their nodes, of nodes that answer."""
-        found: dict[str, list[str]] = {}
-        room = asyncio.Semaphore(MOST_QUESTIONS)
-
-        async def ask(node: str) -> None:
-            with suppress(AionodeError, TimeoutError):  # a node without parameters, or that ends
-                async with room:
-                    found[node] = await self._session.parameter_names(node)
-
-        async with asyncio.TaskGroup() as tasks:
-            for node in self._session.nodes():
-                tasks.create_task(ask(node))
-        return dict(sorted(found.items()))
 
     async def follow(self, names: Sequence[str]) -> None:
         """Send parameters whenever they change; without names all of them.

@@ -103,6 +103,8 @@ class Endpoint:
             ):
                 session.owner = Caller(session.identity)
                 async with until_ended(session):
+                    if request.method != "POST":  # about the graph, or the nodes in it
+                        await session.turn()
                     answer = await self._handler(Asked(session, request, body))
                 await answer(scope, receive, send)
         except (AionodeError, HTTPException, TimeoutError) as error:

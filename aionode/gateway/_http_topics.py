@@ -44,7 +44,7 @@ async def answer_topic(asked: Asked) -> Response:
     """Return the next message of a topic, or a stream of its messages."""
     topic, media_type = topic_and_form(asked)
     type_name = asked.type_name
-    if type_name is None and topic not in asked.session.topics(hidden=True):
+    if type_name is None and not asked.session.types_of(topic, "topic"):
         raise HTTPException(404, f"{topic[:200]}: no such topic; ?type= waits for one of that type")
     if media_type == EVENTS:
         return await events(asked, topic)
@@ -71,7 +71,7 @@ def topic_and_form(asked: Asked) -> tuple[str, str]:
     for media_type in (EVENTS, PICTURES, "application/json", "image/jpeg"):
         if media_type in accept:
             return path, media_type
-    types = {asked.type_name, *asked.session.topics(hidden=True).get(path, ())}
+    types = {asked.type_name, *asked.session.types_of(path, "topic")}
     return path, "image/jpeg" if types & IMAGE_TYPES else "application/json"
 
 

@@ -60,8 +60,10 @@ COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
 
 MOST_REMEMBERED: Final = 4096
-MOST_CHARACTERS: Final = 1000
 """How many answers to who may do what are kept."""
+
+MOST_CHARACTERS: Final = 1000
+"""The longest name that is looked for in rules, in characters."""
 
 
 class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

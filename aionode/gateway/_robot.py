@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import re
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,6 +12,7 @@ from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import InterfaceNotFoundError
 from aionode.gateway._command import Commands
 from aionode.gateway._feed import Feeds
+from aionode.gateway._rosbridge_request import type_text
 from aionode.gateway._sharing import Shared
 
 if TYPE_CHECKING:
@@ -27,7 +29,9 @@ with which name, and what it sends. Returns whether the person says yes."""
 
 MOST_TYPES: Final = 1000
 MOST_RATES: Final = 10_000
-KINDS: Final = frozenset({"msg", "srv", "action"})
+
+LONGEST_TYPE: Final = 255
+"""The longest name of a type, in characters: similar names are sought for one that is unknown."""
 
 
 class Robot:
@@ -41,7 +45,7 @@ class Robot:
         ask: Asks a person; None if there is nobody to ask.
 
     Attributes:
-        turn: Held by who encodes a large message: one at a time.
+        turn: Held by who encodes a large message, or asks about the graph: one at a time.
     """
 
     def __init__(
@@ -65,6 +69,8 @@ class Robot:
         self.commands = Commands(tasks)
         self.rates = Rates(self.time_base.steady_ns)
         self._types: dict[tuple[str, frozenset[str]], Any] = {}
+        self._types_now: dict[str, Any] = {}  # by name, until the graph changes
+        self._changes = -1
 
     async def find_type(self, name: str, kind: str) -> Any:
         """Return the class of a type, once made for all.
@@ -76,10 +82,23 @@ class Robot:
         Raises:
             InterfaceNotFoundError: neither this program nor a node that uses it describes it.
         """
-        parts = name.split("/")
-        full = "/".join((parts[0], kind, parts[1])) if len(parts) == 2 else name
-        if len(parts) not in {2, 3} or f"/{kind}/" not in full:
+        full = type_text(name, kind)
+        if len(full) > LONGEST_TYPE or not re.fullmatch(rf"\w+/{kind}/\w+", full, re.ASCII):
             raise InterfaceNotFoundError(name[:200], problem=f"this is no name of a type of {kind}")
+        graph = self.node.graph
+        if self._changes != graph.changes:
+            self._changes, self._types_now = graph.changes, {}
+        now = self._types_now
+        if full not in now:
+            now[full] = await self._find_type(full)
+        return now[full]
+
+    async def _find_type(self, full: str) -> Any:
+        """Return the class of a type by its full name, once made for all nodes that use the same.
+
+        Raises:
+            InterfaceNotFoundError: see `find_type`.
+        """
         endpoints = self.node.graph.endpoints()
         hashes = frozenset(e.type_hash for e in endpoints if e.type_name.startswith(full))
         key = (full, hashes)

@@ -6,22 +6,23 @@ client is not in its answers.
 
 from __future__ import annotations
 
-import asyncio
 import os
 from collections.abc import Awaitable, Callable, Iterable
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError
 from aionode.gateway._rosapi_types import full_text, type_definitions
-from aionode.gateway._rosbridge_request import full_name
+from aionode.gateway._rosbridge_request import full_name, shown
 from aionode.gateway._rosbridge_values import stamp
 from aionode.graph import EndpointKind
 from aionode.interfaces import interface_names
 
 if TYPE_CHECKING:
     from aionode.gateway._session import Session
+    from aionode.gateway._session_base import Kind
 
 __all__ = ["SERVICES", "answer"]
 
@@ -52,6 +53,7 @@ async def answer(session: Session, name: str, args: dict[str, Any] | list[Any]) 
 
     Raises:
         MessageError: there is no such service, or a value of the request is invalid.
+        RefusedError: too many questions of the client wait.
         AionodeError: something that the service is about is not known.
     """
     if name not in SERVICES:
@@ -61,7 +63,8 @@ async def answer(session: Session, name: str, args: dict[str, Any] | list[Any]) 
     for field in fields:
         value = values.get(field, "")
         if not isinstance(value, str):
-            raise MessageError(f"/rosapi/{name}.{field}", f"{value!r}, needs text")
+            raise MessageError(f"/rosapi/{name}.{field}", f"{shown(value)}, needs text")
+    await session.turn()
     return await make(session, {field: values.get(field, "") for field in fields})
 
 
@@ -89,7 +92,10 @@ async def topics(session: Session, _: Args) -> dict[str, Any]:
 @service("topics_and_raw_types")
 async def topics_and_raw_types(session: Session, _: Args) -> dict[str, Any]:
     found = await topics(session, _)
-    by_type = {name: await text_of(session, name) for name in dict.fromkeys(found["types"])}
+    by_type = {}
+    for name in dict.fromkeys(found["types"]):
+        by_type[name] = await text_of(session, name)
+        await checkpoint()  # a text takes a while, and a robot has hundreds of types
     return {**found, "typedefs_full_text": [by_type[name] for name in found["types"]]}
 
 
@@ -113,31 +119,22 @@ def of_type(found: dict[str, list[str]], wanted: str) -> list[str]:
 
 @service("topic_type", "topic")
 async def topic_type(session: Session, args: Args) -> dict[str, Any]:
-    return {"type": type_among(session.topics(), args["topic"])}
+    return {"type": type_of(session, args["topic"], "topic")}
 
 
-def type_among(found: dict[str, list[str]], name: str) -> str:
+def type_of(session: Session, name: str, kind: Kind) -> str:
     """Return the type of a name, or an empty text if it is unknown."""
-    return next(iter(found.get(full_name(name), ())), "")
+    return next(iter(session.types_of(full_name(name), kind)), "")
 
 
 @service("publishers", "topic")
 async def publishers(session: Session, args: Args) -> dict[str, Any]:
-    return {"publishers": nodes_with(session, "publishers", args["topic"])}
+    return {"publishers": session.users(EndpointKind.PUBLISHER, full_name(args["topic"]))}
 
 
 @service("subscribers", "topic")
 async def subscribers(session: Session, args: Args) -> dict[str, Any]:
-    return {"subscribers": nodes_with(session, "subscriptions", args["topic"])}
-
-
-def nodes_with(session: Session, kind: str, name: str) -> list[str]:
-    """Return the nodes that have an endpoint of a kind and a name."""
-    return [
-        node
-        for node in session.nodes()
-        if full_name(name) in getattr(session.node_details(node), kind)
-    ]
+    return {"subscribers": session.users(EndpointKind.SUBSCRIPTION, full_name(args["topic"]))}
 
 
 # Services, actions, nodes
@@ -158,7 +155,7 @@ async def service_type(session: Session, args: Args) -> dict[str, Any]:
     own = full_name(args["service"]).removeprefix("/rosapi/")
     if own in SERVICES:
         return {"type": f"rosapi_msgs/srv/{TYPE_NAMES.get(own, camel(own))}"}
-    return {"type": type_among(session.services(), args["service"])}
+    return {"type": type_of(session, args["service"], "service")}
 
 
 TYPE_NAMES: Final = {
@@ -174,17 +171,15 @@ def camel(name: str) -> str:
 
 @service("service_node", "service")
 async def service_node(session: Session, args: Args) -> dict[str, Any]:
-    return {"node": next(iter(nodes_with(session, "services", args["service"])), "")}
+    return {"node": next(iter(session.users(EndpointKind.SERVER, full_name(args["service"]))), "")}
 
 
 @service("service_providers", "service")
 async def service_providers(session: Session, args: Args) -> dict[str, Any]:
     # The field has the name of a service, and what clients send is a type; both are understood.
     names = {full_name(args["service"]), *of_type(session.services(), args["service"])}
-    providers = [
-        node for node in session.nodes() if names & set(session.node_details(node).services)
-    ]
-    return {"providers": providers}
+    providers = {node for name in names for node in session.users(EndpointKind.SERVER, name)}
+    return {"providers": sorted(providers)}
 
 
 @service("action_servers")
@@ -200,7 +195,7 @@ async def action_servers(session: Session, _: Args) -> dict[str, Any]:
 
 @service("action_type", "action")
 async def action_type(session: Session, args: Args) -> dict[str, Any]:
-    return {"type": type_among(session.actions(), args["action"])}
+    return {"type": type_of(session, args["action"], "action")}
 
 
 @service("nodes")
@@ -261,7 +256,8 @@ def parameter_name(name: str) -> tuple[str, str]:
     """
     node, colon, parameter = name.partition(":")
     if not (node and colon and parameter):
-        raise MessageError("name", f"{name!r}, needs a node and a parameter, as /node:parameter")
+        problem = f"{shown(name)}, needs a node and a parameter, as /node:parameter"
+        raise MessageError("name", problem)
     return full_name(node), parameter
 
 
@@ -314,7 +310,7 @@ async def set_param(session: Session, args: Args) -> dict[str, Any]:
         value = msgspec.json.decode(args["value"])
         node, parameter = parameter_name(args["name"])
         (result,) = await session.set_parameters(node, {parameter: value})
-    except (AionodeError, TimeoutError, TypeError, msgspec.DecodeError) as error:
+    except (AionodeError, TimeoutError, msgspec.DecodeError, RecursionError) as error:
         return failed(error)
     return {"successful": result.successful, "reason": result.reason}
 
@@ -340,17 +336,8 @@ async def delete_param(session: Session, args: Args) -> dict[str, Any]:
 
 @service("get_param_names")
 async def get_param_names(session: Session, _: Args) -> dict[str, Any]:
-    async with asyncio.TaskGroup() as tasks:
-        asked = [tasks.create_task(names_of(session, node)) for node in session.nodes()]
-    return {"names": sorted({name for task in asked for name in task.result()})}
-
-
-async def names_of(session: Session, node: str) -> list[str]:
-    """Return the parameters of a node, none if it does not answer."""
-    try:
-        return [f"{node}:{name}" for name in await session.parameter_names(node)]
-    except (AionodeError, TimeoutError):
-        return []
+    found = await session.all_parameter_names()
+    return {"names": sorted(f"{node}:{name}" for node, names in found.items() for name in names)}
 
 
 # Time and version

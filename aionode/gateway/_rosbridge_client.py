@@ -7,7 +7,6 @@ told, by a ``status`` if it has asked for those with ``set_level``.
 from __future__ import annotations
 
 import asyncio
-import logging
 from collections.abc import AsyncIterable, Awaitable, Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -28,15 +27,11 @@ __all__ = ["serve_frames"]
 Op = dict[str, Any]
 Handler = Callable[..., Awaitable[None]]
 
-logger = logging.getLogger("aionode.gateway")
-
 MOST_MALFORMED: Final = 100
 """How many frames that are no ops a client may send before it is disconnected."""
 
 
-async def serve_frames(
-    session: Session, frames: AsyncIterable[str | bytes], limit_bytes: int = 1 << 20
-) -> None:
+async def serve_frames(session: Session, frames: AsyncIterable[str | bytes]) -> None:
     """Serve a client until its frames end, or it has sent too many that are no ops.
 
     Answers and messages go to the session's outbox. Cancelling it ends what the client has begun,
@@ -45,10 +40,9 @@ async def serve_frames(
     Args:
         session: The session of the client, which its owner closes.
         frames: What the client sends, each text or bytes with one JSON object.
-        limit_bytes: The longest message that the client may send in fragments, in characters.
     """
     async with asyncio.TaskGroup() as tasks:
-        client = Client(session, Lanes(tasks), limit_bytes)
+        client = Client(session, Lanes(tasks))
         try:
             async for frame in frames:
                 await client.take(frame)
@@ -64,16 +58,15 @@ class Client:
     Args:
         session: Its session.
         lanes: Its tasks.
-        limit_bytes: See `serve_frames`.
 
     Attributes:
         malformed: How many frames were no ops.
     """
 
-    def __init__(self, session: Session, lanes: Lanes, limit_bytes: int) -> None:
+    def __init__(self, session: Session, lanes: Lanes) -> None:
         self._link = link = Link(session)
         self._lanes = lanes
-        self._fragments = FragmentStore(limit_bytes)
+        self._fragments = FragmentStore(session._limits.frame_bytes)
         self._offers = offers = Offers(link)
         topics, calls = Topics(link), Calls(link, lanes)
         self.malformed = 0
@@ -81,7 +74,6 @@ class Client:
             "action_feedback": offers.action_feedback,
             "action_result": offers.action_result,
             "auth": self._auth,
-            "fragment": self._fragment,
             "service_response": offers.service_response,
             "set_level": self._set_level,
         }
@@ -105,13 +97,31 @@ class Client:
     async def take(self, frame: str | bytes) -> None:
         """Begin what a frame asks for."""
         try:
-            op = op_of(frame)
+            op = self._op_of(frame)
         except MessageError as error:
             self.malformed += 1
             self._link.session.refused += 1
             self._link.status("error", str(error))
         else:
-            await self._begin(op)
+            if op is not None:
+                await self._begin(op)
+
+    def _op_of(self, frame: str | bytes) -> Op | None:
+        """Return the op in a frame; None if the frame is a fragment, and others are missing.
+
+        Raises:
+            MessageError: the frame is no op, or its fragments are none.
+        """
+        op = op_of(frame)
+        if op["op"] != "fragment":
+            return op
+        whole = self._fragments.add(op)
+        if whole is None:
+            return None
+        op = op_of(whole)
+        if op["op"] == "fragment":
+            raise MessageError("fragment.data", "has fragments in it")
+        return op
 
     async def close(self) -> None:
         """End what the client has begun."""
@@ -125,7 +135,7 @@ class Client:
         elif name in self._in_order:
             await self._attempt(op, self._put)
         else:
-            known = ", ".join(sorted([*self._at_once, *self._in_order]))
+            known = ", ".join(sorted(["fragment", *self._at_once, *self._in_order]))
             self._link.status("error", f"op: {name[:60]!r} is unknown; there are {known}", op)
 
     async def _put(self, op: Op) -> None:
@@ -147,16 +157,4 @@ class Client:
 
     async def _auth(self, op: Op) -> None:
         """Ignore the authentication of ROS 1, whose server is gone."""
-        logger.info(
-            "%s sends the op auth of ROS 1, which has no effect", self._link.session.identity.name
-        )
         self._link.status("warning", "auth: has no effect; connect with a token instead", op)
-
-    async def _fragment(self, op: Op) -> None:
-        whole = self._fragments.add(op)
-        if whole is None:
-            return
-        inner = op_of(whole)
-        if inner["op"] == "fragment":
-            raise MessageError("fragment.data", "has fragments in it")
-        await self._begin(inner)

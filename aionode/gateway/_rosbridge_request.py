@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import reprlib
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import msgspec
 
@@ -24,6 +24,7 @@ __all__ = [
     "number",
     "op_of",
     "profile",
+    "shown",
     "text",
     "type_text",
     "values",
@@ -51,7 +52,7 @@ LONGEST_NAME: Final = 1000
 MOST_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
-"""What a fragment counts beside its characters: empty ones take memory as well."""
+"""What a fragment counts beside its bytes: empty ones take memory as well."""
 
 
 def op_of(frame: str | bytes) -> Op:
@@ -232,17 +233,24 @@ def duration(value: object, path: str) -> Duration:
 # Fragments
 
 
+class Part(NamedTuple):
+    """One fragment, and how many bytes it counts."""
+
+    data: str
+    size: int
+
+
 class FragmentStore:
     """The fragments of one client's messages that are not complete.
 
     Args:
-        limit_bytes: Most characters that are kept while any message is incomplete; the largest
-            message that a client may send.
+        limit_bytes: How much is kept of messages that are incomplete, in bytes; the largest message
+            that a client may send.
     """
 
     def __init__(self, limit_bytes: int) -> None:
         self._limit = limit_bytes
-        self._parts: dict[str, dict[int, str]] = {}
+        self._parts: dict[str, dict[int, Part]] = {}
         self._kept = 0
 
     def add(self, op: Op) -> str | None:
@@ -257,16 +265,16 @@ class FragmentStore:
             raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MOST_FRAGMENTS}")
         if type(num) is not int or not 0 <= num < total:
             raise MessageError("fragment.num", f"{given(op, 'num')}, needs 0 to {total - 1}")
+        size = len(data.encode()) + len(message_id) + OVERHEAD
         parts = self._parts.setdefault(message_id, {})
-        self._kept += len(data) + len(message_id) + OVERHEAD
+        self._kept += size - parts.get(num, Part("", 0)).size
         if self._kept > self._limit:
             self._parts.clear()
             self._kept = 0
-            raise MessageError("fragment", f"more than {self._limit} characters are incomplete")
-        parts[num] = data
+            raise MessageError("fragment", f"more than {self._limit} bytes are incomplete")
+        parts[num] = Part(data, size)
         if len(parts) < total:
             return None
         del self._parts[message_id]
-        if not self._parts:
-            self._kept = 0
-        return "".join(parts[index] for index in sorted(parts))
+        self._kept -= sum(part.size for part in parts.values())
+        return "".join(parts[index].data for index in sorted(parts))

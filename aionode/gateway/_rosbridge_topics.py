@@ -167,9 +167,11 @@ class Topics:
         """Make a publisher, unless no subscription of the topic would hear it.
 
         Raises:
+            RefusedError: the policy does not allow it.
             MessageError: the topic has another type.
         """
-        types = self._session.topics(hidden=True).get(topic, [])
+        self._session.decide("publish", topic, "")
+        types = self._session.types_of(topic, "topic")
         if types and type_name is not None and type_name not in types:
             problem = f"{topic} has the type {', '.join(types)}, not {type_name}"
             raise MessageError(f"{op['op']}.type", problem)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode.errors import RefusedError
@@ -87,11 +88,8 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             InvalidServiceNameException: the name is invalid (a ValueError).
         """
         service = self.service_name(service)
-        self._count_served(service)
-        cls = await self.service_class(type_name)
-        await self._allow("advertise", service, cls.__ros_type__, None)
-        made = serve(self._robot.node, service, cls, answer, self._limits.calls)
-        return self._keep(service, cls.__ros_type__, made)
+        make = partial(serve, self._robot.node, service)
+        return await self._offer(service, self.service_class, type_name, make, answer)
 
     async def serve_action(
         self, action: str, type_name: str, execute: Callable[[Any], Awaitable[Any]]
@@ -110,15 +108,25 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             InvalidTopicNameException: the name is invalid (a ValueError).
         """
         action = self.topic_name(action)
-        self._count_served(action)
-        cls = await self.action_class(type_name)
-        await self._allow("advertise", action, cls.__ros_type__, None)
-        made = serve_action(self._robot.node, action, cls, execute, self._limits.calls)
-        return self._keep(action, cls.__ros_type__, made)
+        make = partial(serve_action, self._robot.node, action)
+        return await self._offer(action, self.action_class, type_name, make, execute)
 
-    def _count_served(self, name: str) -> None:
-        served = len(self._served)
-        self._count_one("advertise", name, "services and actions", served, self._limits.advertised)
+    async def _offer(
+        self,
+        name: str,
+        find: Callable[[str], Awaitable[Any]],
+        type_name: str,
+        make: Callable[..., Served],
+        work: Callable[[Any], Awaitable[Any]],
+    ) -> Served:
+        """Offer a service or action; its type is looked up if the policy may allow it."""
+        most = self._limits.advertised
+        with self._one_more("advertise", name, "services and actions", self._served, most):
+            self.decide("advertise", name, "")
+            cls = await find(type_name)
+            await self._allow("advertise", name, cls.__ros_type__, None)
+            made = make(cls, work, self._limits.calls)
+            return self._keep(name, cls.__ros_type__, made)
 
     def _keep(self, name: str, type_name: str, served: Served) -> Served:
         """Keep what the client offers until it leaves; an older one of the same name ends."""
@@ -138,8 +146,8 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
     def check_again(self) -> None:
         """End what the policy, which was read again, does not allow any more.
 
-        A subscription ends by itself. For a goal, a publisher, or a service that it offers, the
-        client is disconnected, which ends them as they end with any client.
+        A subscription ends by itself. For a call, a goal, a publisher, or a service that it offers,
+        the client is disconnected, which ends them as they end with any client.
         """
         policy = self._robot.policy
         if self.credentials is not None:
@@ -153,7 +161,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
                 self.identity, "subscribe", subscribed.topic, subscribed.type_name
             ).allowed:
                 subscribed.close()
-        held: list[tuple[Verb, str, str]] = [("goal", *goal) for goal in self._goals.values()]
+        held: list[tuple[Verb, str, str]] = [attempt.asked for attempt in self._attempts]
         held += [
             ("publish", topic, publisher.msg_type.__ros_type__)
             for topic, (publisher, _) in self._published.items()

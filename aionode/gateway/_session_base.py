@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sized
+from contextlib import AbstractContextManager, contextmanager
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
 
+from aionode._concurrency import checkpoint
 from aionode.clock import S_TO_NS
 from aionode.errors import InterfaceNotFoundError, RefusedError
 from aionode.gateway._outbox import Outbox
@@ -23,6 +26,13 @@ if TYPE_CHECKING:
     from aionode.gateway._robot import Robot
 
 __all__ = ["SessionBase", "as_message"]
+
+MOST_QUESTIONS: Final = 256
+"""How many questions about the graph may wait, for each client."""
+
+
+Kind: TypeAlias = Literal["topic", "service", "action"]
+"""What a name is of."""
 
 
 class Connection(Protocol):
@@ -52,7 +62,8 @@ class SessionBase:
         self._robot = robot
         self._limits = robot.policy.limits
         self.outbox = Outbox(self._limits.queued_bytes)
-        self._busy = 0
+        self._coming: Counter[str] = Counter()
+        self._turn = asyncio.Lock()
         self.refused = 0
         self.connection: Connection | None = None
         self._frame_ns: int | None = None  # when the frame arrived that is handled
@@ -97,6 +108,8 @@ class SessionBase:
             )
         if decision.ask:
             await self._ask(verb, name, decision.message)
+            # A person takes a while, in which the policy may have changed.
+            decision = self.decide(verb, name, type_name, message)
         return decision
 
     async def _ask(self, verb: Verb, name: str, message: Any) -> None:
@@ -115,11 +128,36 @@ class SessionBase:
             policy.decide(identity, "see", name, each).allowed for each in type_names or [""]
         )
 
-    def _count_one(self, verb: str, name: str, what: str, there_are: int, most: int) -> None:
-        """Refuse one more of what a client may have so many of."""
+    @contextmanager
+    def _one_more(self, verb: str, name: str, what: str, held: Sized, most: int) -> Iterator[None]:
+        """Count one more of what a client may have so many of, while the block makes it.
+
+        Those that are being made count, too: several at once would each find the last place.
+
+        Args:
+            verb: What the client does.
+            name: With what.
+            what: What there may be so many of.
+            held: Those that are made.
+            most: How many there may be.
+
+        Raises:
+            RefusedError: there are as many.
+        """
+        there_are = len(held) + self._coming[what]
         if there_are >= most:
             reason = f"the client has {there_are} {what}, which is the limit"
             raise self._refused(verb, name, reason, "too_many")
+        self._coming[what] += 1
+        try:
+            yield
+        finally:
+            self._coming[what] -= 1
+
+    def _one_call(self, verb: str, name: str) -> AbstractContextManager[None]:
+        """Count one more call, goal, or question to a node, while the block lasts."""
+        what = "calls, goals and questions under way"
+        return self._one_more(verb, name, what, (), self._limits.calls)
 
     def _check_size(self, verb: Verb, name: str, decision: Decision, message: Message) -> None:
         most = None if decision.rule is None else decision.rule.max_bytes
@@ -154,10 +192,18 @@ class SessionBase:
             raise RefusedError(node, "the gateway's node remaps its services")
         return node
 
-    def _one_more(self, verb: str, name: str) -> Busy:
-        what = "calls, goals and questions under way"
-        self._count_one(verb, name, what, self._busy, self._limits.calls)
-        return Busy(self)
+    async def turn(self) -> None:
+        """Wait for a turn of the loop in which no client of the gateway asks anything else.
+
+        Questions about the graph walk through it, for which they hold up the loop: those of a burst
+        come one by one, the clients in turn, and the callbacks of the robot between them.
+
+        Raises:
+            RefusedError: too many questions of the client wait.
+        """
+        with self._one_more("ask", "the graph", "questions", (), MOST_QUESTIONS):
+            async with self._turn, self._robot.turn:
+                await checkpoint()
 
     def _visible(self, found: Any, *, hidden: bool) -> dict[str, list[str]]:
         return {
@@ -237,36 +283,32 @@ class SessionBase:
             raise RefusedError(name, f"the gateway's node remaps {full} once more")
         return full
 
-    def type_of(self, name: str, kind: Literal["topic", "service", "action"]) -> str:
+    def type_of(self, name: str, kind: Kind) -> str:
         """Return the type that the graph shows of a full name.
 
         Raises:
             InterfaceNotFoundError: no node has it.
         """
+        for type_name in self._types_of(name, kind):
+            return type_name
+        raise InterfaceNotFoundError(name, problem=f"no node has this {kind}; give its type")
+
+    def types_of(self, name: str, kind: Kind) -> list[str]:
+        """Return the types of a full name; none if no node has it, or the client may not see it."""
+        types = list(self._types_of(name, kind))
+        return types if types and self._sees(name, types) else []
+
+    def _types_of(self, name: str, kind: Kind) -> dict[str, None]:
         place, suffix = name, ""
         if kind == "action":
             place, suffix = f"{name}/_action/feedback", "_FeedbackMessage"
         kinds = SERVICE_KINDS if kind == "service" else TOPIC_KINDS
-        for endpoint in self._robot.node.graph.endpoints(*kinds, name=place):
-            return endpoint.type_name.removesuffix(suffix)
-        raise InterfaceNotFoundError(name, problem=f"no node has this {kind}; give its type")
+        endpoints = self._robot.node.graph.endpoints(*kinds, name=place)
+        return {endpoint.type_name.removesuffix(suffix): None for endpoint in endpoints}
 
     def steady_ns(self) -> int:
         """Return the time of the steady clock in nanoseconds, for `arrived_ns` of `publish`."""
         return self._robot.time_base.steady_ns()
-
-
-class Busy:
-    """Counts one call or goal of a session while it lasts."""
-
-    def __init__(self, session: SessionBase) -> None:
-        self._session = session
-
-    def __enter__(self) -> None:
-        self._session._busy += 1
-
-    def __exit__(self, *_: object) -> None:
-        self._session._busy -= 1
 
 
 def as_message(

@@ -30,7 +30,8 @@ class SessionCalls(SessionBase):
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
-        self._goals: dict[Any, tuple[str, str]] = {}  # the action of each, and its type
+        self._attempts: dict[Attempt, None] = {}
+        self._goals: set[Any] = set()
 
     # Services
 
@@ -60,19 +61,21 @@ class SessionCalls(SessionBase):
             InterfaceNotFoundError: nobody knows the service or its type.
         """
         service = self.service_name(service)
-        self._decide_call(service, "")
-        cls = await self.service_class(type_name or self.type_of(service, "service"))
-        request = as_message(cls.Request, values, self._robot.node.get_clock())
-        verb, name = self._decide_call(service, cls.__ros_type__, request)
-        decision = await self._allow(verb, name, cls.__ros_type__, request)
-        self._check_size(verb, name, decision, request)
-        make = partial(self._robot.node.create_client, cls, service)
-        with self._attempt("call", service, cls, decision.message, make) as attempt:
-            if not await attempt.client.wait_for_service(SERVER_SEC):
-                raise ServiceError(service, "there is no server")
-            response = await attempt.client.call(decision.message, timeout_sec)
-            attempt.result = "ok"
-            return response
+        with self._one_call("call", service):
+            self._decide_call(service, "")
+            cls = await self.service_class(type_name or self.type_of(service, "service"))
+            request = as_message(cls.Request, values, self._robot.node.get_clock())
+            verb, name = self._decide_call(service, cls.__ros_type__, request)
+            decision = await self._allow(verb, name, cls.__ros_type__, request)
+            self._check_size(verb, name, decision, request)
+            make = partial(self._robot.node.create_client, cls, service)
+            with self._attempt("call", service, cls, decision.message, make) as attempt:
+                attempt.asked = (verb, name, cls.__ros_type__)
+                if not await attempt.client.wait_for_service(SERVER_SEC):
+                    raise ServiceError(service, "there is no server")
+                response = await attempt.client.call(decision.message, timeout_sec)
+                attempt.result = "ok"
+                return response
 
     def _decide_call(self, service: str, type_name: str, request: Any = None) -> tuple[Verb, str]:
         """Return about what the policy is asked for a call, which may be a goal or a parameter.
@@ -145,29 +148,30 @@ class SessionCalls(SessionBase):
             InterfaceNotFoundError: nobody knows the action or its type.
         """
         action = self.topic_name(action)
-        self.decide("goal", action, "")
-        cls = await self.action_class(type_name or self.type_of(action, "action"))
-        goal = as_message(cls.Goal, values, self._robot.node.get_clock())
-        decision = await self._allow("goal", action, cls.__ros_type__, goal)
-        self._check_size("goal", action, decision, goal)
-        make = partial(self._robot.node.create_action_client, cls, action)
-        with self._attempt("goal", action, cls, decision.message, make) as attempt:
-            if not await attempt.client.wait_for_server(SERVER_SEC):
-                raise ServiceError(action, "there is no action server")
-            handle = await attempt.client.send_goal(decision.message)
-            self._goals[handle] = (action, cls.__ros_type__)
-            try:
-                async with handle:
-                    yield handle
-            finally:
-                self._goals.pop(handle, None)
-                attempt.result = handle.status.name.lower()
+        with self._one_call("goal", action):
+            self.decide("goal", action, "")
+            cls = await self.action_class(type_name or self.type_of(action, "action"))
+            goal = as_message(cls.Goal, values, self._robot.node.get_clock())
+            decision = await self._allow("goal", action, cls.__ros_type__, goal)
+            self._check_size("goal", action, decision, goal)
+            make = partial(self._robot.node.create_action_client, cls, action)
+            with self._attempt("goal", action, cls, decision.message, make) as attempt:
+                if not await attempt.client.wait_for_server(SERVER_SEC):
+                    raise ServiceError(action, "there is no action server")
+                handle = await attempt.client.send_goal(decision.message)
+                self._goals.add(handle)
+                try:
+                    async with handle:
+                        yield handle
+                finally:
+                    self._goals.discard(handle)
+                    attempt.result = handle.status.name.lower()
 
     @contextmanager
     def _attempt(
         self, verb: Verb, name: str, cls: Any, message: Any, make: Callable[[], Any]
     ) -> Iterator[Attempt]:
-        """Count a call or goal while the block lasts, and write down what became of it.
+        """Send a call or goal within the block; write down what became of it.
 
         Args:
             verb: What it is.
@@ -176,17 +180,17 @@ class SessionCalls(SessionBase):
             message: The request or goal.
             make: Makes the client that sends it, which sessions share.
         """
-        busy = self._one_more(verb, name)
         client, give_back = self._robot.shared.take((verb, name, cls), make)
-        attempt = Attempt(client)
+        attempt = Attempt(client, (verb, name, cls.__ros_type__))
+        self._attempts[attempt] = None
         began_ns = self.steady_ns()
         try:
-            with busy:
-                yield attempt
+            yield attempt
         except AionodeError as error:
             attempt.result = f"failed: {error}"
             raise
         finally:
+            del self._attempts[attempt]
             give_back()
             self._robot.audit.note(
                 self.identity, verb, name, arguments=message, result=attempt.result,
@@ -199,9 +203,12 @@ class Attempt:
 
     Attributes:
         client: Sends it.
+        asked: About what the policy was asked, and is again when it changes: the verb, the name,
+            and the type.
         result: What became of it, for the audit log.
     """
 
-    def __init__(self, client: Any) -> None:
+    def __init__(self, client: Any, asked: tuple[Verb, str, str]) -> None:
         self.client = client
+        self.asked = asked
         self.result = "cancelled"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from collections import defaultdict
 from collections.abc import AsyncIterator, Mapping
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from aionode.errors import NodeNameNonExistentError, ServiceError
+from aionode.errors import AionodeError, MessageError, NodeNameNonExistentError, ServiceError
 from aionode.gateway._session_base import SessionBase
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.parameter import Parameter
@@ -25,6 +26,9 @@ SERVER_SEC: Final = 1.0
 
 ANSWER_SEC: Final = 5.0
 """How long questions about parameters wait for an answer, in seconds."""
+
+MOST_ASKED: Final = 8
+"""How many nodes are asked for their parameters at a time."""
 
 
 class NodeDetails(msgspec.Struct, frozen=True):
@@ -97,6 +101,25 @@ class SessionGraph(SessionBase):
             self._visible(actions, hidden=True),
         )
 
+    def users(self, kind: EndpointKind, name: str) -> list[str]:
+        """Return the nodes that have an endpoint of a kind and a full name, sorted."""
+        endpoints = self._robot.node.graph.endpoints(kind, name=name)
+        if not endpoints or not self._sees(name, [each.type_name for each in endpoints]):
+            return []
+        found = {endpoint.node.fully_qualified_name for endpoint in endpoints}
+        return [node for node in sorted(found) if self._sees(node, [])]
+
+    def connections(self, kind: EndpointKind) -> dict[str, list[str]]:
+        """Return the nodes that have endpoints of a kind, sorted, by the names of those."""
+        graph = self._robot.node.graph
+        found: dict[str, set[str]] = defaultdict(set)
+        names, nodes = self._visible(graph.names_and_types(kind), hidden=False), set(self.nodes())
+        for endpoint in graph.endpoints(kind):
+            node = endpoint.node.fully_qualified_name
+            if endpoint.name in names and node in nodes:
+                found[endpoint.name].add(node)
+        return {name: sorted(found[name]) for name in sorted(found)}
+
     # Parameters
 
     @asynccontextmanager
@@ -112,7 +135,7 @@ class SessionGraph(SessionBase):
             raise self._refused("see", node, "the policy does not show it", "not_allowed")
         client = AsyncParameterClient(self._robot.node, node)
         try:
-            with self._one_more("see", node):
+            with self._one_call("see", node):
                 async with asyncio.timeout(ANSWER_SEC):
                     if not await client.wait_for_services(SERVER_SEC):
                         raise ServiceError(node, "it offers no parameters")
@@ -131,6 +154,21 @@ class SessionGraph(SessionBase):
         async with self._parameters(node) as client:
             found = await client.list_parameters()
         return [name for name in found.names if self._sees(f"{node}:{name}", [])]
+
+    async def all_parameter_names(self) -> dict[str, list[str]]:
+        """Return the names of the parameters that the client may see, by the nodes that answer."""
+        found: dict[str, list[str]] = {}
+        room = asyncio.Semaphore(MOST_ASKED)
+
+        async def ask(node: str) -> None:
+            with suppress(AionodeError, TimeoutError):  # a node without parameters, or that ends
+                async with room:
+                    found[node] = await self.parameter_names(node)
+
+        async with asyncio.TaskGroup() as tasks:
+            for node in self.nodes():
+                tasks.create_task(ask(node))
+        return dict(sorted(found.items()))
 
     async def get_parameters(self, node: str, names: list[str]) -> dict[str, Any]:
         """Return the values of parameters; those that are not declared are left out.
@@ -166,11 +204,12 @@ class SessionGraph(SessionBase):
             RefusedError: the policy does not allow one of them; none was set.
             ServiceError: the node offers no parameters.
             TimeoutError: the node has not answered within 5 s.
+            MessageError: a value is none that parameters have (a ValueError).
         """
         node, began_ns = self.node_name(node), self.steady_ns()
         changed = []
         for name, value in values.items():
-            parameter = self._decide_parameter(node, Parameter(name, value=value))
+            parameter = self._decide_parameter(node, parameter_of(name, value))
             await self._allow("parameter", f"{node}:{name}", "", {"value": parameter.value})
             changed.append(parameter)
         async with self._parameters(node) as client:
@@ -183,3 +222,15 @@ class SessionGraph(SessionBase):
             duration_ns=self.steady_ns() - began_ns, way=self.kind,
         )  # fmt: skip
         return results
+
+
+def parameter_of(name: str, value: Any) -> Parameter:
+    """Return a parameter with the value that a client gives it.
+
+    Raises:
+        MessageError: parameters have no such value.
+    """
+    try:
+        return Parameter(name, value=value)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise MessageError(name[:200], str(error)) from None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import S_TO_NS, Duration
@@ -19,7 +20,7 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 if TYPE_CHECKING:
     from aionode.gateway._feed import Received
     from aionode.gateway._outbox import Frame
-    from aionode.gateway._policy import Decision
+    from aionode.gateway._policy import Decision, Verb
     from aionode.gateway._preparing import Prepare
 
 __all__ = ["SessionTopics", "Subscribed"]
@@ -146,17 +147,15 @@ class SessionTopics(SessionBase):
             InvalidTopicNameException: the name is invalid (a ValueError).
         """
         topic = self.topic_name(topic)
-        subscriptions = len(self._subscribed)
         most = self._limits.subscriptions
-        self._count_one("subscribe", topic, "subscriptions", subscriptions, most)
-        self.decide("subscribe", topic, "")  # before anybody is asked for a type
-        message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
-        await self._allow("subscribe", topic, message_class.__ros_type__, None)
-        subscribed = Subscribed(
-            self, topic, message_class, frame, key, depth, min_period_sec, prepare
-        )
-        self._subscribed[subscribed] = None
-        subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed._take)
+        with self._one_more("subscribe", topic, "subscriptions", self._subscribed, most):
+            message_class = await self._type_to("subscribe", topic, type_name)
+            await self._allow("subscribe", topic, message_class.__ros_type__, None)
+            subscribed = Subscribed(
+                self, topic, message_class, frame, key, depth, min_period_sec, prepare
+            )
+            subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed._take)
+            self._subscribed[subscribed] = None
         self._robot.audit.note(self.identity, "subscribe", topic, way=self.kind)
         return subscribed
 
@@ -173,20 +172,16 @@ class SessionTopics(SessionBase):
         topic = self.topic_name(topic)
         if topic in self._published:
             return
-        advertised, most = len(self._published), self._limits.advertised
-        self._count_one("publish", topic, "topics that it publishes", advertised, most)
-        message_class = await self.message_class(type_name or self.type_of(topic, "topic"))
-        decision = self.decide("publish", topic, message_class.__ros_type__)
-        profile = COMMANDS if decision.lease is not None else qos or PUBLISHED
-        node = self._robot.node
-        publisher, give_back = self._robot.shared.take(
-            ("publisher", topic, message_class, str(profile)),
-            lambda: node.create_publisher(message_class, topic, profile),
-        )
-        if topic in self._published:  # advertised twice at once
-            give_back()
-            return
-        self._published[topic] = (publisher, give_back)
+        what, most = "topics that it publishes", self._limits.advertised
+        with self._one_more("publish", topic, what, self._published, most):
+            message_class = await self._type_to("publish", topic, type_name)
+            decision = self.decide("publish", topic, message_class.__ros_type__)
+            if topic in self._published:  # advertised twice at once
+                return
+            profile = COMMANDS if decision.lease is not None else qos or PUBLISHED
+            make = partial(self._robot.node.create_publisher, message_class, topic, profile)
+            key = ("publisher", topic, message_class, str(profile))
+            self._published[topic] = self._robot.shared.take(key, make)
         self._robot.audit.note(self.identity, "advertise", topic, way=self.kind)
 
     async def publish(
@@ -258,6 +253,18 @@ class SessionTopics(SessionBase):
         """
         await prepared(self._robot, prepare_json, received)
         return received.once("json", lambda each: json_of(each.message))
+
+    async def _type_to(self, verb: Verb, topic: str, type_name: str | None) -> Any:
+        """Return the class of a topic's messages, if the policy may allow what a client wants.
+
+        Only then is a type looked up, imported, or asked from a node.
+
+        Raises:
+            RefusedError: the policy does not allow it, whatever the type is.
+            InterfaceNotFoundError: nobody knows the topic or its type.
+        """
+        self.decide(verb, topic, "")
+        return await self.message_class(type_name or self.type_of(topic, "topic"))
 
     def dropped(self) -> dict[str, int]:
         """Return how many frames of each topic were dropped, as the client was too slow."""

@@ -15,6 +15,9 @@ __all__ = ["Shared"]
 LINGER_NS: Final = 10 * S_TO_NS
 """For how long an endpoint stays without a user: a page that is loaded again finds it."""
 
+MOST_UNUSED: Final = 100
+"""How many endpoints stay without a user: clients may use one name after the other."""
+
 
 class Shared:
     """Endpoints by what they are made of.
@@ -66,9 +69,13 @@ class Shared:
         if not self._users[key]:
             due_ns = self._time_base.steady_ns() + self._linger_ns
             self._alarms[key] = self._time_base.call_at(due_ns, lambda: self._destroy(key))
+            if len(self._alarms) > MOST_UNUSED:
+                self._destroy(next(iter(self._alarms)))
 
     def _destroy(self, key: Hashable) -> None:
-        self._alarms.pop(key, None)
+        alarm = self._alarms.pop(key, None)
+        if alarm is not None:
+            alarm.cancel()
         self._users.pop(key, None)
         entity = self._entities.pop(key, None)
         if entity is not None:
@@ -76,7 +83,5 @@ class Shared:
 
     def close(self) -> None:
         """Destroy all."""
-        for alarm in self._alarms.values():
-            alarm.cancel()
         for key in list(self._entities):
             self._destroy(key)

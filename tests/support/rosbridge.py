@@ -9,6 +9,7 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import cbor2
+import msgspec
 
 from aionode.gateway._audit import Audit
 from aionode.gateway._identity import Identity
@@ -87,8 +88,9 @@ async def rosbridge_client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
     async with asyncio.TaskGroup() as tasks:
         identity = Identity("tester", address="127.0.0.1")
         async with Session(robot, identity, "rosbridge") as session:
+            session._limits = msgspec.structs.replace(session._limits, frame_bytes=1000)
             client = RosbridgeClient(session)
-            serving = tasks.create_task(serve_frames(session, client.frames(), 1000))
+            serving = tasks.create_task(serve_frames(session, client.frames()))
             try:
                 yield client
             finally:
