@@ -14,6 +14,7 @@
 #   make fuzz      damaged input for every parser: by property tests, and guided by coverage
 #   make faults    processes that freeze, lag and die, FAULTS_TIMES times: writes docs/reliability.md
 #   make attacks   lies, floods and forgeries beside true traffic: writes them into docs/security.md
+#   make zenoh-defects   what aionode works around: a program that fails shows what Zenoh has mended
 #   make motion    robots whose movers go in every way, MOTION_TIMES times: writes docs/motion.md
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
@@ -38,11 +39,11 @@ WORKERS ?= auto
 CLIENTS := .rosbridge-clients
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks motion live ros-test rosbridge-clients crowd \
+.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks zenoh-defects motion live ros-test rosbridge-clients crowd \
 	tf-differential system-stress soak quotes clean
 
 help:
-	@sed -n '3,26s/^# *//p' Makefile
+	@sed -n '3,27s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -106,6 +107,9 @@ faults: .venv/installed-dev
 
 attacks: .venv/installed-dev
 	$(BIN)/python -m tests.attacks --write docs/security.md
+
+zenoh-defects: .venv/installed-dev
+	$(BIN)/python -m pytest -q tests/zenoh_defects/[a-z]*.py
 
 motion: .venv/installed-dev
 	$(BIN)/python -m tests.faults --only '^motion' --times $(MOTION_TIMES) --write-motion docs/motion.md

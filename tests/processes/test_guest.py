@@ -16,8 +16,8 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.transport.zenoh import _recovery, _sockets
-from aionode.transport.zenoh._descriptors import find
+from aionode.transport.zenoh import _sockets
+from aionode.transport.zenoh._defects import forgotten_peers, lingering
 from aionode.transport.zenoh._session_state import SessionState
 from tests.processes.process import Process
 from tests.support.guest import guest
@@ -57,9 +57,9 @@ asyncio.run(main())
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """Look for sockets and lost peers as early as possible: no other process uses these ports."""
-    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
-    monkeypatch.setattr(_recovery, "FIRST_S", 0.1)
-    monkeypatch.setattr(_recovery, "SURE_S", 0.05)
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
+    monkeypatch.setattr(forgotten_peers, "FIRST_S", 0.1)
+    monkeypatch.setattr(forgotten_peers, "SURE_S", 0.05)
 
 
 @asynccontextmanager
@@ -107,9 +107,9 @@ def cut_connections(node: Node) -> None:
     transport: Any = node.context.transports[1]
     state: SessionState = getattr(transport, "zenoh", transport).session_state
     assert state.session is not None
-    pairs = _recovery.pairs_to(state.session, {str(one.zid) for one in state.session.info.links()})
-    assert pairs
-    _sockets.cut(find(pairs).values())
+    own = _sockets.connections(state.session)
+    assert own
+    _sockets.cut(own)
 
 
 @pytest.mark.parametrize("route", ROUTES)

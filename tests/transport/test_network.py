@@ -17,10 +17,10 @@ from aionode.transport._network import (
     is_near,
     network_from,
 )
+from aionode.transport.zenoh._config import probed_ports
 from aionode.transport.zenoh._settings import (
     INTRODUCERS,
     Neighbours,
-    probed_ports,
     router_settings,
     session_settings,
 )

@@ -6,6 +6,8 @@ import logging
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
+from aionode.transport.zenoh._defects.crowd import is_crowd
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -18,10 +20,6 @@ TOKEN_BYTES: Final = 2_000
 
 SHARE: Final = 8
 """One participant may have an eighth of it all."""
-
-CROWDED: Final = 2_000
-"""Of more tokens than that Zenoh's lock may be held for long: it drops those of a connection in one
-piece, which takes 40 ms for 2,000 and grows with their square."""
 
 RESERVED_BYTES: Final = 256_000
 """So much of each connected participant is kept whatever others announce: 100 endpoints. Whoever
@@ -102,7 +100,7 @@ class AnnouncedLimit:
 
     def _judge(self) -> None:
         """Find out whether it is crowded."""
-        is_crowded = self._count > CROWDED or self.left_out > 0
+        is_crowded = is_crowd(self._count) or self.left_out > 0
         if is_crowded is not self.is_crowded:
             self.is_crowded = is_crowded
             for call in self.on_crowded:

@@ -9,8 +9,9 @@ import zenoh
 
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 from aionode.transport.base import SampleInfo
+from aionode.transport.zenoh._defects.blocked_sends import BLOCK_US
 from aionode.transport.zenoh._handlers import BULK_PRIORITY, reason
-from aionode.transport.zenoh._settings import BLOCK_US, FLUSH_S
+from aionode.transport.zenoh._settings import FLUSH_S
 from aionode.wire._attachment import unpack_fields
 
 if TYPE_CHECKING:

@@ -22,16 +22,11 @@ from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
 from aionode.transport._network import is_near
 from aionode.transport._send_thread import start_thread
+from aionode.transport.zenoh._config import LOOPBACK, load_config, open_look
+from aionode.transport.zenoh._defects.lingering import SocketOptions
 from aionode.transport.zenoh._handlers import direct, reason, translated
-from aionode.transport.zenoh._recovery import LOOK_IDS
-from aionode.transport.zenoh._session import (
-    answering_ports,
-    close_session,
-    load_config,
-    run_in_own_thread,
-)
-from aionode.transport.zenoh._settings import LOOPBACK, look_settings, router_settings
-from aionode.transport.zenoh._sockets import SocketOptions
+from aionode.transport.zenoh._session import answering_ports, close_session, run_in_own_thread
+from aionode.transport.zenoh._settings import router_settings
 
 if TYPE_CHECKING:
     from aionode.transport._network import Network
@@ -157,12 +152,12 @@ class LocalRouter:
 
     def _router_at(self, port: int) -> str:
         """Return the id of the router at a port of this machine, "unknown" if it does not say."""
-        settings = look_settings(f"tcp/{LOOPBACK}:{port}")
-        with suppress(zenoh.ZError):
-            config = load_config(self._network, {}, LOOK_IDS + secrets.token_hex(12), settings)
-            with closing(zenoh.open(config)) as look:
-                for zid in look.info.routers_zid():
-                    return str(zid)
+        with (
+            suppress(zenoh.ZError),
+            closing(open_look(self._network, f"tcp/{LOOPBACK}:{port}")) as look,
+        ):
+            for zid in look.info.routers_zid():
+                return str(zid)
         return "unknown"
 
 

@@ -22,7 +22,7 @@ from contextlib import suppress
 from typing import Final
 
 from aionode.transport._network import udp_sockets
-from aionode.transport.zenoh._settings import LOOPBACK
+from aionode.transport.zenoh._config import LOOPBACK
 
 __all__ = ["announce", "holder_of", "listed", "reserve_port"]
 

@@ -11,6 +11,7 @@ import zenoh
 from aionode.transport import _content_filters
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import LinkStatus
+from aionode.transport.zenoh._config import is_look
 from aionode.transport.zenoh._delivery import BLOCK, DROP
 from aionode.transport.zenoh._handlers import (
     LOOP_PRIORITY,
@@ -19,7 +20,6 @@ from aionode.transport.zenoh._handlers import (
     reason,
     translated,
 )
-from aionode.transport.zenoh._recovery import is_look
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
 from aionode.transport.zenoh._acknowledgements import TICK_S
+from aionode.transport.zenoh._defects import history_lock
 from aionode.transport.zenoh._delivery import (
     BULK_BYTES,
     FLUSH_NS,
@@ -100,9 +101,9 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         self._is_direct = True
         # Whether a message has been put into `_large` since that was last seen empty.
         self._is_large_used = False
-        # Whether `tick` is being called.
-        self._is_watched = False
+        self._is_watched = False  # whether `tick` is being called
         self._transient = is_transient(qos)
+        self._needs_thread = history_lock.needs_thread(is_transient=self._transient)
         self._depth = depth_of(qos)
         self._reliable = is_reliable(qos)
         lifespan = qos.lifespan
@@ -384,7 +385,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         if is_crowded or not self._is_large_used:
             self._large.limit = max(self._depth, LATE) if is_crowded else self._depth
         if (
-            self._transient
+            self._needs_thread
             or self._patient is not None
             or (
                 self._may_not_drop
@@ -404,14 +405,13 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         """Find out whether small messages may be put at once, and dropped by Zenoh if need be.
 
         Not if a reader may lose none of them and does not acknowledge: then a thread sends them
-        when they are many, and always for KEEP_ALL. Never if late readers may ask Zenoh for them:
-        while Zenoh waits for one to read the answer, it lets nobody add to it.
+        when they are many, and always for KEEP_ALL. Never if Zenoh keeps them for late readers.
         """
         others = self._history is None or self._history.has_other_readers
         self._may_not_drop = others and self._reliable
         self._is_direct = not (
             self._patient is not None
-            or self._transient
+            or self._needs_thread
             or self._may_not_drop
             or self.state.outlet.is_crowded
         )

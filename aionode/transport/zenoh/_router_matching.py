@@ -7,16 +7,13 @@ router, a peer that is connected to nothing else, and takes no part in gossip. T
 of its publishers is about the clients of that router, and about what other routers announce.
 
 Nothing but declarations is asked for. The router's admin space would tell as well, but must not be
-asked: it holds the lock of its routing table while it answers, and takes it once more for each
-reply. With a declaration in between it deadlocks (zenoh 1.8 to 1.10, pull request 2619), and no
-other process can join the system any more.
+asked (`_defects.admin_space`).
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import secrets
 from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -25,10 +22,9 @@ import zenoh
 
 from aionode.errors import ConfigurationError, TransportError
 from aionode.transport._send_thread import SendThread
+from aionode.transport.zenoh._config import open_look
 from aionode.transport.zenoh._handlers import direct, reason
-from aionode.transport.zenoh._recovery import LOOK_IDS
-from aionode.transport.zenoh._session import CLOSE_S, load_config
-from aionode.transport.zenoh._settings import look_settings
+from aionode.transport.zenoh._session import CLOSE_S
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -267,9 +263,7 @@ class RouterMatching:
     def _open(self, router: RouterSession, session: zenoh.Session) -> zenoh.Session:
         """Open a session that is connected to the router, and to nothing else."""
         locators = [str(link.dst) for link in session.info.links() if str(link.zid) == router.zid]
-        settings = {**look_settings(next(iter(locators), "")), "mode": "peer"}
-        own_id = LOOK_IDS + secrets.token_hex(12)
-        opened = zenoh.open(load_config(self._network, {}, own_id, settings))
+        opened = open_look(self._network, next(iter(locators), ""), mode="peer")
 
         def on_event(event: zenoh.TransportEvent) -> None:
             if event.kind == zenoh.SampleKind.DELETE:

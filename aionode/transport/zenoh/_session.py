@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import logging
 import os
 import selectors
@@ -11,31 +10,29 @@ import socket
 import threading
 from contextlib import ExitStack, closing, suppress
 from dataclasses import replace
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
 
 import zenoh
 
 from aionode.clock import perf_ns
-from aionode.errors import ConfigurationError, TransportError
+from aionode.errors import TransportError
 from aionode.transport._network import network_from
 from aionode.transport._send_thread import start_thread
+from aionode.transport.zenoh._config import LOOPBACK, load_config, near, probed_ports
+from aionode.transport.zenoh._defects.closing import cut_unanswered
+from aionode.transport.zenoh._defects.lingering import SocketOptions
 from aionode.transport.zenoh._handlers import direct, reason
 from aionode.transport.zenoh._local_sessions import announce, listed, reserve_port
 from aionode.transport.zenoh._settings import (
-    LOOPBACK,
     Neighbours,
     listening_address,
-    near,
-    probed_ports,
     router_settings,
     session_settings,
 )
-from aionode.transport.zenoh._sockets import SocketOptions, cut_unanswered
 from aionode.transport.zenoh._turns import one_at_a_time
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Iterable
 
     from aionode.transport._loop_waker import ThreadsafeQueue
     from aionode.transport._network import Network
@@ -221,46 +218,6 @@ def speaking_ports(ports: Iterable[int]) -> set[int]:
                     if len(answer) == 3 and answer[2] & KIND in (INIT, CLOSE):
                         speaking.add(port)
     return speaking
-
-
-def load_config(
-    network: Network,
-    settings: dict[str, Any],
-    participant: str | None = None,
-    last: Mapping[str, Any] = MappingProxyType({}),
-) -> zenoh.Config:
-    """Return Zenoh's own form of a configuration.
-
-    Args:
-        network: The file and the overrides.
-        settings: What takes the place of Zenoh's defaults.
-        participant: The id of the session.
-        last: What takes the place of everything else.
-
-    Raises:
-        ConfigurationError: the file or an override cannot be used; the text says why.
-    """
-    config = zenoh.Config()
-    if network.config_file is not None:
-        path = network.config_file.removeprefix("file://")
-        try:
-            config = zenoh.Config.from_file(path)
-        except zenoh.ZError as error:
-            fits = f"the path of a Zenoh configuration (JSON5) fits: {reason(error)}"
-            raise ConfigurationError(network.config_source, path, fits) from error
-    for key, value in settings.items():
-        config.insert_json5(key, json.dumps(value))
-    for key, text in network.overrides:
-        try:
-            config.insert_json5(key, text)
-        except zenoh.ZError as error:
-            fits = f"key paths and values of Zenoh's configuration fit: {reason(error)}"
-            raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
-    for key, value in last.items():
-        config.insert_json5(key, json.dumps(value))
-    if participant is not None:
-        config.insert_json5("id", json.dumps(participant))
-    return config
 
 
 class Opened(NamedTuple):

@@ -1,6 +1,6 @@
 """Zenoh's configuration of the sessions and routers of aionode, made of a `Network`.
 
-Pure functions; nothing is connected here, and zenoh is not imported.
+Pure functions; nothing is connected here.
 
 Without configuration the processes of one machine find each other over loopback: each tries to
 listen on one of three meeting ports, and dials those that are listed (`_local_sessions`), other
@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.transport._network import ROUTER_PORT, DiscoveryRange
+from aionode.transport.zenoh._config import LOOPBACK, near, probed_ports
+from aionode.transport.zenoh._defects import admin_space, blocked_sends, half_open, shared_memory
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -22,29 +24,16 @@ if TYPE_CHECKING:
     from aionode.transport._network import Network
 
 __all__ = [
-    "LOOPBACK",
     "Neighbours",
-    "introducers",
     "listening_address",
-    "look_settings",
-    "near",
-    "probed_ports",
     "router_settings",
     "session_settings",
 ]
 
-LOOPBACK: Final = "127.0.0.1"
 EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET
 
 FLUSH_S: Final = 2.0
 """How long the end of a context waits for reliable messages, while their readers make progress."""
-
-BLOCK_US: Final = 7_000_000
-"""How long a blocking send waits for a peer, in microseconds, before the connection is ended.
-
-It has to be less than the lease of 10 s: when that ends while a send waits, the thread of Zenoh
-that ends the connection waits too, and with it everything that it does for other connections.
-"""
 
 BATCHES: Final = 16
 """How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
@@ -52,18 +41,6 @@ BATCHES: Final = 16
 BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
 """The priorities of what the loop sends, tokens, requests and replies, messages, and that of
 messages which late readers get, too."""
-
-
-OPEN_MS: Final = 30_000
-"""How long making a connection may take, in milliseconds.
-
-Where many processes start at once it takes seconds, and Zenoh must not give up meanwhile: the end
-that gives up while it takes the connection into use keeps one for good which it sends on, but never
-reads (zenoh 1.10). It sees no token of that peer, and the peer refuses further connections.
-"""
-
-FAR_OPEN_MS: Final = 3_000
-"""The same where other machines may be dialled: `close` waits for one that is switched off."""
 
 INTRODUCERS: Final = 4
 """How many of the sessions that a machine lists tell all others by gossip of sessions that are not
@@ -100,38 +77,6 @@ class Neighbours:
 
     port: int
     others: tuple[int, ...]
-
-
-def probed_ports(network: Network) -> tuple[int, ...]:
-    """Return the ports of this machine whose listeners a session will dial."""
-    if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
-        return ()
-    if network.discovery_range is DiscoveryRange.SYSTEM_DEFAULT:
-        return (network.router_port,)
-    return (*network.meeting_ports, network.router_port)
-
-
-def introducers(network: Network) -> tuple[str, ...]:
-    """Return the endpoints that a session dials again and again, as far as aionode knows."""
-    if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
-        return ()
-    ports = (*probed_ports(network), *network.spare_ports)
-    return (*(f"tcp/{LOOPBACK}:{p}" for p in ports), *network.near_peers)
-
-
-def look_settings(endpoint: str) -> dict[str, Any]:
-    """Return the settings of a session that looks what is to be seen at one endpoint."""
-    return {
-        "mode": "client",
-        "connect/endpoints": [endpoint],
-        "connect/timeout_ms": 700,
-        "connect/exit_on_failure": True,
-        "listen/endpoints": [],
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "transport/unicast/open_timeout": 700,
-        "transport/shared_memory/enabled": False,
-    }
 
 
 def session_settings(
@@ -179,20 +124,16 @@ def session_settings(
         "connect/exit_on_failure": False,
         "connect/retry": RETRY,
         "open/return_conditions/connect_scouted": False,
-        "transport/link/tx/queue/congestion_control/block/wait_before_close": BLOCK_US,
         # Batches of 64 kB, made when they are needed: what the loop sends never waits for one.
         **{f"transport/link/tx/queue/size/{name}": BATCHES for name in BURSTING},
         # Large messages are sent from a thread, which may wait longer for a slow network.
         "transport/link/tx/queue/congestion_control/drop/max_wait_before_drop_fragments": 500_000,
-        # Zenoh never gives back the shared memory of a peer that has ended: two descriptors and
-        # mappings for each restart of a publisher (1.10). Links have shared memory of their own;
-        # processes of other users cannot open Zenoh's, and ROS 2 nodes have it switched off.
-        "transport/shared_memory/enabled": False,
-        "transport/unicast/open_timeout": FAR_OPEN_MS if network.may_reach_far else OPEN_MS,
-        "transport/unicast/accept_timeout": OPEN_MS,
         "scouting/multicast/enabled": subnet,
         "transport/link/tx/lease": min(LEASE_MS + LEASE_MS_EACH * len(listed), MOST_LEASE_MS),
         **gossip,
+        **blocked_sends.settings(),
+        **half_open.settings(network),
+        **shared_memory.settings(),
         # As rmw_zenoh: if both dialled, Zenoh might keep neither of the two connections.
         "scouting/gossip/autoconnect_strategy": {
             "peer": {"to_router": "always", "to_peer": "greater-zid"}
@@ -202,14 +143,6 @@ def session_settings(
         # Histories are fetched with this timeout; every other query says its own.
         "queries_default_timeout": 600_000,
     }
-
-
-def near(network: Network) -> bool:
-    """Return whether a session looks for others of its machine by itself."""
-    return network.config_file is None and network.discovery_range in (
-        DiscoveryRange.LOCALHOST,
-        DiscoveryRange.SUBNET,
-    )
 
 
 def listening_address(network: Network) -> str:
@@ -246,7 +179,6 @@ def router_settings(
         "transport/link/tx/lease": 8_000,
         "transport/link/tx/keep_alive": 4,
         "transport/unicast/open_timeout": 2_000,
-        "transport/shared_memory/enabled": False,
-        # A query for its routing table can deadlock it: zenoh's pull request 2619.
-        "adminspace/enabled": False,
+        **admin_space.settings(),
+        **shared_memory.settings(),
     }

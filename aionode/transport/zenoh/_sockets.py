@@ -1,68 +1,93 @@
-"""What Zenoh's sockets do while a peer has stopped reading, or is out of reach.
+"""Finding Zenoh's sockets among the descriptors of the process, without touching any other.
 
-Zenoh sets SO_LINGER on each of them: closing one whose peer has not taken everything waits for up
-to ten seconds, and with it the thread of Zenoh that closes it, which may be the only one that sends
-or connects for this process. `SocketOptions` switches that off soon after a connection was made.
+Zenoh names the two addresses of each connection, but not its socket. Duplicating every descriptor
+to ask for its addresses would do harm: closing a duplicate of a file drops the POSIX locks that the
+process has on it, and with them an exclusive transaction of SQLite. So the system is asked: a
+netlink socket, or ``/proc/self/net/tcp``, tells the inode of a connection, and ``/proc/self/fd``
+that of each descriptor. A duplicate is made only of a socket that was found so, and its inode is
+compared once more before the duplicate is used.
 
-In `close`, and in blocking sends, Zenoh waits until such a peer reads on or the connection is lost;
-in `close`, also until one has answered that it has just dialled, or that has just dialled. Shutting
-the socket down loses the connection at once (zenoh 1.10).
+Zenoh does not name a connection that is still being made. The system tells which sockets an epoll
+instance waits for, and how: Zenoh's runtime does that as Python's event loops do not.
 
-On Linux only: elsewhere all of this takes as long as Zenoh waits.
+On Linux only: nothing is found elsewhere, or where ``/proc`` is hidden.
+
+What a socket tells: how much its peer has taken, and how much has come. Zenoh says neither.
 """
 
 from __future__ import annotations
 
 import logging
+import os
+import re
 import select
 import socket
 import struct
 import sys
 import threading
 from contextlib import suppress
-from typing import TYPE_CHECKING, ClassVar, Final
-
-import zenoh
+from stat import S_ISREG
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from aionode._socket_queue import queued_bytes
-from aionode.transport._network import is_near
-from aionode.transport._send_thread import start_thread
-from aionode.transport.zenoh._descriptors import (
-    Descriptor,
-    Pair,
-    duplicates,
-    find,
-    pair_of,
-    polled_by_zenoh,
-)
-from aionode.transport.zenoh._handlers import direct
-from aionode.transport.zenoh._settings import BLOCK_US
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Set as AbstractSet
 
-__all__ = ["SocketOptions", "arrived_bytes", "cut", "cut_stuck", "cut_unanswered", "look"]
+    import zenoh
+
+__all__ = [
+    "Address",
+    "Descriptor",
+    "Pair",
+    "arrived_bytes",
+    "connections",
+    "cut",
+    "duplicates",
+    "find",
+    "info_of",
+    "look",
+    "number_in",
+    "pair_of",
+    "polled_by_zenoh",
+    "split_locator",
+]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
-"""The families of connections between hosts."""
+DESCRIPTORS: Final = "/proc/self/fd"
+DETAILS: Final = "/proc/self/fdinfo"
+CONNECTIONS: Final = ("/proc/self/net/tcp", "/proc/self/net/tcp6")
 
-STUCK_S: Final = 0.1
-"""A peer that reads not one byte for so long, while some wait, is not waited for."""
+STREAMS: Final = {"tcp", "tls", "ws", "wss"}
+"""The protocols of Zenoh that have one TCP connection for each link."""
 
-UNREACHABLE_MS: Final = 5_000
-"""After so long without any answer to what was sent, a connection to another machine is lost."""
+EVENT_POLL: Final = "anon_inode:[eventpoll]"
 
-UNREAD_MS: Final = BLOCK_US // 1000
-"""After so long in which the peer has read nothing, though there is something to read, a connection
-within this machine is lost, whichever thread waits for it."""
+POLLED: Final = re.compile(r"^tfd: +(\d+) events: +8000201d .* ino:([0-9a-f]+) ", re.MULTILINE)
+"""A socket for which an epoll instance waits as the one of Zenoh's runtime does: for everything but
+urgent data (IN, OUT, ERR, HUP, RDHUP), and for changes only (ET)."""
 
-RESET: Final = struct.pack("ii", 1, 0)
-"""SO_LINGER for a connection that is cut: what was not taken is dropped."""
+SOCK_DIAG: Final = 4
+"""The netlink protocol that tells about sockets; see sock_diag(7)."""
 
-NO_LINGER: Final = struct.pack("ii", 0, 0)
-"""SO_LINGER for all others: closing returns at once, and the system goes on sending."""
+SOCK_DIAG_BY_FAMILY: Final = 20
+NLM_F_REQUEST: Final = 1
+ANY_STATE: Final = 0xFFF
+NO_COOKIE: Final = b"\xff" * 8
+
+HEADER: Final = struct.Struct("=IHHII")
+"""``struct nlmsghdr``: length, type, flags, sequence number, port."""
+
+REQUEST: Final = struct.Struct("=BBBxI")
+"""The start of ``struct inet_diag_req_v2``: family, protocol, extensions, states."""
+
+ADDRESSES: Final = struct.Struct("!HH16s16s")
+"""The start of ``struct inet_diag_sockid``: both ports, the local address, the remote one."""
+
+ANSWER: Final = struct.Struct("=4x36s12x16xI")
+"""``struct inet_diag_msg``: its `ADDRESSES`, and the inode at its end."""
 
 ACKED: Final = slice(120, 128)
 """Where ``struct tcp_info`` says how many bytes the peer's system has acknowledged."""
@@ -70,24 +95,213 @@ ACKED: Final = slice(120, 128)
 RECEIVED: Final = slice(128, 136)
 """Where it says how many bytes were received."""
 
-ESTABLISHED: Final = 1
-"""How its first byte says that both ends are connected."""
+NO_LINGER: Final = struct.pack("ii", 0, 0)
+"""SO_LINGER for connections that are closed at once, while the system goes on sending."""
 
-FIRST_BYTES: Final = 2048
-"""Zenoh sends 34 bytes before it waits for an answer, and TLS less than this."""
+Address = tuple[bytes, int]
+"""An IP address of 4 or 16 bytes, and a port."""
 
-ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
-"""SO_LINGER as Zenoh sets it."""
+Descriptor = tuple[int, int]
+"""The number of a descriptor and that of its inode, as the first is used again."""
 
-SETTLE_S: Final = 0.5
-"""How long after a new connection its socket is looked for; several are made at once."""
+lock = threading.Lock()  # held to read and change `found`
+found: dict[Pair, Descriptor] = {}
+"""Where connections were found before, so that most searches read neither list."""
 
 
-def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:
-    """Return how many bytes wait in each socket of a session; not those with none."""
-    own = find({pair for link in session.info.links() if (pair := pair_of(link))})
-    waiting = {descriptor: queued_bytes(one) for descriptor, one in duplicates(own.values())}
-    return {descriptor: size for descriptor, size in waiting.items() if size}
+class Pair(NamedTuple):
+    """The two addresses of a connection."""
+
+    local: Address
+    remote: Address
+
+
+def pair_of(link: zenoh.Link) -> Pair | None:
+    """Return the addresses of a connection; None if it is none of TCP."""
+    local, remote = address_in(str(link.src)), address_in(str(link.dst))
+    return Pair(local, remote) if local and remote else None
+
+
+def address_in(locator: str) -> Address | None:
+    """Return the address in a locator of TCP such as ``tcp/127.0.0.1:7447?…``."""
+    where = split_locator(locator)
+    if where is None or locator.partition("/")[0] not in STREAMS:
+        return None
+    host, port = where
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    with suppress(OSError):  # it is a name: Zenoh has numbers in those of its connections
+        return socket.inet_pton(family, host), port
+    return None
+
+
+def split_locator(locator: str) -> tuple[str, int] | None:
+    """Return host and port of a locator; None without a port."""
+    text = re.split("[?#]", locator.partition("/")[2], maxsplit=1)[0]
+    host, _, port = text.rpartition(":")
+    return (host.strip("[]").partition("%")[0], int(port)) if host and port.isdigit() else None
+
+
+def connections(
+    session: zenoh.Session, participants: AbstractSet[str] | None = None
+) -> dict[Descriptor, zenoh.Link]:
+    """Return the sockets of a session, with what Zenoh says of each; not those that are closed.
+
+    Nothing where the system does not tell. It may take some milliseconds, and is no work for the
+    event loop.
+
+    Args:
+        session: The session.
+        participants: Only connections with these; with all if None.
+    """
+    if not sys.platform.startswith("linux"):
+        return {}
+    links = {
+        pair: link
+        for link in session.info.links()
+        if participants is None or str(link.zid) in participants
+        if (pair := pair_of(link))
+    }
+    return {descriptor: links[pair] for pair, descriptor in find(links).items()}
+
+
+def find(pairs: Collection[Pair]) -> dict[Pair, Descriptor]:
+    """Return the sockets of some connections; not those that are closed.
+
+    It may take some milliseconds, and is no work for the event loop.
+    """
+    with lock:
+        result = {pair: found[pair] for pair in pairs if pair in found and is_open(found[pair])}
+        missing = {pair for pair in pairs if pair not in result}
+        if missing and (inodes := inodes_of(missing)):
+            numbers = {inode: number for number, inode in sockets()}
+            for pair in [pair for pair, (_, inode) in found.items() if inode not in numbers]:
+                del found[pair]
+            for pair, inode in inodes.items():
+                if inode in numbers:
+                    result[pair] = found[pair] = numbers[inode], inode
+        return result
+
+
+def is_open(descriptor: Descriptor) -> bool:
+    """Return whether a number still stands for the same socket."""
+    number, inode = descriptor
+    with suppress(OSError):
+        return target_of(number) == f"socket:[{inode}]"
+    return False
+
+
+def inodes_of(pairs: Collection[Pair]) -> dict[Pair, int]:
+    """Return the inodes of some connections; not those of closed ones."""
+    # A sandbox may forbid to ask, and a kernel may lack the answers.
+    return told_inodes(pairs) or listed_inodes(pairs)
+
+
+def told_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
+    """Ask the system for the inode of each connection; that takes microseconds."""
+    inodes = {}
+    with suppress(OSError), socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, SOCK_DIAG) as system:
+        for pair in pairs:
+            (local, port), (remote, remote_port) = pair
+            family = socket.AF_INET if len(local) == 4 else socket.AF_INET6
+            addresses = ADDRESSES.pack(port, remote_port, local, remote)
+            request = REQUEST.pack(family, socket.IPPROTO_TCP, 0, ANY_STATE)
+            request += addresses + bytes(4) + NO_COOKIE
+            size = HEADER.size + len(request)
+            system.send(HEADER.pack(size, SOCK_DIAG_BY_FAMILY, NLM_F_REQUEST, 0, 0) + request)
+            answer = system.recv(4096, socket.MSG_DONTWAIT)
+            if HEADER.unpack_from(answer)[1] == SOCK_DIAG_BY_FAMILY:
+                told, inode = ANSWER.unpack_from(answer, HEADER.size)
+                # In place of one that is closed, the system names the socket that listens there.
+                if told == addresses and inode:
+                    inodes[pair] = inode
+    return inodes
+
+
+def listed_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
+    """Look for the inode of each connection in the lists of all; that takes milliseconds."""
+    sought = {(listed_form(pair.local), listed_form(pair.remote)): pair for pair in pairs}
+    inodes = {}
+    for path in CONNECTIONS:
+        with suppress(OSError), open(path, "rb") as lines:  # noqa: PTH123 - a third faster
+            for line in lines:
+                _, local, remote, rest = line.split(maxsplit=3)
+                pair = sought.get((local, remote))
+                if pair is not None and (inode := int(rest.split(maxsplit=7)[6])):
+                    inodes[pair] = inode  # it is 0 for one that is closed
+    return inodes
+
+
+def listed_form(address: Address) -> bytes:
+    """Return how these lists have an address: ``0100007F:1D17``, in words of this machine."""
+    packed, port = address
+    words = (packed[at : at + 4] for at in range(0, len(packed), 4))
+    text = "".join(f"{int.from_bytes(word, sys.byteorder):08X}" for word in words)
+    return f"{text}:{port:04X}".encode()
+
+
+def sockets() -> Iterator[Descriptor]:
+    """Yield the sockets of this process."""
+    for number, target in descriptors():
+        if target.startswith("socket:["):
+            yield number, int(target[8:-1])
+
+
+def descriptors() -> Iterator[tuple[int, str]]:
+    """Yield the number of each descriptor of this process, and what it stands for."""
+    try:
+        names = os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
+    except OSError:  # the process has no descriptor left, or there is no /proc
+        return
+    for name in names:
+        with suppress(OSError):  # closed meanwhile
+            yield int(name), target_of(name)
+
+
+def target_of(name: int | str) -> str:
+    """Return what a descriptor stands for; nothing is opened for that."""
+    return os.readlink(f"{DESCRIPTORS}/{name}")  # noqa: PTH115 - in half the time
+
+
+def polled_by_zenoh() -> set[Descriptor]:
+    """Return the sockets that an epoll instance waits for as those of Zenoh do.
+
+    Those of other libraries in Rust may be among them, those of Python are not.
+    """
+    polled: set[Descriptor] = set()
+    for number, target in descriptors():
+        if target == EVENT_POLL:
+            with suppress(OSError), open(f"{DETAILS}/{number}") as details:  # noqa: PTH123
+                text = details.read()
+                polled.update((int(one), int(ino, 16)) for one, ino in POLLED.findall(text))
+    return polled
+
+
+def duplicates(those: Iterable[Descriptor]) -> Iterator[tuple[Descriptor, socket.socket]]:
+    """Yield a duplicate of each of some sockets; not of those that are closed.
+
+    One duplicate is open at a time: several threads that duplicate all sockets soon have all
+    descriptors that a process may have.
+    """
+    for descriptor in those:
+        one = duplicate(descriptor) if is_open(descriptor) else None
+        if one is not None:
+            with one:
+                yield descriptor, one
+
+
+def duplicate(descriptor: Descriptor) -> socket.socket | None:
+    """Return a duplicate of a socket; None if its number stands for something else by now."""
+    number, inode = descriptor
+    with suppress(OSError):  # closed meanwhile
+        copy = os.dup(number)
+        status = os.fstat(copy)
+        if status.st_ino == inode:
+            return socket.socket(fileno=copy)
+        # It was closed, and its number given away, within microseconds. If a file has got it, the
+        # duplicate stays open: closing it would drop the locks that the process has on that file.
+        if not S_ISREG(status.st_mode):
+            os.close(copy)
+    return None
 
 
 def info_of(one: socket.socket) -> bytes:
@@ -100,41 +314,21 @@ def number_in(info: bytes, field: slice) -> int:
     return int.from_bytes(info[field], sys.byteorder)
 
 
-def unanswered() -> set[Descriptor]:
-    """Return the sockets of connections that Zenoh is making with peers that do not answer.
-
-    Of all sessions of the process: the system does not tell them apart.
-    """
-    return {descriptor for descriptor, one in duplicates(polled_by_zenoh()) if is_unanswered(one)}
-
-
-def is_unanswered(one: socket.socket) -> bool:
-    """Return whether a socket has the options of Zenoh, is connected, and has received nothing."""
-    if one.type != socket.SOCK_STREAM or one.family not in INTERNET:
-        return False
-    if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) != ZENOH_LINGER:
-        return False
-    info = info_of(one)
-    sent = number_in(info, ACKED) + queued_bytes(one)
-    return info[0] == ESTABLISHED and not number_in(info, RECEIVED) and sent <= FIRST_BYTES
-
-
 def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
     """Return how many bytes have come from each peer, and how many of them Zenoh has not read yet.
 
     Nothing where the system does not tell.
     """
-    if not sys.platform.startswith("linux"):
+    own = connections(session)
+    if not own:
         return {}
     import fcntl
     import termios
 
-    peers = {pair: str(link.dst) for link in session.info.links() if (pair := pair_of(link))}
-    own = {descriptor: peers[pair] for pair, descriptor in find(peers).items()}
     arrived = {}
     for descriptor, one in duplicates(own):
         unread = fcntl.ioctl(one, termios.FIONREAD, bytes(4))
-        arrived[own[descriptor]] = (
+        arrived[str(own[descriptor].dst)] = (
             number_in(info_of(one), RECEIVED),
             int.from_bytes(unread, sys.byteorder),
         )
@@ -146,79 +340,11 @@ def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
 
     None if there is no such socket, or the system does not tell.
     """
-    if not sys.platform.startswith("linux"):
-        return None
-    links = [link for link in session.info.links() if str(link.zid) == participant]
-    for _, one in duplicates(find({pair for link in links if (pair := pair_of(link))}).values()):
+    for _, one in duplicates(connections(session, {participant})):
         poll = select.poll()
         poll.register(one, select.POLLOUT)
         return bool(poll.poll(0)), number_in(info_of(one), ACKED) + queued_bytes(one)
     return None
-
-
-class SocketOptions:
-    """Sets the options of each connection of a session, soon after it was made.
-
-    Closing one never waits for its peer. One whose peer reads nothing for `UNREAD_MS` is lost
-    before the lease ends, as Zenoh could not end it while a thread waits for that peer. One to
-    another machine is lost when nothing has arrived there for `UNREACHABLE_MS`: otherwise, TCP
-    sends again after 0.2, 0.4, 0.8 … s, and when a network was gone for 30 s, and is back, it is
-    silent for up to 30 s more. A new connection finds the network at once.
-
-    It works until the session is closed. The connections of a burst are looked for at once.
-
-    Args:
-        session: The session.
-    """
-
-    # Of all sessions: those of one process are often connected with each other at the same time.
-    _lock: ClassVar = threading.Lock()
-    # The connections whose options are not set yet, and what Zenoh has named their peers.
-    _new: ClassVar[dict[Pair, str]] = {}
-
-    def __init__(self, session: zenoh.Session) -> None:
-        self._timer: threading.Timer | None = None
-        self._closed = not sys.platform.startswith("linux")
-        # It exists as long as this does, which its callback holds until the session is closed.
-        self._listener = session.info.declare_link_events_listener(
-            direct(self._on_event), history=True
-        )
-
-    def close(self) -> None:
-        """Stop watching."""
-        with self._lock:
-            self._closed = True
-            if self._timer is not None:
-                self._timer.cancel()
-        self._listener.undeclare()
-
-    def _on_event(self, event: zenoh.LinkEvent) -> None:
-        """Handle a connection that was made or lost; in a thread of Zenoh."""
-        if event.kind != zenoh.SampleKind.PUT:
-            return
-        with self._lock:
-            if self._closed:
-                return
-            if pair := pair_of(event.link):
-                self._new[pair] = str(event.link.dst)
-            if self._timer is None:
-                self._timer = threading.Timer(SETTLE_S, self._set)
-                self._timer.name = "aionode-zenoh"
-                self._timer.daemon = True
-                start_thread(self._timer)
-
-    def _set(self) -> None:
-        """Set the options of all new connections; in the thread of the timer."""
-        with self._lock:
-            self._timer = None
-            new = self._new.copy()
-            self._new.clear()
-        peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}
-        for descriptor, one in duplicates(peers):
-            limit_ms = UNREAD_MS if is_near(peers[descriptor]) else UNREACHABLE_MS
-            with suppress(OSError):  # it is lost already
-                one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-                one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
 
 
 def cut(those: Iterable[Descriptor], linger: bytes = NO_LINGER) -> None:
@@ -226,39 +352,10 @@ def cut(those: Iterable[Descriptor], linger: bytes = NO_LINGER) -> None:
 
     Args:
         those: The sockets of Zenoh.
-        linger: `RESET` if the peer is not to get what has been sent.
+        linger: SO_LINGER; another one if the peer is not to get what has been sent.
     """
     for _, one in duplicates(those):
         with suppress(OSError):  # it is lost already
             logger.debug("%s: the connection is cut", one.getpeername())
             one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
             one.shutdown(socket.SHUT_RDWR)
-
-
-def cut_unanswered(done: threading.Event) -> None:
-    """Cut connections that are being made with peers that do not answer, until `done` is set.
-
-    A session that is being closed waits for each of them, for ten seconds, and dials those that it
-    has lost again meanwhile. Runs in a thread.
-    """
-    silent: set[Descriptor] = set()
-    while sys.platform.startswith("linux") and not done.wait(STUCK_S):
-        before, silent = silent, unanswered()
-        cut(before & silent, RESET)
-
-
-def cut_stuck(session: zenoh.Session) -> None:
-    """Cut connections that a session about to be closed would wait for.
-
-    Those whose peers do not read, and those that are being made with peers that do not answer. Runs
-    in a thread.
-    """
-    if not sys.platform.startswith("linux"):
-        return
-    before, silent = waiting_bytes(session), unanswered()
-    if not before and not silent:
-        return
-    threading.Event().wait(STUCK_S)
-    after = waiting_bytes(session)
-    stuck = {descriptor for descriptor, size in before.items() if after.get(descriptor, 0) >= size}
-    cut(stuck | (silent & unanswered()), RESET)

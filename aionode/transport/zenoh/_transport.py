@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import perf_ns
 from aionode.transport.base import Transport
+from aionode.transport.zenoh._defects.closing import cut_stuck
+from aionode.transport.zenoh._defects.forgotten_peers import Recovery, nodes_at_introducer
+from aionode.transport.zenoh._defects.lingering import SocketOptions
+from aionode.transport.zenoh._defects.scarcity import refuse_scarcity
+from aionode.transport.zenoh._defects.stale_transports import StaleTransports
 from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
-from aionode.transport.zenoh._limits import refuse_scarcity
 from aionode.transport.zenoh._local_router import LocalRouter
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import Recovery, nodes_at_introducer
 from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import (
@@ -25,7 +28,7 @@ from aionode.transport.zenoh._session import (
     run_in_own_thread,
 )
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import SocketOptions, arrived_bytes, cut_stuck
+from aionode.transport.zenoh._sockets import arrived_bytes
 from aionode.transport.zenoh._subscription import ZenohReader
 from aionode.transport.zenoh._turns import connecting
 
@@ -95,6 +98,7 @@ class ZenohTransport(Transport):
         self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
         self._recovery = Recovery(self._state, network, self._watcher)
+        self._stale_transports = StaleTransports(self._state, network)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None
         self._presence: socket.socket | None = None  # in the list of this machine's sessions
@@ -145,6 +149,7 @@ class ZenohTransport(Transport):
             self._watcher.start(session)
             self.peer_directory.start(session)
             self._recovery.start(session)
+            self._stale_transports.start(session)
             self._local_router.start(session)
             await links.wait_until_connected(expected)
             # Configured peers may be absent, so they are not expected.
@@ -247,6 +252,7 @@ class ZenohTransport(Transport):
             self._socket_options.close()
             self._socket_options = None
         self._recovery.stop()
+        self._stale_transports.stop()
         self.peer_directory.stop()
         self._watcher.stop()
         session = state.disconnect()

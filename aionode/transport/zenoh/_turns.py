@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from aionode.clock import perf_ns
+from aionode.transport.zenoh._config import LOOPBACK, near
 from aionode.transport.zenoh._local_sessions import holder_of, listed
-from aionode.transport.zenoh._settings import LOOPBACK, near
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Iterator, Sequence

@@ -13,8 +13,8 @@ import zenoh  # noqa: TID251  # plays the router and who listens behind it, with
 
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.transport.zenoh import _router_matching as router_matching
+from aionode.transport.zenoh._defects.stale_transports import cut_participants
 from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._recovery import cut_participants
 from aionode.transport.zenoh._settings import router_settings
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key

@@ -18,7 +18,9 @@ from aionode.qos import QoSProfile, ReliabilityPolicy
 from aionode.transport._send_thread import Worker
 from aionode.transport.zenoh import _announced as announced
 from aionode.transport.zenoh import _session_state as session_state
-from aionode.transport.zenoh._announced import CROWDED, AnnouncedLimit
+from aionode.transport.zenoh._announced import AnnouncedLimit
+from aionode.transport.zenoh._defects import crowd
+from aionode.transport.zenoh._defects.crowd import CROWDED
 from aionode.transport.zenoh._handlers import LOOP_PRIORITY
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._session_state import SessionState
@@ -104,11 +106,11 @@ async def test_messages_wait_for_zenoh_in_a_thread_and_stay_in_order(
         publisher.publish(Int32(data=0))
         assert (await subscription.receive()).data == 0
 
-        monkeypatch.setattr(announced, "CROWDED", 0)
+        monkeypatch.setattr(crowd, "CROWDED", 0)
         limit.take("other", "one more")
         for number in range(1, 101):
             publisher.publish(Int32(data=number))
-        monkeypatch.setattr(announced, "CROWDED", CROWDED)
+        monkeypatch.setattr(crowd, "CROWDED", CROWDED)
         limit.give_back("other", "one more")
         for number in range(101, 111):  # Zenoh may be dropping the rest
             publisher.publish(Int32(data=number))
@@ -153,9 +155,9 @@ async def test_the_loop_puts_again_a_while_after_the_crowd(
     monkeypatch.setattr(session_state, "CALM_S", 0.05)
     async with quiet_node("talker") as talker:
         writer = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
-        monkeypatch.setattr(announced, "CROWDED", 0)
+        monkeypatch.setattr(crowd, "CROWDED", 0)
         writer.state.announced.take("other", "one more")
-        monkeypatch.setattr(announced, "CROWDED", CROWDED)
+        monkeypatch.setattr(crowd, "CROWDED", CROWDED)
         writer.state.announced.give_back("other", "one more")
         assert not writer._is_direct
         await until(lambda: writer._is_direct)
@@ -165,7 +167,7 @@ async def test_a_publisher_that_is_made_in_a_crowd_uses_the_thread(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The crowd may have been there before the program."""
-    monkeypatch.setattr(announced, "CROWDED", 0)
+    monkeypatch.setattr(crowd, "CROWDED", 0)
     async with quiet_node("talker") as talker:
         before = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
         assert before._is_direct

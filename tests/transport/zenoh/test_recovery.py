@@ -17,19 +17,20 @@ import zenoh  # noqa: TID251  # plays the other participants, without aionode
 from aionode._concurrency import checkpoint
 from aionode.graph import Graph, NodeInfo
 from aionode.transport._network import Network, network_from
-from aionode.transport.zenoh import _recovery as recovery
-from aionode.transport.zenoh import _sockets
-from aionode.transport.zenoh._descriptors import Pair, find
-from aionode.transport.zenoh._graph_watcher import Watcher
-from aionode.transport.zenoh._recovery import (
+from aionode.transport.zenoh import _config, _sockets
+from aionode.transport.zenoh._config import LOOK_IDS, is_look
+from aionode.transport.zenoh._defects import forgotten_peers as recovery
+from aionode.transport.zenoh._defects import stale_transports
+from aionode.transport.zenoh._defects.forgotten_peers import (
     Introducer,
     Recovery,
-    address_in,
     addresses_of,
-    is_look,
     participant_of,
 )
+from aionode.transport.zenoh._defects.incomplete_answers import tokens
+from aionode.transport.zenoh._defects.stale_transports import StaleTransports
 from aionode.transport.zenoh._session_state import SessionState
+from aionode.transport.zenoh._sockets import Descriptor, split_locator
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import (
     DOMAIN_ID,
@@ -111,18 +112,18 @@ async def until_seen(transport: ZenohTransport, *names: str) -> None:
         await graph.until(lambda: names_in(transport) == set(names))
 
 
-def ways_between(transport: ZenohTransport, zid: str) -> set[Pair]:
+def ways_between(transport: ZenohTransport, zid: str) -> set[Descriptor]:
     """Return the connections to another session."""
     session = transport._state.session
     assert session is not None
-    return recovery.pairs_to(session, {zid})
+    return set(_sockets.connections(session, {zid}))
 
 
 def lose(transport: ZenohTransport, zid: str) -> None:
     """End all connections to another session, as a network does."""
     ways = ways_between(transport, zid)
     assert ways
-    _sockets.cut(find(ways).values())
+    _sockets.cut(ways)
 
 
 async def until_lost(transport: ZenohTransport, zid: str, name: str) -> None:
@@ -233,10 +234,10 @@ def looks(monkeypatch: pytest.MonkeyPatch) -> Looks:
     return found
 
 
-def all_ways(transport: ZenohTransport) -> set[Pair]:
+def all_ways(transport: ZenohTransport) -> set[Descriptor]:
     """Return all connections of a session."""
     session: Any = transport._state.session
-    return recovery.pairs_to(session, {str(link.zid) for link in session.info.links()})
+    return set(_sockets.connections(session))
 
 
 async def have_more(looks: Looks, count: int) -> None:
@@ -303,14 +304,14 @@ def looking(
     monkeypatch: pytest.MonkeyPatch, names: Callable[[str], bool], times: int, **options: bool
 ) -> None:
     """Have the next looks at the introducer lack all tokens but some."""
-    look_at = recovery.look_at
+    open_look = _config.open_look
     left = iter(range(times))
 
-    def look(network: Network, introducer: Introducer) -> Any:
-        session = look_at(network, introducer)
+    def look(network: Network, endpoint: str) -> Any:
+        session = open_look(network, endpoint)
         return session if next(left, None) is None else Forgetful(session, names, **options)
 
-    monkeypatch.setattr(recovery, "look_at", look)
+    monkeypatch.setattr(recovery, "open_look", look)
 
 
 @pytest.mark.parametrize("in_time", [True, False])
@@ -390,12 +391,10 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
     async with context("a1") as ours, context("b2"):
         session = ours._state.session
         assert session is not None
-        monkeypatch.setattr(
-            recovery, "seen_at", lambda _, __, *keys, **___: recovery.tokens(session, *keys)
-        )
+        monkeypatch.setattr(recovery, "seen_at", lambda _, __, *keys, **___: tokens(session, *keys))
         await until_seen(ours, "b2")
         token = announce(session, "c3", "brought")
-        way = Introducer("", Pair((b"", 0), (b"", 0)), "")
+        way = Introducer("", "")
         missing, is_sure = await asyncio.to_thread(
             lambda: ours._recovery._missing(session, way, {"b2", "c3"}, set())
         )
@@ -562,6 +561,7 @@ async def test_nothing_is_watched_where_no_process_is_dialled(
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     async with context("a1") as transport:
         assert transport._recovery._session is None
+        assert transport._stale_transports._session is None
 
 
 @pytest.mark.parametrize(
@@ -576,18 +576,18 @@ async def test_nothing_is_watched_where_no_process_is_dialled(
 )
 def test_a_locator_says_host_and_port(locator: str, address: tuple[str, int] | None) -> None:
     """As Zenoh writes it."""
-    assert address_in(locator) == address
+    assert split_locator(locator) == address
 
 
 def test_an_endpoint_by_name_has_addresses() -> None:
     """Connections say only those."""
-    assert ("127.0.0.1", 7447) in set(addresses_of("tcp/localhost:7447"))
+    assert (bytes([127, 0, 0, 1]), 7447) in set(addresses_of("tcp/localhost:7447"))
     assert list(addresses_of("tcp/no.such.host.invalid:1")) == []
 
 
 def test_a_look_is_known_by_its_id() -> None:
     """The ids of all others are random."""
-    assert is_look(recovery.LOOK_IDS + "0" * 24)
+    assert is_look(LOOK_IDS + "0" * 24)
     assert not is_look("a1")
     with closing(ros_session()) as session:
         assert not is_look(str(session.zid()))
@@ -602,7 +602,7 @@ async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterato
             await stack.enter_async_context(context(name))
         await until(lambda: acknowledgements.present.issuperset(names))
         acknowledgements.present.clear()
-        ours._recovery._returned.update(names)
+        ours._stale_transports._returned.update(names)
         yield
 
 
@@ -616,7 +616,7 @@ async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None
     """Not one that is new, and not while it is lost once more."""
     put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
     async with context("a1") as first:
-        watch = first._recovery
+        watch = first._stale_transports
         watch._take_change(change(put, "new"))
         watch._take_change(change(delete, "b2"))
         assert not watch._returned
@@ -634,11 +634,11 @@ async def test_no_connection_is_cut_while_others_are_being_made() -> None:
         context("a1") as first,
         silent_after_return(first, "b2"),
     ):
-        first._recovery._changed_s = asyncio.get_running_loop().time()
-        first._recovery._check_returned()
+        first._stale_transports._changed_s = asyncio.get_running_loop().time()
+        first._stale_transports._check_returned()
 
-        assert not first._recovery._cuts
-        assert first._recovery._returned == {"b2"}
+        assert not first._stale_transports._cuts
+        assert first._stale_transports._returned == {"b2"}
 
 
 @pytest.mark.parametrize(("connected", "limit_s"), [(3, 1.0), (100, 5.0)])
@@ -648,10 +648,10 @@ def test_tokens_may_take_longer_where_there_are_many_participants(
     """On a busy machine all had lost each other, and each cut the others again and again."""
     session = SimpleNamespace(info=SimpleNamespace(transports=lambda: [None] * connected))
     state = SessionState("a1", DOMAIN_ID)
-    recovery_of_many = Recovery(state, network_from({}), Watcher(state))
-    recovery_of_many._session = session  # type: ignore[assignment]  # as far as it is used
+    with_many = StaleTransports(state, network_from({}))
+    with_many._session = session  # type: ignore[assignment]  # as far as it is used
 
-    assert recovery_of_many._declared_s() == limit_s
+    assert with_many._declared_s() == limit_s
 
 
 async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
@@ -662,11 +662,11 @@ async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
         silent_after_return(first, "b2"),
     ):
         first._state.acknowledgements.present.add("b2")
-        first._recovery._changed_s = 0.0
-        first._recovery._check_returned()
+        first._stale_transports._changed_s = 0.0
+        first._stale_transports._check_returned()
 
-        assert not first._recovery._cuts
-        assert not first._recovery._returned
+        assert not first._stale_transports._cuts
+        assert not first._stale_transports._returned
 
 
 async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew() -> None:
@@ -676,19 +676,19 @@ async def test_a_participant_that_is_connected_and_declares_nothing_is_connected
         context("a1") as first,
         silent_after_return(first, "b2"),
     ):
-        first._recovery._changed_s = 0.0
-        first._recovery._check_returned()
+        first._stale_transports._changed_s = 0.0
+        first._stale_transports._check_returned()
         await until(lambda: "b2" in first._state.acknowledgements.present)
 
-        assert first._recovery._cuts["b2"]
+        assert first._stale_transports._cuts["b2"]
 
 
 async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_more(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Its two connections were cut one after the other: Zenoh took the third for one of theirs."""
-    monkeypatch.setattr(recovery, "DECLARED_S", 0.2)
-    cut_participants = recovery.cut_participants
+    monkeypatch.setattr(stale_transports, "DECLARED_S", 0.2)
+    cut_participants = stale_transports.cut_participants
     cuts: list[set[str]] = []
 
     def cut(session: zenoh.Session, zids: set[str]) -> None:
@@ -696,13 +696,13 @@ async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_
         if len(cuts) > 1:
             cut_participants(session, zids)
 
-    monkeypatch.setattr(recovery, "cut_participants", cut)
+    monkeypatch.setattr(stale_transports, "cut_participants", cut)
     async with (
         asyncio.timeout(4 * LIMIT_S),
         context("a1") as first,
         silent_after_return(first, "b2"),
     ):
-        first._recovery._check_returned()
+        first._stale_transports._check_returned()
         await until(lambda: "b2" in first._state.acknowledgements.present)
 
     assert len(cuts) > 1
@@ -710,16 +710,16 @@ async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_
 
 async def test_many_that_declare_nothing_are_cut_too() -> None:
     """Laptops that were closed in one room: more than a few, and none of them is merely slow."""
-    names = {f"{number}b" for number in range(1, recovery.FEW + 2)}
+    names = {f"{number}b" for number in range(1, stale_transports.FEW + 2)}
     async with (
         asyncio.timeout(4 * LIMIT_S),
         context("a1") as first,
         silent_after_return(first, *names),
     ):
         ways = set().union(*(ways_between(first, name) for name in names))
-        first._recovery._changed_s = 0.0
-        first._recovery._check_returned()
-        assert first._recovery._cuts == dict.fromkeys(names, 1)
+        first._stale_transports._changed_s = 0.0
+        first._stale_transports._check_returned()
+        assert first._stale_transports._cuts == dict.fromkeys(names, 1)
 
         await until(lambda: ways.isdisjoint(all_ways(first)))
         await until(lambda: names <= first._state.acknowledgements.present)
@@ -727,17 +727,19 @@ async def test_many_that_declare_nothing_are_cut_too() -> None:
 
 async def test_many_that_declare_nothing_are_waited_for_longer() -> None:
     """They are slow, as long as connections go on being made."""
-    names = [f"{number}b" for number in range(1, recovery.FEW + 2)]
+    names = [f"{number}b" for number in range(1, stale_transports.FEW + 2)]
     async with (
         asyncio.timeout(4 * LIMIT_S),
         context("a1") as first,
         silent_after_return(first, *names),
     ):
-        first._recovery._changed_s = asyncio.get_running_loop().time() - recovery.DECLARED_S
-        first._recovery._check_returned()
-        assert not first._recovery._cuts
-        assert first._recovery._check is not None
+        first._stale_transports._changed_s = (
+            asyncio.get_running_loop().time() - stale_transports.DECLARED_S
+        )
+        first._stale_transports._check_returned()
+        assert not first._stale_transports._cuts
+        assert first._stale_transports._check is not None
 
-        first._recovery._returned.discard(names[0])
-        first._recovery._check_returned()
-        assert len(first._recovery._cuts) == recovery.FEW
+        first._stale_transports._returned.discard(names[0])
+        first._stale_transports._check_returned()
+        assert len(first._stale_transports._cuts) == stale_transports.FEW

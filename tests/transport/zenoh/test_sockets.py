@@ -1,26 +1,42 @@
-"""What Zenoh's sockets do while a peer has stopped reading."""
+"""Zenoh's sockets are found among the descriptors of a process, and no other is touched."""
 
 from __future__ import annotations
 
 import asyncio
 import os
+import select
 import socket
-import struct
 import sys
 import threading
-from contextlib import AsyncExitStack
-from typing import Any
+from contextlib import closing, contextmanager
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import pytest
-import zenoh  # noqa: TID251  # type of sessions
+import zenoh  # noqa: TID251  # makes real connections
 
-from aionode._concurrency import checkpoint
 from aionode.context import Context
-from aionode.transport.zenoh import _session, _sockets, _transport
-from aionode.transport.zenoh._descriptors import duplicates, find, pair_of
-from aionode.transport.zenoh._session import close_session, open_router
-from tests.support.peers import quiet_node, two_contexts
+from aionode.transport.zenoh import _sockets
+from aionode.transport.zenoh._defects import closing as closing_defect
+from aionode.transport.zenoh._defects import lingering
+from aionode.transport.zenoh._defects.stale_transports import cut_participants
+from aionode.transport.zenoh._session import open_router
+from aionode.transport.zenoh._sockets import (
+    Pair,
+    descriptors,
+    duplicates,
+    find,
+    is_open,
+    pair_of,
+    polled_by_zenoh,
+)
+from tests.support.guest import locks
+from tests.support.peers import free_ports, two_contexts, zenoh_config
 from tests.support.waiting import until
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of a process"
@@ -33,145 +49,246 @@ def session_of(context: Context) -> Any:
     return transport.session_state.session
 
 
-def options(session: zenoh.Session) -> list[tuple[bool, int]]:
-    """Return whether closing each connection waits for its peer, and its time limit in ms."""
-    pairs = {pair for link in session.info.links() if (pair := pair_of(link))}
+def pairs_of(session: zenoh.Session) -> set[Pair]:
+    """Return the addresses of the connections of a session."""
+    return {pair for link in session.info.links() if (pair := pair_of(link))}
+
+
+@contextmanager
+def listening(host: str) -> Iterator[tuple[zenoh.Session, int]]:
+    """A session that listens, and its port."""
+    (port,) = free_ports(1)
+    listens = {"listen/endpoints": [f"tcp/{host}:{port}"], "scouting/multicast/enabled": False}
+    with closing(zenoh.open(zenoh_config({"mode": "router", **listens}))) as session:
+        yield session, port
+
+
+@contextmanager
+def dialling(host: str, port: int) -> Iterator[zenoh.Session]:
+    """A session that is connected with one that listens."""
+    dials = {"connect/endpoints": [f"tcp/{host}:{port}"], "scouting/multicast/enabled": False}
+    with closing(zenoh.open(zenoh_config({"mode": "client", **dials}))) as session:
+        yield session
+
+
+@contextmanager
+def log_connection() -> Iterator[socket.socket]:
+    """A connection of the program that only sends, and has the options of one of Zenoh."""
+    with (
+        socket.create_server(("127.0.0.1", 0)) as listener,
+        socket.create_connection(listener.getsockname()) as one,
+    ):
+        one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, closing_defect.ZENOH_LINGER)
+        one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        one.sendall(bytes(34))  # as many as Zenoh sends before it waits for an answer
+        yield one
+
+
+def is_whole(one: socket.socket) -> bool:
+    """Return whether a connection takes data, and has its options."""
+    one.sendall(b"more")
+    linger = one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8)
+    info = one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, 8)
+    return info[0] == closing_defect.ESTABLISHED and linger == closing_defect.ZENOH_LINGER
+
+
+@pytest.mark.parametrize("told", [True, False], ids=["told", "listed"])
+@pytest.mark.parametrize(
+    ("listens", "dialled"),
+    [("127.0.0.1", "127.0.0.1"), ("[::1]", "[::1]"), ("[::]", "127.0.0.1"), ("[::]", "[::1]")],
+)
+def test_the_socket_of_each_end_is_found_by_the_addresses_of_its_link(
+    listens: str, dialled: str, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Over IPv4, IPv6, and IPv4 to a socket that listens for both, as that of a ROS router.
+
+    The system is asked for each connection, or lists all to those that must not ask.
+    """
+    monkeypatch.setattr(_sockets, "CONNECTIONS" if told else "SOCK_DIAG", () if told else -1)
+    with listening(listens) as (one, port), dialling(dialled, port) as other:
+        for session, end in ((one, socket.socket.getsockname), (other, socket.socket.getpeername)):
+            (descriptor,) = find(pairs_of(session)).values()
+            ends = [end(duplicate)[1] for _, duplicate in duplicates([descriptor])]
+            assert ends == [port]
+
+
+@pytest.mark.parametrize("told", [True, False], ids=["told", "listed"])
+async def test_a_closed_connection_is_not_taken_for_the_socket_that_listens(
+    told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The system names that in its place, and it would have been cut instead."""
+    monkeypatch.setattr(_sockets, "CONNECTIONS" if told else "SOCK_DIAG", () if told else -1)
+    with listening("127.0.0.1") as (one, port):
+        with dialling("127.0.0.1", port):
+            pairs = pairs_of(one)
+            (descriptor,) = find(pairs).values()
+        await until(lambda: not is_open(descriptor))
+
+        assert find(pairs) == {}
+
+
+def test_connections_of_two_sessions_to_one_address_are_told_apart() -> None:
+    """By the peer's address alone, each session took the socket of the other for its own."""
+    with (
+        listening("127.0.0.1") as (_, port),
+        dialling("127.0.0.1", port) as one,
+        dialling("127.0.0.1", port) as other,
+    ):
+        (first,), (second,) = find(pairs_of(one)).values(), find(pairs_of(other)).values()
+
+    assert first != second
+
+
+def test_a_connection_of_the_program_to_the_same_address_is_left_alone() -> None:
+    """A program may ask the router's port whether it answers."""
+    with (
+        listening("127.0.0.1") as (_, port),
+        socket.create_connection(("127.0.0.1", port)) as asking,
+        dialling("127.0.0.1", port) as session,
+    ):
+        found = find(pairs_of(session)).values()
+
+        assert asking.fileno() not in {number for number, _ in found}
+
+
+def test_a_link_without_a_tcp_connection_has_no_socket_here() -> None:
+    """The addresses of a UDP link may be those of a TCP connection of the program."""
+    one, other = "127.0.0.1:7447", "127.0.0.1:7448"
+    for source, target in (
+        (f"udp/{one}", f"udp/{other}"),
+        (f"quic/{one}", f"quic/{other}"),
+        ("unixsock-stream//tmp/x", "unixsock-stream//tmp/y"),
+        (f"tcp/{one}", "tcp/robot.local:7448"),
+        ("tcp/127.0.0.1", "nonsense"),
+    ):
+        link: Any = SimpleNamespace(src=source, dst=target)
+        assert pair_of(link) is None
+
+
+def test_a_connection_is_searched_for_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The search takes milliseconds in a process with a thousand descriptors."""
+    with listening("127.0.0.1") as (_, port), dialling("127.0.0.1", port) as session:
+        pairs = pairs_of(session)
+        first = find(pairs)
+        monkeypatch.setattr(_sockets, "CONNECTIONS", ())
+        monkeypatch.setattr(_sockets, "SOCK_DIAG", -1)
+
+        assert find(pairs) == first
+        assert set(_sockets.found) >= pairs
+
+
+def test_what_was_found_is_forgotten_when_its_connection_is_closed() -> None:
+    """The next socket may have the same number."""
+    with listening("127.0.0.1") as (_, port):
+        with dialling("127.0.0.1", port) as session:
+            pairs = pairs_of(session)
+            find(pairs)
+        assert find(pairs) == {}
+        with dialling("127.0.0.1", port) as session:
+            find(pairs_of(session))
+
+    assert pairs.isdisjoint(_sockets.found)
+
+
+def test_searching_opens_one_descriptor_at_a_time() -> None:
+    """Processes of ten contexts ran out of 20000: each search found the duplicates of others."""
+    with listening("127.0.0.1") as (one, port), dialling("127.0.0.1", port) as other:
+        sockets = find(pairs_of(one) | pairs_of(other))
+        assert len(sockets) == 2
+        before = len(list(descriptors()))
+        counts = [len(list(descriptors())) for _ in duplicates(sockets.values())]
+
+    assert counts == [before + 1] * 2
+
+
+async def test_locks_of_the_program_outlast_all_that_is_done_with_sockets(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Closing a duplicate of a file drops the record locks that the process has on it.
+
+    Another process wrote inside an exclusive transaction of SQLite.
+    """
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
+    with locks(tmp_path):
+        async with two_contexts() as (first, second):
+            session, other = session_of(first), str(session_of(second).zid())
+            await until(lambda: not any(lingers(session)))  # by SocketOptions
+            assert await asyncio.to_thread(_sockets.look, session, other)
+            assert await asyncio.to_thread(_sockets.arrived_bytes, session)
+            await asyncio.to_thread(closing_defect.unanswered)
+            before = pairs_of(session)
+            await asyncio.to_thread(cut_participants, session, {other})
+            await until(lambda: pairs_of(session).isdisjoint(before))
+
+
+def lingers(session: zenoh.Session) -> list[bool]:
+    """Return whether closing each connection of a session waits for its peer."""
     return [
-        (
-            bool(struct.unpack("ii", one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8))[0]),
-            one.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT),
-        )
-        for _, one in duplicates(find(pairs).values())
+        any(one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 4))
+        for _, one in duplicates(find(pairs_of(session)).values())
     ]
 
 
-async def until_set(session: zenoh.Session, wanted: tuple[bool, int]) -> None:
-    """Wait until all connections of a session have the wanted options."""
-    async with asyncio.timeout(20):
-        await until(lambda: set(options(session)) == {wanted})
-
-
-async def test_no_connection_waits_for_its_peer_when_it_is_closed(
-    monkeypatch: pytest.MonkeyPatch,
+def test_a_file_that_gets_the_number_of_a_closed_socket_keeps_its_locks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Zenoh's one thread that connects stood still for ten seconds when a stuck peer was lost."""
-    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
-    async with two_contexts() as both:
-        for context in both:
-            await until_set(session_of(context), (False, _sockets.UNREAD_MS))
+    """Within the microsecond between the search and the duplicate."""
+    monkeypatch.setattr(_sockets, "is_open", lambda _: True)
+    with locks(tmp_path):
+        names = [str(tmp_path / name) for name in ("record", "log.sqlite")]
+        files = {number: target for number, target in descriptors() if target in names}
+        assert sorted(files.values()) == sorted(names)
+
+        assert list(duplicates((number, 1) for number in files)) == []
 
 
-@pytest.mark.parametrize(("near", "limit_ms"), [(True, 7_000), (False, 5_000)])
-async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_lease_ends(
-    near: bool, limit_ms: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Beside a thread that waited for it, Zenoh could not end it, and kept all others waiting."""
-    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
-    monkeypatch.setattr(_sockets, "is_near", lambda _: near)
-    async with two_contexts() as both:
-        for context in both:
-            await until_set(session_of(context), (False, limit_ms))
+@pytest.mark.parametrize("kind", ["plain", "asyncio", "edge-triggered"])
+async def test_a_connection_of_the_program_is_not_taken_for_one_of_zenoh(kind: str) -> None:
+    """Ending a node reset the log connection of its program: SO_LINGER, and nothing received."""
+    with log_connection() as one, select.epoll() as poll:
+        if kind == "asyncio":
+            asyncio.get_running_loop().add_reader(one, lambda: None)
+        elif kind == "edge-triggered":
+            poll.register(one, select.EPOLLIN | select.EPOLLOUT | select.EPOLLET)
+        async with two_contexts():
+            unanswered = await asyncio.to_thread(closing_defect.unanswered)
+            assert one.fileno() not in {number for number, _ in unanswered}
+        asyncio.get_running_loop().remove_reader(one)
+
+        assert is_whole(one)
 
 
-async def test_a_closed_context_looks_for_sockets_no_more() -> None:
-    """A timer that is left would hold the closed session."""
-    async with two_contexts() as both:
-        transports: list[Any] = [context.transports[1] for context in both]
-        setters = [transport._socket_options for transport in transports]
-        await until(lambda: all(each._timer for each in setters))
-        timers = [each._timer for each in setters]
-
-    for timer in timers:
-        timer.join(10)
-    assert [timer.is_alive() for timer in timers] == [False, False]
-    assert [transport._socket_options for transport in transports] == [None, None]
-
-
-async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """A router stood still for all when one of its peers had stopped, and was lost."""
-    monkeypatch.setattr(_sockets, "SETTLE_S", 0.0)
-    router = await open_router([f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"])
-    try:
-        async with Context():
-            await until_set(router, (False, _sockets.UNREAD_MS))
-    finally:
-        await close_session(router)
-
-
-async def test_what_arrives_is_seen_while_zenoh_reads_it() -> None:
-    """A busy process takes seconds for that, and is not to take them for silence."""
-    async with two_contexts() as (first, second):
-        session = session_of(first)
-        before = _sockets.arrived_bytes(session)
-        assert before
-
-        def more_has_come() -> bool:
-            return any(
-                received > before.get(peer, (0, 0))[0] + 100
-                for peer, (received, _) in _sockets.arrived_bytes(session).items()
-            )
-
-        def all_is_read() -> bool:
-            return not any(unread for _, unread in _sockets.arrived_bytes(session).values())
-
-        async with quiet_node("second", second):
-            await until(more_has_come)
-            await until(all_is_read)
-
-
-def not_seen(_: zenoh.Session) -> None:
-    """Find no connection to cut, as if it began only while the session is being closed."""
-
-
-async def test_a_close_that_goes_on_in_a_thread_does_not_wait_for_a_frozen_peer(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    """Python waits for that thread at exit."""
-    monkeypatch.setattr(_transport, "cut_stuck", not_seen)
-    monkeypatch.setattr(_session, "CLOSE_S", 0)
-    before = set(threading.enumerate())
-    with socket.socket() as silent:
-        silent.bind(("127.0.0.1", 0))
-        silent.listen()
+async def test_a_connection_of_the_program_outlasts_a_close_beside_a_silent_peer() -> None:
+    """Only Zenoh's own connection is cut, though both look the same to their peers."""
+    with log_connection() as one, socket.create_server(("127.0.0.1", 0)) as silent:
         dial = {"connect/endpoints": [f"tcp/127.0.0.1:{silent.getsockname()[1]}"]}
         async with Context(config=dial), asyncio.timeout(20):
-            while not await asyncio.to_thread(_sockets.unanswered):
-                await checkpoint()
-        began_s = asyncio.get_running_loop().time()
-        async with asyncio.timeout(20):
-            while any(one.name == "aionode-zenoh" for one in {*threading.enumerate()} - before):
-                await checkpoint()
+            while not (unanswered := await asyncio.to_thread(closing_defect.unanswered)):
+                await asyncio.to_thread(threading.Event().wait, 0.01)
 
-        assert asyncio.get_running_loop().time() - began_s < 1.5  # Zenoh would wait for 3 s
+        assert len(unanswered) == 1
+        assert is_whole(one)
 
 
-@pytest.mark.parametrize("begins", ["before", "meanwhile"])
-@pytest.mark.parametrize("who", ["we dial", "it dials"])
-async def test_a_context_closes_at_once_while_a_connection_is_not_answered(
-    who: str, begins: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """A program that is frozen accepts, and is accepted, as its system does that for it."""
-    monkeypatch.setattr(_session, "CLOSE_S", 20.0)  # so that the limit below is far away
-    if begins == "meanwhile":
-        monkeypatch.setattr(_transport, "cut_stuck", not_seen)
-    async with AsyncExitStack() as stack:
-        silent = stack.enter_context(socket.socket())
-        silent.bind(("127.0.0.1", 0))
-        silent.listen()
-        dial = {"connect/endpoints": [f"tcp/127.0.0.1:{silent.getsockname()[1]}"]}
-        context = Context(config=dial if who == "we dial" else {})
-        closing = await stack.enter_async_context(AsyncExitStack())
-        await closing.enter_async_context(context)
-        if who == "it dials":
-            port = int(os.environ["AIONODE_MEETING_PORTS"].partition(",")[0])
-            stack.enter_context(socket.create_connection(("127.0.0.1", port)))
-        async with asyncio.timeout(20):
-            while not await asyncio.to_thread(_sockets.unanswered):
-                await checkpoint()
-        began_s = asyncio.get_running_loop().time()
-        await closing.aclose()
-        took_s = asyncio.get_running_loop().time() - began_s
+async def test_sockets_of_zenoh_are_known_by_how_its_runtime_waits_for_them() -> None:
+    """The system names no owner of a descriptor within a process."""
+    router = await open_router([f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"])
+    with closing(router):
+        async with two_contexts() as both:
+            own = {each for one in both for each in find(pairs_of(session_of(one))).values()}
+            assert own
+            assert own <= polled_by_zenoh()
 
-    assert took_s < 2.5  # Zenoh would wait for 3 s
+
+def test_locks_that_do_not_hold_are_noticed(tmp_path: Path) -> None:
+    """Otherwise the tests above would show nothing."""
+    guest = locks(tmp_path)
+    guest.__enter__()
+    for number, target in list(descriptors()):
+        if target in {str(tmp_path / "record"), str(tmp_path / "log.sqlite")}:
+            os.close(os.dup(number))
+
+    with pytest.raises(AssertionError, match="the record lock\nthe transaction"):
+        guest.__exit__(None, None, None)

@@ -1,7 +1,14 @@
-"""What a session needs of the system: where Zenoh cannot have it, it panics, or aborts the process.
+"""Where a session cannot have what it needs of the system, Zenoh panics, or aborts the process.
 
-Zenoh 1.10 does so in a thread of its own if it gets no descriptor or no thread while it opens a
-session, and no exception comes of it.
+Zenoh:
+    It does so in a thread of its own if it gets no descriptor or no thread while it opens a
+    session, and no exception comes of it that says why.
+Known as:
+    Not reported.
+Seen in:
+    1.10, 1.10.2
+Mend:
+    `refuse_scarcity` looks before a session is opened, and raises.
 """
 
 from __future__ import annotations
@@ -12,6 +19,7 @@ from pathlib import Path
 from typing import Final
 
 from aionode.errors import TransportError
+from aionode.transport.zenoh._defects._switch import is_mended
 
 __all__ = ["refuse_scarcity"]
 
@@ -34,6 +42,8 @@ def refuse_scarcity() -> None:
     Raises:
         TransportError: the text names the limit, and how to raise it.
     """
+    if not is_mended("scarcity"):
+        return
     try:
         import resource
     except ImportError:  # Windows, which has no such limits

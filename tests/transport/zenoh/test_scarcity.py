@@ -11,7 +11,7 @@ import pytest
 from aionode.context import Context
 from aionode.errors import TransportError
 from aionode.node import Node
-from aionode.transport.zenoh import _limits
+from aionode.transport.zenoh._defects import scarcity
 from tests.support.peers import isolated_environment
 
 pytestmark = [
@@ -57,8 +57,8 @@ async def test_few_threads_are_an_error_that_names_the_limit(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Zenoh's runtime aborts the process if it gets none."""
-    monkeypatch.setattr(_limits, "of_container", lambda: 12)
-    monkeypatch.setattr(_limits, "can_start_threads", lambda count: count < 12)
+    monkeypatch.setattr(scarcity, "of_container", lambda: 12)
+    monkeypatch.setattr(scarcity, "can_start_threads", lambda count: count < 12)
 
     with pytest.raises(TransportError, match="the limit is 12 for its user or its container"):
         async with Node("node", context=Context(domain_id=42)):
@@ -67,4 +67,4 @@ async def test_few_threads_are_an_error_that_names_the_limit(
 
 def test_threads_are_tried_out() -> None:
     """Other processes of the user or container count against the same limit."""
-    assert _limits.can_start_threads(16)
+    assert scarcity.can_start_threads(16)

@@ -1,42 +1,40 @@
-"""Reconnects to processes whose connection was lost while both ends are alive.
+"""A peer that gossip has named once is dialled once: a lost connection to it is not made anew.
 
-Zenoh keeps dialling the endpoints of its configuration, but a peer that gossip has named only when
-gossip names it again. A router or a peer gossips when it is connected anew, and only then: 3 ms
-after a process that was frozen has lost that connection, and perhaps before it has noticed the loss
-of others. Those are named too early, and never again.
-
-So after the loss of a connection, the tokens that this session sees are compared with those that
-its introducer (a router, or the peer at a configured endpoint) sees. A second session, open for
-some milliseconds, queries them. If the introducer sees a participant that this session does not, or
-to which it has lost the connection, or does not see this session, the connection to the introducer
-is cut, and Zenoh makes it anew at once.
-
-A process that returns may still read what came over its old connection when the new one is made.
-Then Zenoh takes the new one for another link of the old one, and announces nothing on it. A
-participant of aionode always has a token, so for one that returns no look is needed.
+Zenoh:
+    Zenoh keeps dialling the endpoints of its configuration, but a peer that gossip has named only
+    when gossip names it again. A router or a peer gossips when it is connected anew, and only then:
+    3 ms after a process that was frozen has lost that connection, and perhaps before it has noticed
+    the loss of others. Those are named too early, and never again.
+Known as:
+    Not reported.
+Seen in:
+    1.7 to 1.10.2
+Mend:
+    After the loss of a connection, the tokens that this session sees are compared with those that
+    its introducer (a router, or the peer at a configured endpoint) sees: a look queries them. If
+    the introducer sees a participant that this session does not, or to which it has lost the
+    connection, or does not see this session, the connection to the introducer is cut, and Zenoh
+    makes it anew at once, with all introductions.
 """
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import secrets
 import socket
 import threading
-from collections import Counter
 from contextlib import closing, suppress
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
-from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
-from aionode.transport.zenoh._descriptors import find, pair_of
+from aionode.transport.zenoh._config import introducers, open_look
+from aionode.transport.zenoh._defects._switch import is_mended
+from aionode.transport.zenoh._defects.incomplete_answers import ANSWER_S, tokens
 from aionode.transport.zenoh._handlers import direct, translated
-from aionode.transport.zenoh._session import load_config
-from aionode.transport.zenoh._settings import introducers, look_settings
-from aionode.transport.zenoh._sockets import cut
+from aionode.transport.zenoh._sockets import connections, cut, pair_of, split_locator
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
 if TYPE_CHECKING:
@@ -44,33 +42,19 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from aionode.transport._network import Network
-    from aionode.transport.zenoh._descriptors import Pair
     from aionode.transport.zenoh._graph_watcher import Watcher
     from aionode.transport.zenoh._session_state import SessionState
+    from aionode.transport.zenoh._sockets import Address
 
-__all__ = ["Recovery", "is_look", "nodes_at_introducer"]
+__all__ = ["REMEMBERED", "Recovery", "nodes_at_introducer"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
-
-LOOK_IDS: Final = "a10de10c"
-"""The prefix of the ids of sessions that are open for one look only."""
 
 FIRST_S: Final = 0.5
 """The first look is so long after a connection was lost or made; Zenoh needs milliseconds."""
 
-DECLARED_S: Final = 1.0
-"""How long after a participant has returned its tokens may take; they take some milliseconds."""
-
-PEERS_PER_SECOND: Final = 20
-"""Tokens may take a second for each so many connected peers: all of these may have returned."""
-
-FEW: Final = 3
-"""If more participants than that have declared nothing, they may be slow, and have more time."""
-
 POSTPONED_S: Final = 3.0
-"""How long connections that go on being made or lost may postpone a look; also how long after the
-last of these more than `FEW` silent participants are waited for.
-"""
+"""How long connections that go on being made or lost may postpone a look."""
 
 AGAIN_S: Final = 3.0
 """The interval of further looks: a process that was frozen returns without a sign."""
@@ -81,9 +65,6 @@ WATCH_S: Final = 120.0
 SURE_S: Final = 0.3
 """How long a participant must be missing. One that is starting is, for some milliseconds."""
 
-ANSWER_S: Final = 1.0
-"""How long the query for tokens may take; it takes a millisecond."""
-
 NODES_S: Final = 3.0
 """The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
 
@@ -93,19 +74,8 @@ REMEMBERED: Final = 10_000
 ATTEMPTS: Final = 4
 """How often the connection is cut for one participant; some are visible, but not reachable."""
 
-ANSWERS: Final = 20
-"""How often a session is asked at most whose answer lacks tokens that are known."""
-
-ANSWERS_S: Final = 0.2
-"""For how long it is asked again; each answer takes a millisecond or two."""
-
 CHECKS: Final = 3
 """How often the graph is compared after connections have come or gone."""
-
-
-def is_look(zid: str) -> bool:
-    """Return whether a session is open for one look only, and subscribes to nothing."""
-    return zid.startswith(LOOK_IDS) and len(zid) == 32
 
 
 class Introducer(NamedTuple):
@@ -113,12 +83,10 @@ class Introducer(NamedTuple):
 
     Attributes:
         zid: The id of its session.
-        pair: The addresses of the connection.
         endpoint: Where it is dialled.
     """
 
     zid: str
-    pair: Pair
     endpoint: str
 
 
@@ -143,7 +111,6 @@ class Recovery:
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
-        self._changed_s = 0.0  # when a connection was made or lost last
         self._changing_since_s = 0.0  # when the first change was seen after the last look
         # Participants whose connection was lost and not made anew. A router may forward what they
         # send meanwhile, but not always what this session sends.
@@ -152,15 +119,10 @@ class Recovery:
         self._suspected: set[str] = set()
         # How often the connection was cut for each missing participant.
         self._attempts: dict[str, int] = {}
-        # Participants whose connection was made anew, until it is known that they have declared.
-        self._returned: set[str] = set()
-        self._check: asyncio.TimerHandle | None = None
-        # How often the connection to each participant was cut that declared nothing.
-        self._cuts: Counter[str] = Counter()
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
-        if not introducers(self._network):
+        if not (introducers(self._network) and is_mended("forgotten_peers")):
             return  # no endpoint is dialled again
         self._session = session
         with translated("connections"):
@@ -174,35 +136,28 @@ class Recovery:
         listener, self._listener = self._listener, None
         if listener is not None:
             listener.undeclare()
-        for timer in (self._timer, self._check):
-            if timer is not None:
-                timer.cancel()
-        self._timer = self._check = None
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
         for queue in (self._changes, self._looks):
             queue.clear()
         self._looking = False
         self._until_s = 0.0
         self._attempts.clear()
-        self._cuts.clear()
         self._lost.clear()
-        self._returned.clear()
 
     def _take_change(self, event: zenoh.TransportEvent) -> None:
         if event.transport.whatami == zenoh.WhatAmI.CLIENT:
             return  # it dials by itself
-        now_s = self._changed_s = asyncio.get_running_loop().time()
+        now_s = asyncio.get_running_loop().time()
         zid = str(event.transport.zid)
         if event.kind == zenoh.SampleKind.DELETE:
             if now_s >= self._until_s or len(self._lost) >= REMEMBERED:
                 self._lost.clear()  # the looks for those have ended, or they are too many
             self._until_s = now_s + WATCH_S
             self._lost.add(zid)
-            self._returned.discard(zid)
         else:
-            if zid in self._lost:
-                self._lost.discard(zid)
-                self._returned.add(zid)
-                self._check_in(self._declared_s())
+            self._lost.discard(zid)
             if now_s >= self._until_s:
                 return  # nothing was lost
         self._checks = CHECKS
@@ -210,51 +165,6 @@ class Recovery:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
             self._look_in(FIRST_S)
-
-    def _declared_s(self) -> float:
-        """Return how long the tokens of a participant that has returned may take."""
-        count = 0 if self._session is None else len(self._session.info.transports())
-        return DECLARED_S * max(count / PEERS_PER_SECOND, 1)
-
-    def _check_in(self, delay_s: float) -> None:
-        if self._check is None:
-            self._check = asyncio.get_running_loop().call_later(delay_s, self._check_returned)
-
-    def _check_returned(self) -> None:
-        """Cut the connections to participants that have returned, but have not declared anything.
-
-        All at once: each cut is itself a change, after which the others would have to wait again.
-        """
-        self._check = None
-        session, acknowledgements = self._session, self._state.acknowledgements
-        if session is None:
-            return
-        self._returned &= acknowledgements.participants - acknowledgements.present
-        # Where many connect at once, tokens take longer, and a cut makes all take longer still.
-        declared_s = self._declared_s()
-        wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
-        if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
-            self._check_in(declared_s / 2)
-            return
-        silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
-        # Until they declare: if Zenoh takes their new connections for links of the old ones once
-        # more, no event tells of it.
-        self._returned = silent
-        if silent:
-            if len(self._cuts) >= REMEMBERED:
-                self._cuts.clear()
-            self._cuts.update(silent)
-            self._check_in(declared_s)
-            logger.info(
-                "processes %s are connected but declare nothing; cutting their connections, so "
-                "that Zenoh makes them anew",
-                ", ".join(sorted(silent)[:5]),
-            )
-            start_thread(
-                threading.Thread(
-                    target=cut_participants, args=(session, silent.copy()), name="aionode-zenoh"
-                )
-            )
 
     def _look_in(self, delay_s: float) -> None:
         """Look in a while; processes that saw the same end do not all look at once."""
@@ -304,7 +214,7 @@ class Recovery:
             missing &= self._missing(session, connection, lost, known)[0]
         missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
         if missing:
-            cut(find(pairs_to(session, missing) | {connection.pair}).values())
+            cut(connections(session, missing | {connection.zid}))
         return missing
 
     def _missing(
@@ -358,12 +268,6 @@ class Recovery:
             self._look_in(FIRST_S if missing else AGAIN_S)
 
 
-def look_at(network: Network, connection: Introducer) -> zenoh.Session:
-    """Open a session that sees what is to be seen at the other end of a connection."""
-    look_id = LOOK_IDS + secrets.token_hex(12)
-    return zenoh.open(load_config(network, {}, look_id, look_settings(connection.endpoint)))
-
-
 def seen_at(
     network: Network,
     connection: Introducer,
@@ -383,7 +287,7 @@ def seen_at(
     Raises:
         TimeoutError: an answer was not complete in time.
     """
-    with closing(look_at(network, connection)) as look:
+    with closing(open_look(network, connection.endpoint)) as look:
         return tokens(look, *keys, expected=expected, timeout_s=timeout_s)
 
 
@@ -414,91 +318,29 @@ def participants(state: SessionState) -> tuple[str, ...]:
     return f"{ROS_PREFIX}/{state.domain_id}/*/*/*/NN/**", state.acknowledgements.token_of("*")
 
 
-def tokens(
-    session: zenoh.Session,
-    *keys: str,
-    expected: AbstractSet[str] = frozenset(),
-    timeout_s: float = ANSWER_S,
-) -> set[str]:
-    """Return the tokens that match `keys` and that a session sees.
-
-    Beside a router, the answer of a peer may lack tokens, even all of them: Zenoh names them in one
-    thread, and in another passes on that the router's answer has ended, which may come first (1.10;
-    one answer in ten). So the session is asked again while `expected` are missing, and each token
-    that any answer names counts.
-
-    Args:
-        session: The session.
-        *keys: What is asked for.
-        expected: Tokens that a complete answer has; some may still be missing in what is returned.
-        timeout_s: How long each answer may take.
-
-    Raises:
-        TimeoutError: an answer was not complete in time; what is missing in it may well be there.
-    """
-    found: set[str] = set()
-    ends_ns = perf_ns() + int(ANSWERS_S * 1e9)
-    for _ in range(ANSWERS):
-        for key in keys:
-            found.update(answer(session, key, timeout_s))
-        if expected <= found or perf_ns() > ends_ns:
-            break
-    return found
-
-
-def answer(session: zenoh.Session, key: str, timeout_s: float) -> Iterator[str]:
-    """Yield the tokens that match one key and are named in one answer."""
-    for reply in session.liveliness().get(key, timeout=timeout_s):
-        if reply.ok is None:  # the time is up
-            raise TimeoutError(f"{key}: not all tokens were named within {timeout_s:g} s")
-        yield str(reply.ok.key_expr)
-
-
 def participant_of(token: str) -> str:
     """Return the participant of a token of a node or context."""
     return token.split("/", 3)[2]
 
 
-def pairs_to(session: zenoh.Session, zids: set[str]) -> set[Pair]:
-    """Return the addresses of the connections to some sessions."""
-    links = (link for link in session.info.links() if str(link.zid) in zids)
-    return {pair for link in links if (pair := pair_of(link))}
-
-
 def introducer_connection(session: zenoh.Session, network: Network) -> Introducer | None:
     """Return a connection to an introducer, a router if there is one."""
     routers = {str(zid) for zid in session.info.routers_zid()}
-    connections = []
+    found = []
     dialled = {
         address: endpoint for endpoint in introducers(network) for address in addresses_of(endpoint)
     }
     for link in session.info.links():
-        target, pair = address_in(str(link.dst)), pair_of(link)
-        if pair is not None and target in dialled:
-            connections.append(Introducer(str(link.zid), pair, dialled[target]))
-    connections.sort(key=lambda connection: connection.zid not in routers)
-    return connections[0] if connections else None
+        pair = pair_of(link)
+        if pair is not None and pair.remote in dialled:
+            found.append(Introducer(str(link.zid), dialled[pair.remote]))
+    return min(found, key=lambda connection: connection.zid not in routers, default=None)
 
 
-def address_in(locator: str) -> tuple[str, int] | None:
-    """Return host and port of a locator such as ``tcp/127.0.0.1:7447?…``; None without a port."""
-    text = locator.partition("/")[2].partition("?")[0].partition("#")[0]
-    host, colon, port = text.rpartition(":")
-    if not (colon and port.isdigit()):
-        return None
-    return host.strip("[]"), int(port)
-
-
-def addresses_of(endpoint: str) -> Iterator[tuple[str, int]]:
-    """Yield the numeric addresses of an endpoint."""
-    address = address_in(endpoint)
-    if address is not None:
+def addresses_of(endpoint: str) -> Iterator[Address]:
+    """Yield the addresses of an endpoint, which may name its host."""
+    where = split_locator(endpoint)
+    if where is not None:
         with suppress(OSError):
-            for *_, found in socket.getaddrinfo(*address, type=socket.SOCK_STREAM):
-                yield str(found[0]), int(found[1])
-
-
-def cut_participants(session: zenoh.Session, zids: set[str]) -> None:
-    """Cut the connections to some participants; in a thread."""
-    with suppress(zenoh.ZError):  # the session was closed meanwhile
-        cut(find(pairs_to(session, zids)).values())
+            for family, *_, found in socket.getaddrinfo(*where, type=socket.SOCK_STREAM):
+                yield socket.inet_pton(family, str(found[0]).partition("%")[0]), int(found[1])

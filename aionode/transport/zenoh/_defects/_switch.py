@@ -1,0 +1,33 @@
+"""The switch of the mends."""
+
+from __future__ import annotations
+
+import os
+import pkgutil
+from pathlib import Path
+from typing import Final
+
+from aionode.errors import ConfigurationError
+
+__all__ = ["is_mended"]
+
+VARIABLE: Final = "AIONODE_ZENOH_UNMENDED"
+"""The environment variable that names the defects whose mends are switched off."""
+
+
+def is_mended(defect: str) -> bool:
+    """Return whether the mend of a defect is switched on.
+
+    Raises:
+        ConfigurationError: the environment names something else than a defect.
+    """
+    unmended = set(os.environ.get(VARIABLE, "").replace(",", " ").split())
+    for name in unmended and unmended - defects():
+        raise ConfigurationError(VARIABLE, name, f"{', '.join(sorted(defects()))} fit")
+    return defect not in unmended
+
+
+def defects() -> set[str]:
+    """Return the names of all defects: each has a module here."""
+    names = {module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)])}
+    return {name for name in names if not name.startswith("_")}

@@ -1,0 +1,163 @@
+"""A peer that reconnects to a process which has not noticed the loss is told nothing any more.
+
+Zenoh:
+    A process that was frozen may accept a new connection while it still reads what came over the
+    old one. Zenoh takes the new one for another link of the same transport, and declares nothing on
+    it: the peer never sees a token or a subscription of that process again.
+Known as:
+    https://github.com/eclipse-zenoh/zenoh/issues/2806
+Seen in:
+    1.10.2
+Mend:
+    A participant of aionode always has a token. If the tokens of one whose connection was made anew
+    do not come, `StaleTransports` cuts its connections, so that Zenoh makes them anew.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections import Counter
+from contextlib import suppress
+from typing import TYPE_CHECKING, Final
+
+import zenoh
+
+from aionode.transport._send_thread import start_thread
+from aionode.transport.zenoh._config import introducers
+from aionode.transport.zenoh._defects._switch import is_mended
+from aionode.transport.zenoh._defects.forgotten_peers import ATTEMPTS, POSTPONED_S, REMEMBERED
+from aionode.transport.zenoh._handlers import direct, translated
+from aionode.transport.zenoh._sockets import connections, cut
+
+if TYPE_CHECKING:
+    from aionode.transport._network import Network
+    from aionode.transport.zenoh._session_state import SessionState
+
+__all__ = ["StaleTransports"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+DECLARED_S: Final = 1.0
+"""How long after a participant has returned its tokens may take; they take some milliseconds."""
+
+PEERS_PER_SECOND: Final = 20
+"""Tokens may take a second for each so many connected peers: all of these may have returned."""
+
+FEW: Final = 3
+"""If more participants than that have declared nothing, they may be slow, and have more time."""
+
+
+class StaleTransports:
+    """Connects participants anew that have returned, but declare nothing.
+
+    Args:
+        state: The session state of the context.
+        network: The settings of the context.
+    """
+
+    def __init__(self, state: SessionState, network: Network) -> None:
+        self._state = state
+        self._network = network
+        self._changes = state.queue(self._take_change)
+        self._listener: zenoh.TransportEventsListener[None] | None = None
+        self._session: zenoh.Session | None = None
+        self._check: asyncio.TimerHandle | None = None
+        self._changed_s = 0.0  # when a connection was made or lost last
+        # Participants whose connection was lost and not made anew.
+        self._lost: set[str] = set()
+        # Participants whose connection was made anew, until it is known that they have declared.
+        self._returned: set[str] = set()
+        # How often the connection to each participant was cut that declared nothing.
+        self._cuts: Counter[str] = Counter()
+
+    def start(self, session: zenoh.Session) -> None:
+        """Start watching the connections of a session."""
+        if not (introducers(self._network) and is_mended("stale_transports")):
+            return  # no endpoint is dialled again
+        self._session = session
+        with translated("connections"):
+            self._listener = session.info.declare_transport_events_listener(
+                direct(self._changes.put)
+            )
+
+    def stop(self) -> None:
+        """Stop watching."""
+        self._session = None
+        listener, self._listener = self._listener, None
+        if listener is not None:
+            listener.undeclare()
+        if self._check is not None:
+            self._check.cancel()
+            self._check = None
+        self._changes.clear()
+        self._cuts.clear()
+        self._lost.clear()
+        self._returned.clear()
+
+    def _take_change(self, event: zenoh.TransportEvent) -> None:
+        if event.transport.whatami == zenoh.WhatAmI.CLIENT:
+            return  # it dials by itself
+        self._changed_s = asyncio.get_running_loop().time()
+        zid = str(event.transport.zid)
+        if event.kind == zenoh.SampleKind.DELETE:
+            if len(self._lost) >= REMEMBERED:
+                self._lost.clear()
+            self._lost.add(zid)
+            self._returned.discard(zid)
+        elif zid in self._lost:
+            self._lost.discard(zid)
+            self._returned.add(zid)
+            self._check_in(self._declared_s())
+
+    def _declared_s(self) -> float:
+        """Return how long the tokens of a participant that has returned may take."""
+        count = 0 if self._session is None else len(self._session.info.transports())
+        return DECLARED_S * max(count / PEERS_PER_SECOND, 1)
+
+    def _check_in(self, delay_s: float) -> None:
+        if self._check is None:
+            self._check = asyncio.get_running_loop().call_later(delay_s, self._check_returned)
+
+    def _check_returned(self) -> None:
+        """Cut the connections to participants that have returned, but have not declared anything.
+
+        All at once: each cut is itself a change, after which the others would have to wait again.
+        """
+        self._check = None
+        session, acknowledgements = self._session, self._state.acknowledgements
+        if session is None:
+            return
+        self._returned &= acknowledgements.participants - acknowledgements.present
+        # Where many connect at once, tokens take longer, and a cut makes all take longer still.
+        declared_s = self._declared_s()
+        wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
+        if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
+            self._check_in(declared_s / 2)
+            return
+        silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
+        # Until they declare: if Zenoh takes their new connections for links of the old ones once
+        # more, no event tells of it.
+        self._returned = silent
+        if silent:
+            if len(self._cuts) >= REMEMBERED:
+                self._cuts.clear()
+            self._cuts.update(silent)
+            self._check_in(declared_s)
+            logger.info(
+                "processes %s are connected but declare nothing; cutting their connections, so "
+                "that Zenoh makes them anew",
+                ", ".join(sorted(silent)[:5]),
+            )
+            start_thread(
+                threading.Thread(
+                    target=cut_participants, args=(session, silent.copy()), name="aionode-zenoh"
+                )
+            )
+
+
+def cut_participants(session: zenoh.Session, zids: set[str]) -> None:
+    """Cut the connections to some participants; in a thread."""
+    with suppress(zenoh.ZError):  # the session was closed meanwhile
+        cut(connections(session, zids))

@@ -1,0 +1,66 @@
+"""Each defect of Zenoh that is worked around is described, shown by a program, and has a switch."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from aionode.context import Context
+from aionode.errors import ConfigurationError
+from aionode.transport._network import network_from
+from aionode.transport.zenoh import _defects
+from aionode.transport.zenoh._defects._switch import defects, is_mended
+from aionode.transport.zenoh._settings import router_settings, session_settings
+
+ROOT = Path(__file__).parents[3]
+
+VARIABLE = "AIONODE_ZENOH_UNMENDED"
+
+
+def test_each_defect_has_a_program_that_shows_it() -> None:
+    """A mend whose defect nothing shows stays for ever."""
+    programs = {path.stem for path in (ROOT / "tests/zenoh_defects").glob("[a-z]*.py")}
+
+    assert programs == defects()
+
+
+@pytest.mark.parametrize("name", sorted(defects()))
+def test_a_defect_is_described(name: str) -> None:
+    """Whoever tries a new version of Zenoh reads there what may go."""
+    source = (Path(_defects.__path__[0]) / f"{name}.py").read_text(encoding="utf-8")
+    text = ast.get_docstring(ast.parse(source)) or ""
+    titles = [line for line in text.splitlines() if line.endswith(":") and line[0] != " "]
+
+    assert titles == ["Zenoh:", "Known as:", "Seen in:", "Mend:"]
+
+
+@pytest.mark.parametrize("name", sorted(defects()))
+def test_a_defect_has_a_switch(name: str) -> None:
+    """It is asked for by the name of its module, wherever the mend is."""
+    asked = f'is_mended("{name}")'
+    modules = sorted((ROOT / "aionode/transport/zenoh").rglob("*.py"))
+
+    assert any(asked in module.read_text(encoding="utf-8") for module in modules)
+
+
+def test_mends_are_switched_off_by_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Zenoh's own values are left then."""
+    network = network_from({})
+    key, admin = "transport/shared_memory/enabled", "adminspace/enabled"
+    assert session_settings(network, ())[key] is False
+    monkeypatch.setenv(VARIABLE, "shared_memory, admin_space")
+
+    assert not is_mended("shared_memory")
+    assert is_mended("closing")
+    assert key not in session_settings(network, ())
+    assert {key, admin}.isdisjoint(router_settings())
+
+
+async def test_a_name_of_no_defect_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It would switch nothing off, and the program would show nothing."""
+    monkeypatch.setenv(VARIABLE, "lingerin")
+    with pytest.raises(ConfigurationError, match=r"AIONODE_ZENOH_UNMENDED.*lingerin.*lingering"):
+        async with Context():
+            pass

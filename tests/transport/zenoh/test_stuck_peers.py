@@ -1,0 +1,179 @@
+"""What Zenoh's sockets do while a peer has stopped reading."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import socket
+import struct
+import sys
+import threading
+from contextlib import AsyncExitStack
+from typing import Any
+
+import pytest
+import zenoh  # noqa: TID251  # type of sessions
+
+from aionode._concurrency import checkpoint
+from aionode.context import Context
+from aionode.transport.zenoh import _session, _sockets, _transport
+from aionode.transport.zenoh._defects import lingering
+from aionode.transport.zenoh._defects.blocked_sends import UNREAD_MS
+from aionode.transport.zenoh._defects.closing import unanswered
+from aionode.transport.zenoh._session import close_session, open_router
+from aionode.transport.zenoh._sockets import connections, duplicates
+from tests.support.peers import quiet_node, two_contexts
+from tests.support.waiting import until
+
+pytestmark = pytest.mark.skipif(
+    not sys.platform.startswith("linux"), reason="only Linux lists the sockets of a process"
+)
+
+
+def session_of(context: Context) -> Any:
+    """Return the Zenoh session of an open context."""
+    transport: Any = context.transports[1]
+    return transport.session_state.session
+
+
+def options(session: zenoh.Session) -> list[tuple[bool, int]]:
+    """Return whether closing each connection waits for its peer, and its time limit in ms."""
+    return [
+        (
+            bool(struct.unpack("ii", one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8))[0]),
+            one.getsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT),
+        )
+        for _, one in duplicates(connections(session))
+    ]
+
+
+async def until_set(session: zenoh.Session, wanted: tuple[bool, int]) -> None:
+    """Wait until all connections of a session have the wanted options."""
+    async with asyncio.timeout(20):
+        await until(lambda: set(options(session)) == {wanted})
+
+
+async def test_no_connection_waits_for_its_peer_when_it_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Zenoh's one thread that connects stood still for ten seconds when a stuck peer was lost."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
+    async with two_contexts() as both:
+        for context in both:
+            await until_set(session_of(context), (False, UNREAD_MS))
+
+
+@pytest.mark.parametrize(("near", "limit_ms"), [(True, 7_000), (False, 5_000)])
+async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_lease_ends(
+    near: bool, limit_ms: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Beside a thread that waited for it, Zenoh could not end it, and kept all others waiting."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
+    monkeypatch.setattr(lingering, "is_near", lambda _: near)
+    async with two_contexts() as both:
+        for context in both:
+            await until_set(session_of(context), (False, limit_ms))
+
+
+async def test_a_closed_context_looks_for_sockets_no_more() -> None:
+    """A timer that is left would hold the closed session."""
+    async with two_contexts() as both:
+        transports: list[Any] = [context.transports[1] for context in both]
+        setters = [transport._socket_options for transport in transports]
+        await until(lambda: all(each._timer for each in setters))
+        timers = [each._timer for each in setters]
+
+    for timer in timers:
+        timer.join(10)
+    assert [timer.is_alive() for timer in timers] == [False, False]
+    assert [transport._socket_options for transport in transports] == [None, None]
+
+
+async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A router stood still for all when one of its peers had stopped, and was lost."""
+    monkeypatch.setattr(lingering, "SETTLE_S", 0.0)
+    router = await open_router([f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"])
+    try:
+        async with Context():
+            await until_set(router, (False, UNREAD_MS))
+    finally:
+        await close_session(router)
+
+
+async def test_what_arrives_is_seen_while_zenoh_reads_it() -> None:
+    """A busy process takes seconds for that, and is not to take them for silence."""
+    async with two_contexts() as (first, second):
+        session = session_of(first)
+        before = _sockets.arrived_bytes(session)
+        assert before
+
+        def more_has_come() -> bool:
+            return any(
+                received > before.get(peer, (0, 0))[0] + 100
+                for peer, (received, _) in _sockets.arrived_bytes(session).items()
+            )
+
+        def all_is_read() -> bool:
+            return not any(unread for _, unread in _sockets.arrived_bytes(session).values())
+
+        async with quiet_node("second", second):
+            await until(more_has_come)
+            await until(all_is_read)
+
+
+def not_seen(_: zenoh.Session) -> None:
+    """Find no connection to cut, as if it began only while the session is being closed."""
+
+
+async def test_a_close_that_goes_on_in_a_thread_does_not_wait_for_a_frozen_peer(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Python waits for that thread at exit."""
+    monkeypatch.setattr(_transport, "cut_stuck", not_seen)
+    monkeypatch.setattr(_session, "CLOSE_S", 0)
+    before = set(threading.enumerate())
+    with socket.socket() as silent:
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        dial = {"connect/endpoints": [f"tcp/127.0.0.1:{silent.getsockname()[1]}"]}
+        async with Context(config=dial), asyncio.timeout(20):
+            while not await asyncio.to_thread(unanswered):
+                await checkpoint()
+        began_s = asyncio.get_running_loop().time()
+        async with asyncio.timeout(20):
+            while any(one.name == "aionode-zenoh" for one in {*threading.enumerate()} - before):
+                await checkpoint()
+
+        assert asyncio.get_running_loop().time() - began_s < 1.5  # Zenoh would wait for 3 s
+
+
+@pytest.mark.parametrize("begins", ["before", "meanwhile"])
+@pytest.mark.parametrize("who", ["we dial", "it dials"])
+async def test_a_context_closes_at_once_while_a_connection_is_not_answered(
+    who: str, begins: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A program that is frozen accepts, and is accepted, as its system does that for it."""
+    monkeypatch.setattr(_session, "CLOSE_S", 20.0)  # so that the limit below is far away
+    if begins == "meanwhile":
+        monkeypatch.setattr(_transport, "cut_stuck", not_seen)
+    async with AsyncExitStack() as stack:
+        silent = stack.enter_context(socket.socket())
+        silent.bind(("127.0.0.1", 0))
+        silent.listen()
+        dial = {"connect/endpoints": [f"tcp/127.0.0.1:{silent.getsockname()[1]}"]}
+        context = Context(config=dial if who == "we dial" else {})
+        closing = await stack.enter_async_context(AsyncExitStack())
+        await closing.enter_async_context(context)
+        if who == "it dials":
+            port = int(os.environ["AIONODE_MEETING_PORTS"].partition(",")[0])
+            stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+        async with asyncio.timeout(20):
+            while not await asyncio.to_thread(unanswered):
+                await checkpoint()
+        began_s = asyncio.get_running_loop().time()
+        await closing.aclose()
+        took_s = asyncio.get_running_loop().time() - began_s
+
+    assert took_s < 2.5  # Zenoh would wait for 3 s

@@ -1,0 +1,159 @@
+"""What the programs have in common: sessions of Zenoh, and other processes that freeze.
+
+Each program shows one defect of Zenoh, without aionode, and fails when Zenoh no longer has it. They
+are no part of the tests: ``make zenoh-defects`` runs them.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+from typing import Any, Final
+
+import zenoh
+
+from tests.support.peers import free_ports
+
+__all__ = [
+    "READER",
+    "dialling",
+    "endpoint",
+    "frozen",
+    "is_matched",
+    "listening",
+    "opened",
+    "process",
+    "session",
+    "sockets",
+    "stands_still",
+    "suppressed",
+    "until",
+]
+
+
+def endpoint() -> str:
+    """Return an endpoint of loopback that is free."""
+    return f"tcp/127.0.0.1:{free_ports(1)[0]}"
+
+
+def opened(settings: dict[str, Any]) -> zenoh.Session:
+    """Open a session that finds nothing by itself."""
+    config = zenoh.Config()
+    quiet = {"scouting/multicast/enabled": False, "listen/endpoints": []}
+    for key, value in (quiet | settings).items():
+        config.insert_json5(key, json.dumps(value))
+    return zenoh.open(config)
+
+
+@contextmanager
+def session(settings: dict[str, Any]) -> Iterator[zenoh.Session]:
+    """A session that is closed in the end."""
+    with closing(opened(settings)) as one:
+        yield one
+
+
+SMALL: Final = "#so_sndbuf=65536;so_rcvbuf=65536"
+"""Has sockets hold so little that a peer which reads nothing is noticed soon."""
+
+
+def listening(there: str) -> dict[str, Any]:
+    """Return the settings of a session that listens."""
+    return {"listen/endpoints": [there + SMALL]}
+
+
+def dialling(there: str) -> dict[str, Any]:
+    """Return the settings of a session that dials."""
+    return {"connect/endpoints": [there + SMALL]}
+
+
+PREAMBLE = """
+import os, signal, sys, threading, time, zenoh
+from tests.zenoh_defects._support import *
+"""
+
+
+@contextmanager
+def process(program: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
+    """A process that runs a program, and has printed a line; it is killed in the end."""
+    with subprocess.Popen(
+        [sys.executable, "-c", PREAMBLE + program, *arguments],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    ) as running:
+        try:
+            assert running.stdout is not None
+            assert running.stdout.readline()
+            yield running
+        finally:
+            with suppress(ProcessLookupError):
+                running.kill()
+
+
+READER = """
+with session(listening(sys.argv[1])) as one:
+    reader = one.declare_subscriber("**", lambda _: None)
+    print("open", flush=True)
+    threading.Event().wait()
+"""
+"""A process that listens at an endpoint, and hears everything."""
+
+
+@contextmanager
+def frozen(running: subprocess.Popen[str]) -> Iterator[None]:
+    """The process stands still."""
+    os.kill(running.pid, signal.SIGSTOP)
+    try:
+        yield
+    finally:
+        os.kill(running.pid, signal.SIGCONT)
+
+
+def is_matched(publisher: zenoh.Publisher) -> bool:
+    """Return whether a publisher has subscribers."""
+    return bool(publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
+
+
+def stands_still(call: Callable[[], object], limit_s: float = 1.0) -> bool:
+    """Return whether a call takes longer than a limit; it goes on in a thread."""
+    thread = threading.Thread(target=suppressed(call), daemon=True)
+    thread.start()
+    thread.join(limit_s)
+    return thread.is_alive()
+
+
+def suppressed(call: Callable[[], object]) -> Callable[[], None]:
+    """Return a call that raises no error of Zenoh: its session may be closed meanwhile."""
+
+    def run() -> None:
+        with suppress(zenoh.ZError):
+            call()
+
+    return run
+
+
+def sockets() -> Iterator[tuple[int, int, socket.socket]]:
+    """Yield the TCP connections of this process: their ports here and there, and a duplicate."""
+    for path in Path("/proc/self/fd").iterdir():
+        with suppress(OSError), socket.socket(fileno=os.dup(int(path.name))) as one:
+            yield one.getsockname()[1], one.getpeername()[1], one
+
+
+def until(condition: Callable[[], object], limit_s: float = 4.0) -> bool:
+    """Wait until something is so; return whether it is."""
+    ends_s = time.perf_counter() + limit_s
+    while not condition():
+        if time.perf_counter() > ends_s:
+            return False
+        time.sleep(0.005)
+    return True
