@@ -6,7 +6,7 @@ import time
 
 from tests.zenoh_defects._support import endpoint, listening, process, session, until
 
-COUNT = 5000
+COUNT = 4000
 
 ANNOUNCES = """
 with session(dialling(sys.argv[1])) as one:
@@ -17,7 +17,7 @@ with session(dialling(sys.argv[1])) as one:
 
 
 def test_a_put_waits_while_tokens_are_dropped() -> None:
-    """20 ms for 1000 of them would be a lot; 5000 take 240 ms, and more with the square."""
+    """For 4000 of them it takes 150 ms, where as many changes need a tenth of that."""
     there = endpoint()
     changes: list[object] = []
     with session(listening(there)) as one:
@@ -31,5 +31,5 @@ def test_a_put_waits_while_tokens_are_dropped() -> None:
                 one.put("a", b"")
                 longest_s = max(longest_s, time.perf_counter() - began_s)
 
-        assert longest_s > 0.1
+        assert longest_s > 0.08
         watcher.undeclare()

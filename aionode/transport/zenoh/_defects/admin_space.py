@@ -7,7 +7,7 @@ Zenoh:
 Known as:
     https://github.com/eclipse-zenoh/zenoh/pull/2619
 Seen in:
-    1.7 (that request), 1.8 to 1.10.2
+    1.7 (that request), 1.8.0, 1.9.0, 1.10.2
 Mend:
     Routers of aionode have no admin space, and aionode asks no router for it:
     `_router_matching` learns from declarations alone.

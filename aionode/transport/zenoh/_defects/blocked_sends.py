@@ -10,7 +10,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.10.2 (`io/zenoh-transport/src/common/pipeline.rs`)
+    1.5.1, 1.8.0, 1.9.0, 1.10.2 (`io/zenoh-transport/src/common/pipeline.rs`)
 Mend:
     Each kind of sender has a priority of its own (`_handlers`), and the event loop puts with DROP
     only. A blocking send is given up before the lease of 10 s ends: by Zenoh, as `settings` say,

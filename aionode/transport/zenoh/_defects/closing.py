@@ -7,7 +7,7 @@ Zenoh:
 Known as:
     https://github.com/eclipse-zenoh/zenoh/issues/2675
 Seen in:
-    1.9 (that issue), 1.10.2
+    1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
 Mend:
     Such connections are cut: those that are seen before `close` by `cut_stuck`, and those that are
     made meanwhile by `cut_unanswered`. On Linux only: elsewhere `close` takes as long as Zenoh

@@ -8,7 +8,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.10, 1.10.2
+    1.8.0, 1.9.0, 1.10.2
 Mend:
     While others have announced more than `is_crowd` allows, the event loop puts nothing:
     `AnnouncedLimit` counts, and `_outlet`, `_peer_senders` and `_publisher` have threads put.

@@ -8,7 +8,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.7 to 1.10.2
+    1.8.0, 1.9.0, 1.10.2
 Mend:
     After the loss of a connection, the tokens that this session sees are compared with those that
     its introducer (a router, or the peer at a configured endpoint) sees: a look queries them. If

@@ -9,7 +9,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.10, 1.10.2
+    1.8.0, 1.9.0, 1.10.2
 Mend:
     Both timeouts are longer than connecting takes where many processes start at once.
 """

@@ -7,7 +7,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.10.2
+    1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
 Mend:
     A session is asked again while tokens that are known are missing (`tokens`). An answer that
     lacks them in the end counts for nothing (`forgotten_peers`, `_graph_watcher`).

@@ -7,7 +7,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.10.2
+    1.8.0, 1.9.0, 1.10.2
 Mend:
     `SocketOptions` switches SO_LINGER off soon after a connection was made: nothing is lost, as the
     system goes on sending. It sets the time limit of `blocked_sends` in the same call. On Linux

@@ -6,7 +6,7 @@ Zenoh:
 Known as:
     Not reported.
 Seen in:
-    1.10, 1.10.2
+    1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
 Mend:
     `refuse_scarcity` looks before a session is opened, and raises.
 """

@@ -7,7 +7,7 @@ Known as:
     https://github.com/eclipse-zenoh/zenoh/issues/2787,
     https://github.com/eclipse-zenoh/zenoh/issues/1700
 Seen in:
-    1.9 (the first), 1.10.2
+    1.8.0, 1.9.0, 1.10.2
 Mend:
     Zenoh's shared memory is off. Links have shared memory of their own; processes of other users
     cannot open Zenoh's, and ROS 2 nodes have it switched off.

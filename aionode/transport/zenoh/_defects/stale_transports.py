@@ -7,7 +7,7 @@ Zenoh:
 Known as:
     https://github.com/eclipse-zenoh/zenoh/issues/2806
 Seen in:
-    1.10.2
+    1.8.0, 1.9.0, 1.10.2
 Mend:
     A participant of aionode always has a token. If the tokens of one whose connection was made anew
     do not come, `StaleTransports` cuts its connections, so that Zenoh makes them anew.
