@@ -7,27 +7,20 @@ log messages to the node's event loop.
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from aionode import qos
-from aionode.errors import QueueFullError, RequestRefusedError
-from aionode.interfaces.rcl_interfaces.msg import (
-    Log,
-    LoggerLevel,
-    ParameterDescriptor,
-    ParameterEvent,
-    SetLoggerLevelsResult,
-)
+from aionode._node.log_services import LevelAnswers, log_message
+from aionode.errors import QueueFullError
+from aionode.interfaces.rcl_interfaces.msg import Log, ParameterDescriptor, ParameterEvent
 from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
-from aionode.logging import get_logger_level, set_logger_level_for_others
 from aionode.parameter import parameter_services
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from aionode._node.endpoints import NodeEndpoints
-    from aionode.clock import Clock
     from aionode.logging import LogEvent
     from aionode.parameter import ParameterStore
     from aionode.qos import QoSProfile
@@ -54,7 +47,7 @@ def publish_log(node: NodeEndpoints, profile: QoSProfile | int) -> Callable[[], 
         # Logging must not fail because a reader of the log is full.
         if not publisher.destroyed:
             with contextlib.suppress(QueueFullError):
-                publisher.publish(log_message(event, node.get_clock()))
+                publisher.publish(log_message(event, node.get_clock().now()))
 
     def sink(event: LogEvent) -> None:
         node._call_in_loop(lambda: publish(event))
@@ -62,68 +55,11 @@ def publish_log(node: NodeEndpoints, profile: QoSProfile | int) -> Callable[[], 
     return node.get_logger().add_sink(sink)
 
 
-def log_message(event: LogEvent, clock: Clock) -> Log:
-    """Return a logged event as a message, stamped with the node's time."""
-
-    def encodable(text: str) -> str:
-        return text.encode(errors="replace").decode()
-
-    return Log(
-        stamp=clock.now().to_msg(),
-        level=event.level,
-        name=encodable(event.name),
-        msg=encodable(event.msg),
-        file=encodable(event.file),
-        function=encodable(event.function),
-        line=event.line,
-    )
-
-
-MOST_LEVELS: Final = 1_000
-"""Maximum loggers in one request."""
-
-
-def refuse_many(loggers: Sequence[object]) -> None:
-    """Refuse a request about more loggers than any tool names.
-
-    Raises:
-        RequestRefusedError: there are more than `MOST_LEVELS`.
-    """
-    if len(loggers) > MOST_LEVELS:
-        raise RequestRefusedError(
-            f"the request has {len(loggers)} loggers, at most {MOST_LEVELS} fit; ask in several "
-            "requests"
-        )
-
-
 def serve_logger_levels(node: NodeEndpoints) -> None:
     """Serve the reading and setting of log levels in this process."""
-
-    def get_levels(
-        request: GetLoggerLevels.Request, response: GetLoggerLevels.Response
-    ) -> GetLoggerLevels.Response:
-        refuse_many(request.names)
-        response.levels = [
-            LoggerLevel(name=name, level=int(get_logger_level(name))) for name in request.names
-        ]
-        return response
-
-    def set_levels(
-        request: SetLoggerLevels.Request, response: SetLoggerLevels.Response
-    ) -> SetLoggerLevels.Response:
-        refuse_many(request.levels)
-        response.results = [set_level(wanted) for wanted in request.levels]
-        return response
-
-    def set_level(wanted: LoggerLevel) -> SetLoggerLevelsResult:
-        try:
-            set_logger_level_for_others(wanted.name, wanted.level)
-        except ValueError as error:
-            return SetLoggerLevelsResult(successful=False, reason=str(error))
-        return SetLoggerLevelsResult(successful=True)
-
-    node.create_service(GetLoggerLevels, "~/get_logger_levels", get_levels)
-    node.create_service(SetLoggerLevels, "~/set_logger_levels", set_levels)
+    answers = LevelAnswers()
+    node.create_service(GetLoggerLevels, "~/get_logger_levels", answers.get_levels)
+    node.create_service(SetLoggerLevels, "~/set_logger_levels", answers.set_levels)
 
 
 # Parameters

@@ -36,19 +36,21 @@ class ParameterService:
             node.create_service(
                 service.srv_type,
                 f"{name}/{service.name}",
-                unless_refused(service.callback, logger),
+                unless_refused(service.callback, logger, service.name),
                 qos_profile=qos_profile_parameters,
             )
 
 
-def unless_refused(callback: Callable[[Any, Any], Any], logger: Any) -> Callable[[Any, Any], Any]:
+def unless_refused(
+    callback: Callable[[Any, Any], Any], logger: Any, service_name: str
+) -> Callable[[Any, Any], Any]:
     """Return `callback`; a request that it refuses is logged, and gets an empty answer."""
 
     def answer(request: Any, response: Any) -> Any:
         try:
             return callback(request, response)
         except RequestRefusedError as error:  # it would come out of the program's spin()
-            logger.warning(f"Parameters: {error}")
+            logger.warning(f"{service_name}: {error}")
             return response
 
     return answer

@@ -13,7 +13,8 @@ from collections.abc import Callable
 from typing import Any
 
 import rclpy
-from rcl_interfaces.srv import ListParameters
+from rcl_interfaces.msg import Log, LoggerLevel
+from rcl_interfaces.srv import GetLoggerLevels, ListParameters, SetLoggerLevels
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import (
     get_action_client_names_and_types_by_node,
@@ -573,6 +574,34 @@ def questions_about_the_graph_check_names(trace: Trace) -> None:
     node.destroy_node()
     for what, question in questions.items():
         attempt(trace, f"{what}, destroyed", question)
+
+
+@scene
+def log_levels_are_read_and_set_by_others(trace: Trace) -> None:
+    node = Node("loud", enable_logger_service=True)
+    told: list[Any] = []
+    node.create_subscription(Log, "/rosout", told.append, 10)
+    get = node.create_client(GetLoggerLevels, "loud/get_logger_levels")
+    put = node.create_client(SetLoggerLevels, "loud/set_logger_levels")
+    get.wait_for_service(PATIENCE_S)
+    put.wait_for_service(PATIENCE_S)
+
+    def ask(client: Any, request: Any) -> Any:
+        future = client.call_async(request)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=PATIENCE_S)
+        return future.result()
+
+    wanted = [("loud", 10), ("loud", 99), ("quiet", 40), ("loud", 0), ("loud", 30)]
+    levels = [LoggerLevel(name=name, level=level) for name, level in wanted]
+    for result in ask(put, SetLoggerLevels.Request(levels=levels)).results:
+        trace("set", result.successful, result.reason)
+    for level in ask(get, GetLoggerLevels.Request(names=["loud", "unheard"])).levels:
+        trace("get", level.name, level.level)
+    trace("none", len(ask(get, GetLoggerLevels.Request()).levels))
+    node.get_logger().info("not published")
+    node.get_logger().warning("published")
+    until(lambda: told, lambda: spin(node))
+    trace("log", told[0].name, told[0].level, told[0].msg, told[0].function)
 
 
 @scene

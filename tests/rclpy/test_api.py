@@ -36,6 +36,7 @@ Clock = message_class("rosgraph_msgs/msg/Clock")
 String = message_class("std_msgs/msg/String")
 TimeMsg = message_class("builtin_interfaces/msg/Time")
 AddTwoInts = service_class("example_interfaces/srv/AddTwoInts")
+GetLoggerLevels = service_class("rcl_interfaces/srv/GetLoggerLevels")
 GetParameters = service_class("rcl_interfaces/srv/GetParameters")
 Fibonacci = action_class("example_interfaces/action/Fibonacci")
 
@@ -72,6 +73,18 @@ def test_few_lifespans_of_publishers_are_remembered() -> None:
         handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0))
 
     assert len(handle._lifespans) == REMEMBERED_PUBLISHERS
+
+
+@pytest.mark.usefixtures("initialised")
+def test_a_request_about_too_many_loggers_gets_an_empty_answer() -> None:
+    """Any node may send any number; the program's spin() goes on."""
+    node = rclpy.create_node("loud", enable_logger_service=True)
+    answers = {service.service_name: service.callback for service in node.services}
+    request = GetLoggerLevels.Request(names=["loud"] * 1001)
+
+    response = answers["/loud/get_logger_levels"](request, GetLoggerLevels.Response())
+
+    assert response.levels == []
 
 
 @pytest.mark.usefixtures("initialised")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode import errors, names
 from aionode._node.graph import NamesAndTypes, names_and_types_of
+from aionode._node.log_services import log_message
 from aionode.arguments import Arguments
 from aionode.bare_node import BareNode
 from aionode.clock import MachineTime, Time
@@ -228,13 +229,5 @@ def publish_log(
 ) -> None:
     """Publish one message of the log on ``/rosout``."""
     stamp_ns = system_ns()
-    log = Log(
-        stamp=Time(nanoseconds=stamp_ns).to_msg(),
-        level=event.level,
-        name=event.name.encode(errors="replace").decode(),
-        msg=event.msg.encode(errors="replace").decode(),
-        file=event.file.encode(errors="replace").decode(),
-        function=event.function,
-        line=event.line,
-    )
+    log = log_message(event, Time(nanoseconds=stamp_ns))
     post(partial(publisher.publish, log, stamp_ns))
