@@ -50,6 +50,10 @@ class Audit:
         self._second = 0
         self._refusals = 0
 
+    def use_file(self, path: str) -> None:
+        """Append to another file from now on, also what waits; empty for none."""
+        self._path = Path(path) if path else None
+
     def note(
         self,
         identity: Identity,

@@ -143,7 +143,13 @@ class Clients:
 
     def use_policy(self, policy: Policy) -> None:
         """Have another policy count from now on; what it does not allow any more is ended."""
+        log = self.node.get_logger()
+        if policy.tls != self._policy.tls:
+            log.warning("gateway: [tls] of the policy has changed; start the gateway again for it")
+        if policy.audit_file != self._policy.audit_file:
+            self.robot.audit.use_file(policy.audit_file)
+            log.info(f"gateway: the audit log goes to {policy.audit_file or 'no file'} from now on")
         self._policy = self.robot.policy = policy
         for session in list(self._sessions):
             session.check_again()
-        self.node.get_logger().info("gateway: the policy was read again")
+        log.info("gateway: the policy was read again")

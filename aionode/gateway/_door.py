@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, MutableMapping
+from ipaddress import ip_network
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from aionode.clock import S_TO_NS
 from aionode.errors import RefusedError
-from aionode.gateway._identity import check_browser, from_scope, take_token
+from aionode.gateway._identity import check_browser, from_scope, parsed_address, take_token
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import Clients
+    from aionode.gateway._identity import Credentials
 
 __all__ = ["Door"]
 
@@ -22,6 +25,16 @@ Send = Callable[[Message], Awaitable[None]]
 PUBLIC: Final = ("/page/",)
 """The files of the page: nothing of the robot is in them, and a page asks for them without a token.
 """
+
+MOST_WRONG: Final = 10
+"""How many wrong tokens may come from one place at once."""
+
+WRONG_NS: Final = S_TO_NS
+"""After how many nanoseconds one of them is forgotten."""
+
+MOST_PLACES: Final = 10_000
+
+IPV6_HOST_BITS: Final = 64
 
 HEADERS: Final = [
     (b"cross-origin-resource-policy", b"same-origin"),
@@ -54,6 +67,7 @@ class Door:
     def __init__(self, app: Any, gateway: Clients) -> None:
         self._app = app
         self._gateway = gateway
+        self._guesses = Guesses(gateway.robot.time_base.steady_ns)
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
         """Serve one request, or one WebSocket."""
@@ -71,7 +85,7 @@ class Door:
             if is_public(scope):
                 check_browser(credentials, policy.hosts, policy.page_origins)
             else:
-                policy.identify(credentials)
+                self._check(credentials)
             scope["aionode.credentials"] = credentials
             limited = limit_body(scope, receive, policy.limits.frame_bytes)
             await self._app(scope, limited, answer)
@@ -79,6 +93,64 @@ class Door:
             self._gateway.note_refusal(credentials, error)
             if not answer.has_begun:
                 await refuse(scope, answer, error)
+
+    def _check(self, credentials: Credentials) -> None:
+        """Refuse a client that the policy does not know.
+
+        Raises:
+            RefusedError: it does not, or too many wrong tokens came from where the client is.
+        """
+        if credentials.token:
+            self._guesses.check(credentials.address)
+        try:
+            self._gateway.policy.identify(credentials)
+        except RefusedError:
+            if credentials.token:
+                self._guesses.note_wrong(credentials.address)
+            raise
+
+
+class Guesses:
+    """Bounds how often tokens are tried: so many from one place at once, and then one a second.
+
+    Right tokens of that place have to wait as well, or an attacker would see at once which is
+    right. Clients that are connected stay so.
+
+    Args:
+        now_ns: The steady clock, in nanoseconds.
+    """
+
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        self._now_ns = now_ns
+        self._free_ns: dict[str, int] = {}  # when a place has no wrong tokens left, by place
+
+    def check(self, address: str) -> None:
+        """Refuse a token if too many wrong ones came from where it comes from.
+
+        Raises:
+            RefusedError: there were too many; its code is ``too_fast``.
+        """
+        ahead_ns = self._free_ns.get(place_of(address), 0) - self._now_ns()
+        if ahead_ns > (MOST_WRONG - 1) * WRONG_NS:
+            raise RefusedError(
+                f"client of {address}", "too many wrong tokens came from there; wait", "too_fast"
+            )
+
+    def note_wrong(self, address: str) -> None:
+        """Take that a token was wrong."""
+        now_ns, place = self._now_ns(), place_of(address)
+        free_ns = max(self._free_ns.pop(place, 0), now_ns) + WRONG_NS
+        if len(self._free_ns) >= MOST_PLACES:
+            del self._free_ns[next(iter(self._free_ns))]  # from where none came for longest
+        self._free_ns[place] = free_ns
+
+
+def place_of(address: str) -> str:
+    """Return where an address is: one host may have all those of an IPv6 network."""
+    parsed = parsed_address(address)
+    if parsed is None or parsed.version == 4:
+        return str(parsed or address)
+    return str(ip_network((parsed, IPV6_HOST_BITS), strict=False))
 
 
 def is_public(scope: Message) -> bool:
@@ -162,6 +234,8 @@ async def refuse(scope: Message, send: Send, error: RefusedError) -> None:
     headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
     if error.code == "unauthorized":
         headers.append((b"www-authenticate", b'Bearer realm="aionode"'))
+    if error.code == "too_fast":
+        headers.append((b"retry-after", b"1"))
     status = STATUS[error.code]
     await send({"type": f"{kind}.start", "status": status, "headers": headers})
     await send({"type": f"{kind}.body", "body": body})

@@ -16,6 +16,9 @@ __all__ = ["Credentials", "Identity", "check_browser", "from_scope", "take_token
 TOKEN_PROTOCOL: Final = "bearer."  # noqa: S105  # what stands before one
 """Before the token, among the subprotocols of a WebSocket: browsers can set no header there."""
 
+FORWARDED: Final = frozenset({"forwarded", "via", "x-real-ip"})
+"""Headers that proxies add, beside those that begin with ``x-forwarded-``."""
+
 SAME_SITES: Final = frozenset({"", "none", "same-origin"})
 """The values of Sec-Fetch-Site of a request that no page of another origin has made."""
 
@@ -45,6 +48,7 @@ class Credentials(msgspec.Struct, frozen=True):
         host: The ``Host`` header: by which name the client knows the gateway.
         sec_fetch_site: How the page and the gateway are related, as the browser says.
         scheme: ``http`` or ``https``.
+        is_forwarded: Whether a proxy has passed the request on, as its headers say.
     """
 
     address: str
@@ -54,6 +58,7 @@ class Credentials(msgspec.Struct, frozen=True):
     host: str = ""
     sec_fetch_site: str = ""
     scheme: str = "http"
+    is_forwarded: bool = False
 
     def __repr__(self) -> str:
         secret = "token=…, " if self.token else ""
@@ -61,9 +66,9 @@ class Credentials(msgspec.Struct, frozen=True):
 
     @property
     def is_loopback(self) -> bool:
-        """Whether the client runs on this host."""
+        """Whether the client runs on this host: a proxy there may speak for anybody."""
         address = parsed_address(self.address)
-        return address is not None and address.is_loopback
+        return address is not None and address.is_loopback and not self.is_forwarded
 
 
 def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
@@ -83,6 +88,7 @@ def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
         host=headers.get("host", ""),
         sec_fetch_site=headers.get("sec-fetch-site", ""),
         scheme={"ws": "http", "wss": "https"}.get(scope["scheme"], scope["scheme"]),
+        is_forwarded=any(name in FORWARDED or name.startswith("x-forwarded-") for name in headers),
     )
 
 

@@ -67,9 +67,24 @@ class Server(uvicorn.Server):
         yield
 
     async def startup(self, sockets: Any = None) -> None:
-        """Listen, and tell who waits for it."""
-        await super().startup(sockets)
+        """Listen, and tell who waits for it.
+
+        uvicorn would give a client a minute for the handshake of TLS, before it counts as one.
+        """
+        await super().startup([])
+        limits: dict[str, Any] = {}
+        if self.config.ssl is not None:
+            limits["ssl_handshake_timeout"] = self.config.policy().limits.handshake_sec
+            limits["ssl_shutdown_timeout"] = GOODBYE_SEC
+        for listener in sockets or ():
+            server = await asyncio.get_running_loop().create_server(
+                self._connection, sock=listener, ssl=self.config.ssl, **limits
+            )
+            self.servers.append(server)
         self.has_started.set()
+
+    def _connection(self) -> HttpConnection:
+        return HttpConnection(self.config, self.server_state, self.lifespan.state)
 
     def stop(self) -> None:
         """Have `serve` disconnect the clients and return."""

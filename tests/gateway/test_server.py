@@ -20,6 +20,7 @@ from websockets.typing import Origin
 from aionode.context import Context
 from aionode.errors import ConfigurationError, RefusedError
 from aionode.gateway import Gateway, Identity, Policy
+from aionode.gateway._door import Guesses
 from aionode.gateway._gateway import paced
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
@@ -158,11 +159,108 @@ async def test_an_address_that_a_client_claims_is_not_believed() -> None:
     claimed = {"x-forwarded-for": "203.0.113.9"}
     async with (
         serving(Policy.parse(POLICY)) as gateway,
-        raw_connect(gateway, "/", claimed, []),
+        raw_connect(gateway, f"/?token={TOKEN}", claimed, []),
     ):
         await until(lambda: gateway.stats.sessions)
         (session,) = gateway._sessions
         assert session.identity.address == "127.0.0.1"
+
+
+FORWARDED = (
+    {"forwarded": "for=203.0.113.9"},
+    {"X-Forwarded-For": "127.0.0.1"},
+    {"x-forwarded-proto": "https"},
+    {"X-Real-IP": "203.0.113.9"},
+    {"via": "1.1 proxy"},
+)
+
+
+@pytest.mark.parametrize("headers", FORWARDED, ids=lambda headers: next(iter(headers)))
+async def test_a_client_behind_a_proxy_is_not_of_this_machine(headers: dict[str, str]) -> None:
+    """The proxy is, and speaks for everybody that reaches it: only a token tells them apart."""
+    async with serving(Policy.parse(POLICY)) as gateway:
+        assert (await get(gateway)).status_code == 200
+        assert (await get(gateway, headers=headers)).status_code == 401
+        known = {**headers, "authorization": f"Bearer {TOKEN}"}
+        assert (await get(gateway, headers=known)).status_code == 200
+        for protocols in ([], ["foxglove.sdk.v1"]):
+            with pytest.raises(InvalidStatus, match="401"):
+                async with raw_connect(gateway, "/", headers, protocols):
+                    pass
+            async with raw_connect(gateway, "/", known, protocols):
+                pass
+
+
+TRIES: tuple[tuple[str, dict[str, str], list[str] | None], ...] = (
+    ("/topics", {"authorization": "Bearer wrong"}, None),
+    ("/topics?token=wrong", {}, None),
+    ("/nothing?token=wrong", {}, None),
+    ("/", {"authorization": "Bearer wrong"}, []),
+    ("/ws?token=wrong", {}, []),
+    ("/", {}, ["bearer.wrong"]),
+    ("/", {}, ["foxglove.sdk.v1", "bearer.wrong"]),
+)
+
+
+async def status_of(
+    gateway: Gateway, path: str, headers: dict[str, str], protocols: list[str] | None
+) -> int:
+    """Return the status with which a request is answered, or the beginning of a WebSocket."""
+    if protocols is None:
+        return (await get(gateway, path, headers)).status_code
+    try:
+        async with raw_connect(gateway, path, headers, protocols):
+            return 101
+    except InvalidStatus as refused:
+        return refused.response.status_code
+
+
+@pytest.mark.parametrize("first", range(len(TRIES)))
+async def test_tokens_are_tried_so_often_and_no_more(
+    first: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever the way in: then not even the right one counts, as its answer would tell it."""
+    monkeypatch.setattr("aionode.gateway._door.WRONG_NS", 10**15)  # the test may take some seconds
+    right = {"authorization": f"Bearer {TOKEN}"}
+    async with (
+        serving(Policy.parse(POLICY)) as gateway,
+        raw_connect(gateway, "/", right, []) as connected,
+    ):
+        for _ in range(10):
+            assert await status_of(gateway, *TRIES[first]) == 401
+        for each in TRIES:
+            assert await status_of(gateway, *each) == 429
+        assert await status_of(gateway, "/topics", right, None) == 429
+        assert (await get(gateway)).status_code == 200  # who needs no token is no guesser
+        await connected.send(json.dumps({"op": "call_service", "service": "/rosapi/get_time"}))
+        assert json.loads(await connected.recv())["op"] == "service_response"
+
+
+def test_one_more_token_is_judged_each_second() -> None:
+    """From each place; and the memory of places is bounded."""
+    now_ns = 0
+    guesses = Guesses(lambda: now_ns)
+
+    def judged(address: str, tries: int = 100) -> int:
+        found = 0
+        for _ in range(tries):
+            with contextlib.suppress(RefusedError):
+                guesses.check(address)
+                guesses.note_wrong(address)
+                found += 1
+        return found
+
+    assert judged("192.0.2.1") == 10
+    assert judged("192.0.2.2") == 10
+    assert judged("2001:db8::1", 6) + judged("2001:db8::2") == 10  # one host has both
+    assert judged("2001:db8:0:1::1") == 10
+    now_ns += 3 * 10**9
+    assert judged("192.0.2.1") == 3
+    now_ns += 3600 * 10**9
+    assert judged("192.0.2.1") == 10
+    for number in range(20_000):
+        guesses.note_wrong(f"10.0.{number >> 8}.{number & 255}")
+    assert len(guesses._free_ns) <= 10_000
 
 
 async def test_what_is_too_large_is_refused() -> None:
@@ -300,6 +398,34 @@ async def test_a_policy_file_is_read_again(tmp_path: Path) -> None:
         path.write_text("[[who]]\nname = 'operator'\ntoken = 'x'")
         gateway._reread(str(path))
         await until(lambda: not gateway.stats.sessions)
+
+
+async def test_what_a_changed_policy_file_cannot_change_is_said(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The audit log goes on in another file, new WebSockets have the new limit; TLS waits."""
+    path = tmp_path / "policy.toml"
+    logs = [tmp_path / "one", tmp_path / "two"]
+    path.write_text(f"audit_file = '{logs[0]}'\n{POLICY}\n[limits]\nframe_bytes = 5000")
+    async with serving(Policy.load(path)) as gateway:
+        await get(gateway, headers={"origin": "null"})
+        await until(logs[0].exists)
+        path.write_text(
+            f"audit_file = '{logs[1]}'\n{POLICY}\n[limits]\nframe_bytes = 1000\n"
+            "[tls]\ncertificate = 'c'\nkey = 'k'"
+        )
+        with caplog.at_level(logging.INFO):
+            gateway._reread(str(path))
+        await get(gateway, headers={"origin": "null"})
+        await until(lambda: logs[1].exists() and logs[1].read_text())
+        async with raw_connect(gateway, "/", {}, []) as websocket:
+            await websocket.send("x" * 2000)
+            with pytest.raises(ConnectionClosed):
+                await websocket.recv()
+        await until(lambda: not gateway.stats.sessions)
+    assert len(logs[0].read_text().splitlines()) == 1
+    assert "[tls] of the policy has changed; start the gateway again" in caplog.text
+    assert f"audit log goes to {logs[1]}" in caplog.text
 
 
 async def test_a_program_has_sessions_of_its_own() -> None:
