@@ -33,28 +33,28 @@ MAX_SIZE: Final = 4096
 """Longer filters, as text, are not announced, nor taken from others."""
 
 KIND: Final = "filter/2/"
-"""What the token of a filter has after the participant: a word, and the version of its form."""
+"""The part of a filter's token after the participant: a word, and the version of its form."""
 
 CHUNKS: Final = 3
-"""What follows: the topic as in tokens of ROS, the gid of the subscription, and the filter."""
+"""Number of chunks after that: topic as in tokens of ROS, gid of the subscription, filter."""
 
 MAX_FILTERS: Final = 2_000
-"""How many announced filters are known at most, of all other contexts: 8 MB of text."""
+"""Number of announced filters at most, of all other contexts: 8 MB of text."""
 
 MAX_FILTERS_PER_CONTEXT: Final = 1_000
-"""How many of them one context may have: it must not take the place of all others."""
+"""Number of filters of one context at most: it must not take the place of all others."""
 
 MAX_FILTERS_PER_READER: Final = 4
-"""How many of them one subscription may have; it has two while it changes its filter."""
+"""Number of filters of one subscription at most; it has two while it changes its filter."""
 
 MAX_APPLIED: Final = 100
-"""How many filters one publisher applies; with more, every subscription gets everything."""
+"""Number of filters that one publisher applies; with more, every subscription gets everything."""
 
 WORK_PER_MESSAGE: Final = 200_000
-"""How much work the filters of others may cost for one message, in units of about a nanosecond."""
+"""Work of others' filters for one message at most, in units of about a nanosecond."""
 
 MESSAGES_UNFILTERED: Final = 100
-"""How many messages go to everyone after one whose filters cost too much."""
+"""Number of messages that go to everyone after one whose filters cost too much."""
 
 
 def text_of_filter(content_filter: ContentFilterOptions) -> str:

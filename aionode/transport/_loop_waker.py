@@ -31,10 +31,10 @@ T = TypeVar("T")
 
 
 SLICE_ITEMS = 32
-"""How many items of one queue are handled before it is the next queue's turn."""
+"""Number of items of one queue that are handled before it is the next queue's turn."""
 
 UNMEASURED: Final = 8
-"""How many messages wait at least, whatever their size."""
+"""Number of messages that may wait whatever their size."""
 
 KEPT_LIMIT: Final = 64
 """In how many of Zenoh's threads the thread state is kept. Those that receive are few, and last as

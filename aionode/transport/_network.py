@@ -58,7 +58,7 @@ SOUGHT: Final = "1"
 
 
 class DiscoveryRange(enum.Enum):
-    """How far a context looks for others by itself."""
+    """The range in which a context looks for others by itself."""
 
     OFF = "OFF"
     """It finds no other context, and none finds it."""
@@ -71,13 +71,13 @@ class DiscoveryRange(enum.Enum):
 
 
 QUEUE_BYTES: Final = 32 << 20
-"""How many bytes of messages wait in one queue, unless the context says otherwise."""
+"""Bytes of messages that wait in one queue, unless the context says otherwise."""
 
 QUEUE_BYTES_VARIABLE: Final = "AIONODE_QUEUE_BYTES"
 """The environment variable that says otherwise."""
 
 GRAPH_BYTES: Final = 64 << 20
-"""How many bytes of what other processes announce are kept, unless the context says otherwise."""
+"""Bytes of other processes' announcements that are kept, unless the context says otherwise."""
 
 GRAPH_BYTES_VARIABLE: Final = "AIONODE_GRAPH_BYTES"
 """The environment variable that says otherwise."""

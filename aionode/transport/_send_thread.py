@@ -24,14 +24,14 @@ __all__ = ["SendQueue", "SendThread", "start_thread"]
 Job = Callable[[], None]
 
 EXIT_S: Final = 1.0
-"""How long the process waits at exit for threads that are sending."""
+"""Time for which the process waits at exit for threads that are sending, in seconds."""
 
 INSIDE_S: Final = 2.0
-"""How long it waits for other threads. Closing a session may take a second on a busy machine, and
-beside a frozen peer far longer than anybody would wait."""
+"""Time for which it waits for other threads, in seconds. Closing a session may take a second on a
+busy machine, and beside a frozen peer far longer than anybody would wait."""
 
 started: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
-"""What `start_thread` has started, for `end_all`."""
+"""The threads that `start_thread` has started, for `end_all`."""
 
 
 def start_thread(thread: threading.Thread) -> bool:

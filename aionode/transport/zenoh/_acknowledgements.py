@@ -5,8 +5,8 @@ reader. Reliable publishers and subscriptions of aionode use acknowledgements in
 that of their topic, which ROS nodes neither subscribe nor publish to. A context that supports them
 declares a token; readers in other contexts depend on Zenoh (`_publisher`).
 
-A submessage counts only for endpoints of the topic on whose key it came: whoever may publish on one
-topic speaks for no other.
+A submessage counts only for endpoints of the topic on whose key it came: a process that may publish
+on one topic speaks for no other.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ PROBE_S: Final = 1.0
 """The interval of `probe` for publishers that have to know whether their readers answer."""
 
 LIMIT: Final = 20_000
-"""How many submessages wait for the loop; those that are dropped will be repeated."""
+"""Number of submessages that wait for the loop; those that are dropped are repeated."""
 
 
 GONE: Final = 1_000
@@ -51,7 +51,7 @@ GONE: Final = 1_000
 may still be there, and they may come back."""
 
 LONGEST_ID: Final = 32
-"""How many characters the id of a Zenoh session has at most."""
+"""Number of characters that the id of a Zenoh session has at most."""
 
 
 class StatefulWriter(Protocol):

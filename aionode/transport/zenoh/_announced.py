@@ -1,4 +1,4 @@
-"""How much is kept of what other contexts announce: nodes, endpoints, filters, links."""
+"""Limits of the tokens of other contexts that are kept: nodes, endpoints, filters, links."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ __all__ = ["AnnouncedLimit"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 TOKEN_BYTES: Final = 2_000
-"""What a token counts besides its text, approximately: an endpoint in the graph takes as much."""
+"""Bytes that a token counts besides its text, approximately: an endpoint in the graph takes as
+much."""
 
 SHARE: Final = 8
 """One participant may have an eighth of it all."""
 
 RESERVED_BYTES: Final = 256_000
-"""So much of each connected participant is kept whatever others announce: 100 endpoints. Whoever
-fills the graph under invented names puts nobody out who is there."""
+"""Bytes of each connected participant that are kept whatever others announce: 100 endpoints. A
+process that fills the graph under invented names displaces no participant that is there."""
 
 
 class AnnouncedLimit:

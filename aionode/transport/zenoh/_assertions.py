@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["Assertions"]
 
 LIMIT = 10_000
-"""How many assertions wait for the loop; then the oldest are lost, as newer ones have come."""
+"""Number of assertions that wait for the loop; of more, the oldest are lost."""
 
 GID_SIZE = 16
 

@@ -39,14 +39,15 @@ __all__ = ["BridgeWatcher"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 ANSWER_S: Final = 2.0
-"""How long a bridge may take to answer; it takes a millisecond, but does so in its main task."""
+"""Timeout for a bridge's answer, in seconds; it takes a millisecond, but in the bridge's main
+task."""
 
 AGAIN_S: Final = (0.05, 0.1, 0.2, 0.5, 1.0, 1.0, 1.0, 1.0)
 """After how long a bridge that did not answer is asked again: it announces itself before it has
 joined DDS, and answers only after that."""
 
 NODE_NAME: Final = "zenoh_bridge_ros2dds"
-"""What a bridge calls its own node on DDS; it stands for the nodes that are not known."""
+"""The name of a bridge's own node on DDS, which stands for the nodes that are not known."""
 
 NODE_SERVICES: Final = frozenset(
     {
@@ -105,7 +106,7 @@ class BridgeWatcher:
         self._bridges: dict[str, Bridge] = {}
         # Bridges that have not answered yet where their keys are.
         self._asked: dict[str, asyncio.Future[None]] = {}
-        # How many endpoints there are of each node; a node without one is not known any more.
+        # Number of endpoints of each node; a node without any is not known any more.
         self._users: dict[NodeInfo, int] = {}
         self._next_id = 0
 

@@ -1,4 +1,4 @@
-"""What our endpoints share on the keys of bridges: names, tokens, and when they are declared."""
+"""The state that our endpoints share on the keys of bridges: names, tokens, declarations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands for our endpoints until the first bridge is seen, and costs nothing."""
+"""Placeholders for our endpoints until the first bridge is seen, which cost nothing."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class WriterStub(Stub[Writer], Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped on their way."""
+        """Number of messages that were dropped on their way."""
         return 0 if self.made is None else self.made.dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:
@@ -118,7 +118,7 @@ class RequesterStub(Stub[Requester], Requester):
 
     @property
     def servers(self) -> int:
-        """How many servers behind bridges are matched."""
+        """Number of matched servers behind bridges."""
         return 0 if self.made is None else self.made.servers
 
     @property

@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["Cancellations"]
 
 LIMIT = 1_000
-"""How many cancellations wait for the loop; they only save work, so the oldest may be lost."""
+"""Number of cancellations that wait for the loop; they only save work, so the oldest may be
+lost."""
 
 
 class Cancellations:

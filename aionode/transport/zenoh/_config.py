@@ -1,6 +1,6 @@
-"""What each session of Zenoh needs: a configuration, and where it dials; and looks.
+"""The configuration of Zenoh's sessions, the endpoints that they dial, and looks.
 
-A look is a session that is open for some milliseconds, to see what is to be seen at one endpoint.
+A look is a session that is open for some milliseconds, to read the tokens that one endpoint sees.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def is_look(zid: str) -> bool:
 
 
 def open_look(network: Network, endpoint: str, mode: str = "client") -> zenoh.Session:
-    """Open a session that sees what is to be seen at one endpoint.
+    """Open a session that is connected with one endpoint only.
 
     Raises:
         ConfigurationError: the settings of the context cannot be used.

@@ -43,13 +43,13 @@ BULK_BYTES = 60_000
 """From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
 
 FLUSH_NS = int(FLUSH_S * 1e9)
-"""How long a destroyed publisher waits for acknowledgements while there is progress."""
+"""Time for which a destroyed publisher waits for acknowledgements while there is progress."""
 
 STILL_NS = 500_000_000
-"""How long it waits without progress."""
+"""Time for which it waits without progress."""
 
 GIVEN_UP_NS = BLOCK_US * 900
-"""A send that took so long was given up by Zenoh."""
+"""Duration from which on a send was given up by Zenoh."""
 
 BLOCK = zenoh.CongestionControl.BLOCK
 

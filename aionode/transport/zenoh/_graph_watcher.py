@@ -26,28 +26,29 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 
 CHECK_S: Final = 2.0
-"""How long the tokens may take to come; it takes a millisecond."""
+"""Timeout for the tokens of others, in seconds; they take a millisecond."""
 
 ATTEMPTS: Final = 5
-"""How often it is asked for them if an answer lacks those of this context."""
+"""Number of queries for tokens while answers lack those of this context."""
 
 ANSWER_S: Final = 60.0
-"""How long Zenoh waits for the tokens of all peers; a frozen one is cut long before."""
+"""Time for which Zenoh waits for the tokens of all peers, in seconds; a frozen peer is cut long
+before."""
 
 EXPECTED_NS: Final = 2_000_000_000
 """How long nodes of this domain are expected, in which other domains are not told of."""
 
 NAMED: Final = 5
-"""How many other domains are named in the log."""
+"""Number of other domains that are named in the log."""
 
 MAX_FOREIGN: Final = 100
-"""How many other domains are remembered, and how many tokens of each."""
+"""Number of other domains that are remembered, and of tokens of each."""
 
 FILL_S: Final = 5.0
 """How long it takes at most until what was left out has the place of what has gone."""
 
 SHOWN: Final = 200
-"""How many characters of something unknown are shown."""
+"""Number of characters of an unknown text that are shown."""
 
 
 def participant_of(key: str) -> str:

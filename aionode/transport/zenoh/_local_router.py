@@ -40,12 +40,12 @@ ROUTER_IDS: Final = "a10de20c"
 """The prefix of the ids of such routers."""
 
 LINKED_S: Final = 1.0
-"""How long `open` waits for the first static peer, which may be absent."""
+"""Time for which `open` waits for the first static peer, in seconds; the peer may be absent."""
 
 LINKED_POLL_S: Final = 0.005
 
 TREES_S: Final = 0.25
-"""How long routers take to exchange what is behind them; Zenoh waits 0.1 s by itself."""
+"""Time that routers take to exchange their tokens, in seconds; Zenoh waits 0.1 s by itself."""
 
 TAKE_OVER_S: Final = 0.3
 """Within this time after a router of another process has ended, this one opens its own."""

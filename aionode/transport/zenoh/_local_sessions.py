@@ -3,7 +3,7 @@
 Each session that other processes may dial connects a UDP socket, which sends nothing: the remote
 address says which sessions it meets, and the remote port is that on which Zenoh listens.
 ``/proc/net/udp`` lists these sockets, so that a session knows all others before it is opened, and
-dials them. They belong to a network namespace, as loopback does: whoever is listed can be dialled,
+dials them. They belong to a network namespace, as loopback does: a listed session can be dialled,
 whatever user or container it belongs to. A socket ends with its process, however that ends.
 
 Unix sockets with abstract names would do as well, but ``/proc/net/unix`` lists all connections too:

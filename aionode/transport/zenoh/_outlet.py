@@ -1,4 +1,4 @@
-"""Where the event loop puts what is no message: acknowledgements, assertions, cancellations."""
+"""The way of acknowledgements, assertions and cancellations out of the event loop."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ if TYPE_CHECKING:
 __all__ = ["Outlet"]
 
 LIMIT: Final = 10_000
-"""How many puts wait for the thread; of each kind the newest count, so the oldest may be lost."""
+"""Number of puts that wait for the thread; of each kind the newest count, so the oldest may be
+lost."""
 
 
 class Outlet:

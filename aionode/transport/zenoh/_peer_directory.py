@@ -41,7 +41,7 @@ LINKS: Final = "links"
 """The end of the key on which a context tells which others it is linked with, one in each line."""
 
 LINKS_S: Final = 0.5
-"""How long `link_status` waits for replies; they take a millisecond."""
+"""Time for which `link_status` waits for replies, in seconds; they take a millisecond."""
 
 
 class ZenohPeerDirectory:

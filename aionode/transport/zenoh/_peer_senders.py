@@ -25,26 +25,26 @@ if TYPE_CHECKING:
 __all__ = ["PeerSenders"]
 
 ALLOWANCE_BYTES: Final = 128 * 1024
-"""How much the loop sends to a peer that shows no sign of life: less than Zenoh's queue holds."""
+"""Bytes that the loop sends to a peer without a sign of life: fewer than Zenoh's queue holds."""
 
 OVERHEAD_BYTES: Final = 512
-"""What a request or reply takes besides its payload, approximately: its key and headers."""
+"""Bytes that a request or reply takes besides its payload, approximately: its key and headers."""
 
 UNSEEN_BYTES: Final = 256 * 1024
-"""How much a thread sends before it looks again whether the peer takes it; with what the loop has
-sent less than Zenoh's queue holds."""
+"""Bytes that a thread sends before it looks again whether the peer takes them; with those of the
+loop fewer than Zenoh's queue holds."""
 
 LOOK_S: Final = 0.05
-"""The interval of looks while it does not."""
+"""The interval of looks while the peer takes nothing, in seconds."""
 
 MOST_THREADS: Final = 200
-"""How many peers have a thread of their own at once; the others share `SHARED` of them. Whoever
-announces thousands of contexts that read nothing starts no more."""
+"""Number of peers that have a thread of their own at once; the others share `SHARED` threads. A
+process that announces thousands of contexts which read nothing starts no more."""
 
 SHARED: Final = 8
 
 REMEMBERED: Final = 1_000
-"""How many peers are remembered before idle ones are dropped."""
+"""Number of peers that are remembered before idle ones are dropped."""
 
 
 class PeerSender:

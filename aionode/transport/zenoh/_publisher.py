@@ -306,8 +306,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(self)
         self._progress()
-        # What is published while a reader is away is sent again. A subscriber without a token may
-        # match too; beside readers that acknowledge, none is known.
+        # Messages that are published while a reader is away are sent again. A subscriber without a
+        # token may match too; beside readers that acknowledge, none is known.
         self.active = self.active or bool(history.readers)
         history.has_other_readers = bool(self._matched.others) or not history.readers
         self._update_route()
@@ -570,12 +570,12 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     @property
     def dropped(self) -> int:
-        """How many messages are known to have been dropped on the way."""
+        """Number of messages that are known to have been dropped on the way."""
         return self._dropped
 
     @property
     def filtered(self) -> int:
-        """How many messages were not sent, as no reader wants them."""
+        """Number of messages that were not sent, as no reader wants them."""
         return self._filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:

@@ -41,16 +41,16 @@ __all__ = [
 ]
 
 WINDOW_BYTES: Final = 512 * 1024
-"""How much a writer sends ahead of a reader's acknowledgement."""
+"""Bytes that a writer sends ahead of a reader's acknowledgement."""
 
 WINDOW_MESSAGES: Final = 4
-"""How many messages may be unacknowledged whatever their size."""
+"""Number of messages that may be unacknowledged whatever their size."""
 
 OVERHEAD_BYTES: Final = 128
-"""What a message takes besides its payload, approximately."""
+"""Bytes that a message takes besides its payload, approximately."""
 
 RESEND_BYTES: Final = 128 * 1024
-"""How much is sent again for one acknowledgement."""
+"""Bytes that are sent again for one acknowledgement."""
 
 RESEND_NS: Final = 50_000_000
 """A message is not sent again more often than this, as the last copy may still be on its way."""
@@ -71,10 +71,10 @@ FLAPPING_NS: Final = 10_000_000_000
 """A reader that vanishes within this time after its return is waited for as long again."""
 
 RETURN_NS: Final = 120_000_000_000
-"""How long messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
+"""Time for which messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
 
 LOST_RANGES: Final = 16
-"""How many ranges of reported losses are remembered before acknowledged ones are dropped."""
+"""Number of ranges of reported losses that are remembered before acknowledged ones are dropped."""
 
 UNANSWERED_EACH_TICK: Final = 10
 """So many readers that have never answered are asked at once, the others later: whoever announces

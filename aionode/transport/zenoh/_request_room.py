@@ -1,4 +1,4 @@
-"""How many bytes of requests from other contexts may be here at once."""
+"""The room for requests from other contexts, in bytes."""
 
 from __future__ import annotations
 

@@ -37,18 +37,18 @@ __all__ = ["RouterMatching"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 SETTLE_S: Final = 1.0
-"""How long after the first question the session is opened.
+"""Delay of the session after the first question, in seconds.
 
-What ends sooner, such as a command, costs the router nothing.
+A process that ends sooner, such as a command, costs the router nothing.
 """
 
 AGAIN_S: Final = 1.0
-"""How long after a failure another attempt is made; twice as long after each further one."""
+"""Delay of the next attempt after a failure, in seconds; it doubles with each further failure."""
 
 LAST_AGAIN_S: Final = 30.0
 
 ANSWER_S: Final = 2.0
-"""How long the router may take to answer that it has handled what was declared."""
+"""Timeout for the router's answer that it has handled all declarations, in seconds."""
 
 FENCE: Final = "@aionode/fence"
 """A token that does not exist. The answer that there is none comes after those before it."""

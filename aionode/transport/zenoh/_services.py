@@ -54,7 +54,7 @@ The token of a server can be seen shortly before requests find their way to it. 
 AT_ONCE_NS = 50_000_000
 
 ARRIVING_REQUESTS = 50_000
-"""How many requests wait for the loop at most, before the service counts and refuses them.
+"""Number of requests that wait for the loop at most, before the service counts and refuses them.
 """
 
 UNANNOUNCED = 8
@@ -267,7 +267,7 @@ class ZenohRequest(Request):
         self._query = query
         self._server = server
         self._id = (sample_info.gid, sample_info.sequence)
-        # Who sends no attachment has no number either; then the object itself is unique.
+        # A request without an attachment has no number either; then the object itself is unique.
         if self._id in server.unanswered or sample_info.gid == UNKNOWN_GID:
             self._id = (sample_info.gid, id(self))
         server.unanswered[self._id] = self
@@ -357,7 +357,7 @@ class ZenohRequester(Declaration, Requester):
 
     @property
     def servers(self) -> int:
-        """How many servers of other contexts are matched."""
+        """Number of matched servers of other contexts."""
         return len(self._matched())
 
     def tell_cancelled(self, sequence: int) -> None:

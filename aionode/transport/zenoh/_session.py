@@ -51,26 +51,27 @@ logger = logging.getLogger("aionode.transport.zenoh")
 T = TypeVar("T")
 
 PROBE_S = 0.2
-"""How long a port on this machine may take to accept a connection; it takes 0.1 ms."""
+"""Timeout for a port on this machine to accept a connection, in seconds; it takes 0.1 ms."""
 
 SPEAK_S = 2.0
-"""How long a program may take to answer Zenoh's first message; it takes a millisecond.
+"""Timeout for an answer to Zenoh's first message, in seconds; it takes a millisecond.
 
 A process of aionode may take longer where many start at once. Other programs mostly answer or close
 the connection at once.
 """
 
 FIRST_LINK_S = 1.0
-"""How long `open` waits for the first peer that accepts connections; a frozen one never answers."""
+"""Time for which `open` waits for the first peer that accepts connections, in seconds; a frozen
+peer never answers."""
 
 NEXT_LINK_S = 0.3
-"""How long it waits for each further one."""
+"""Time for which `open` waits for each further peer, in seconds."""
 
 QUIET_S = 0.015
 """All peers are taken to be connected after so long without a new one."""
 
 CLOSE_S = 0.8
-"""How long `close` may take. With a frozen peer it goes on in a thread."""
+"""Limit of the time that `close` takes, in seconds. With a frozen peer it goes on in a thread."""
 
 
 INIT: Final = 1

@@ -1,4 +1,4 @@
-"""What all entities of one context share: the session, its declarations, threads and queues."""
+"""The state that all entities of one context share: session, declarations, threads and queues."""
 
 from __future__ import annotations
 
@@ -50,10 +50,11 @@ BURST_NS: Final = 10_000_000
 """So much in so many nanoseconds reaches every peer that is alive: a quarter of the queue."""
 
 CALM_S: Final = 5.0
-"""How long threads go on with what the loop would put after a crowd has gone."""
+"""Time for which threads go on putting instead of the loop after a crowd has gone, in seconds."""
 
 BULK_FLUSH_S: Final = 0.15
-"""How long `flush` waits for large messages, which may be dropped, and for single contexts."""
+"""Time for which `flush` waits for large messages, which may be dropped, and for single contexts,
+in seconds."""
 
 
 class ReaderListener(Protocol):
@@ -173,7 +174,7 @@ class SessionState:
         self._declarations: dict[Declaration, None] = {}
         self._graph_is_known = False
 
-    # What endpoints are called, and whom they reach: here as rmw_zenoh has it.
+    # The names of endpoints, and the endpoints that they reach: here as in rmw_zenoh.
 
     def names_of(self, endpoint: EndpointInfo, backends: str = "") -> EndpointNames:
         """Return the names of one of our endpoints.

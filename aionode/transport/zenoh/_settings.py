@@ -33,26 +33,27 @@ __all__ = [
 EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET
 
 FLUSH_S: Final = 2.0
-"""How long the end of a context waits for reliable messages, while their readers make progress."""
+"""Time for which the end of a context waits for reliable messages, in seconds, while their readers
+make progress."""
 
 BATCHES: Final = 16
-"""How many batches of 64 kB wait for a peer that is busy, of each priority in `BURSTING`."""
+"""Number of batches of 64 kB that wait for a busy peer, of each priority in `BURSTING`."""
 
 BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
 """The priorities of what the loop sends, tokens, requests and replies, messages, and that of
 messages which late readers get, too."""
 
 INTRODUCERS: Final = 4
-"""How many of the sessions that a machine lists tell all others by gossip of sessions that are not
-listed, such as those of other programs. One is too few: Zenoh drops what it hears on a connection
-that it is just taking into use. With all of them a hundred would send half a million messages.
+"""Number of listed sessions that tell all others by gossip of sessions that are not listed, such as
+those of other programs. One is too few: Zenoh drops gossip on a connection that it is just taking
+into use. With all of them a hundred would send half a million messages.
 """
 
 LEASE_MS: Final = 10_000
-"""After so long without a sign of a process its peers take it for dead."""
+"""Time without a sign of a process after which its peers take it for dead, in milliseconds."""
 
 LEASE_MS_EACH: Final = 500
-"""So much longer for each process that was there when it started.
+"""Addition to `LEASE_MS` for each process that was there when the session started, in milliseconds.
 
 Where a hundred start at once, each is silent for more than ten seconds while it is connected with
 the others. Those that give it up connect anew, and all of it takes longer still.
@@ -63,7 +64,7 @@ MOST_LEASE_MS: Final = 60_000
 processes."""
 
 RETRY: Final = {"period_init_ms": 100, "period_max_ms": 2000, "period_increase_factor": 2}
-"""How often what does not answer is dialled again."""
+"""Intervals at which an endpoint that does not answer is dialled again."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ instance waits for, and how: Zenoh's runtime does that as Python's event loops d
 
 On Linux only: nothing is found elsewhere, or where ``/proc`` is hidden.
 
-What a socket tells: how much its peer has taken, and how much has come. Zenoh says neither.
+A socket tells how many bytes its peer has taken, and how many have come. Zenoh says neither.
 """
 
 from __future__ import annotations

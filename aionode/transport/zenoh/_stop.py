@@ -35,7 +35,7 @@ what does not fit into its queue, and tells nobody.
 
 
 class StoppableWriter(Protocol):
-    """What the stop of a lease needs of a `ZenohWriter`, with that one's meaning."""
+    """The members of a `ZenohWriter` that the stop of a lease needs."""
 
     gid: bytes
     active: bool

@@ -1,4 +1,4 @@
-"""What a reliable publisher sends to single readers: heartbeats, gaps, and messages once more."""
+"""Heartbeats, gaps and repeated messages, which a reliable publisher sends to single readers."""
 
 from __future__ import annotations
 

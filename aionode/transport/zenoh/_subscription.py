@@ -48,7 +48,7 @@ BACKLOG = 10_000
 """At least so many small messages wait for the loop before the oldest are dropped."""
 
 KEEP_ALL_ARRIVING = 100_000
-"""How many messages for a KEEP_ALL subscription wait for a loop that is stalled."""
+"""Number of messages for a KEEP_ALL subscription that wait for a stalled loop."""
 
 WINDOWS = 8
 """So many times as much as otherwise waits for room in a KEEP_ALL subscription from publishers with
@@ -58,7 +58,7 @@ SPAN = 1_000
 """At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
 
 REMEMBERED_WRITERS = 1_024
-"""How many publishers a subscription remembers the state of."""
+"""Number of publishers whose state a subscription remembers."""
 
 GONE_TICKS = 300
 """After so many ticks, 15 s, the messages of a publisher that is not in the graph will not come.

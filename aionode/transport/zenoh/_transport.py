@@ -54,16 +54,17 @@ if TYPE_CHECKING:
 __all__ = ["ZenohTransport"]
 
 KNOWN_S = 0.3
-"""How long `open` waits for the graph of connected peers; it takes a millisecond."""
+"""Time for which `open` waits for the graph of connected peers, in seconds; it takes a
+millisecond."""
 
 LOOK_AGAIN_S = 0.2
-"""How often it is looked which of the nodes that are waited for still exist, and what arrives."""
+"""The interval at which expected nodes and arriving bytes are looked at, in seconds."""
 
 TOKEN_BYTES = 100
 """About the least that announces an endpoint; signs that a peer is alive are a few bytes."""
 
 NAMED_NS = 10_000_000_000
-"""How long, in nanoseconds, a peer that others name is waited for while tokens of more arrive."""
+"""Time for which a peer that others name is waited for while more tokens arrive, in nanoseconds."""
 
 
 class ZenohTransport(Transport):
@@ -112,7 +113,7 @@ class ZenohTransport(Transport):
 
     @property
     def malformed(self) -> Counter[str]:
-        """How many samples in no known form came from the network, for each key."""
+        """Number of samples in no known form that came from the network, for each key."""
         return self._state.malformed
 
     @property

@@ -1,7 +1,7 @@
-"""Turns: what the processes of one machine do one after another when they start together.
+"""Turns: processes that start together take their ports and connect one after another.
 
-Who has bound a UDP port of loopback has the turn that it stands for. Unlike a lock file it belongs
-to no user, and ends with its process, however that ends.
+A process takes a turn by binding the loopback UDP port that stands for it. Unlike a lock file the
+port belongs to no user, and is free as soon as its process has ended, however that ends.
 """
 
 from __future__ import annotations
@@ -26,22 +26,24 @@ if TYPE_CHECKING:
 __all__ = ["connecting", "one_at_a_time"]
 
 TURN_S: Final = 3.0
-"""How long a process waits for one that has the turn and does not go on."""
+"""Time for which a process waits for one that has the turn and does not go on, in seconds."""
 
 FOREIGN_TURN_S: Final = 0.3
-"""How long it waits while another user's process has the turn, which may keep it on purpose."""
+"""Time for which a process waits while another user's process has the turn, in seconds: that
+process may keep the turn on purpose."""
 
 FIRST_POLL_S: Final = 0.002
-"""The first interval at which a process looks whether it is its turn."""
+"""The first interval at which a process tries to take a turn, in seconds."""
 
 POLL_GROWTH: Final = 1.5
-"""How much longer the next one is: the more wait, the longer each does, and one looks soon."""
+"""Growth of that interval: the more processes wait, the longer each waits, and some try soon."""
 
 LAST_POLL_S: Final = 0.03
-"""The longest interval for a place in the list of sessions, which takes a millisecond."""
+"""The longest interval for a place in the list of sessions, in seconds; a turn takes a
+millisecond."""
 
 LAST_CONNECTING_POLL_S: Final = 0.5
-"""The longest interval for connecting, which takes up to a second."""
+"""The longest interval for connecting, in seconds; a turn takes up to a second."""
 
 LOAD: Final = Path("/proc/loadavg")
 """Says how many threads of this machine run or could run."""
@@ -98,7 +100,7 @@ async def connecting(network: Network) -> AsyncIterator[None]:
 
 
 class Patience:
-    """How long a process waits for one of some turns.
+    """The time for which a process waits for one of some turns.
 
     Attributes:
         is_foreign: Whether processes of other users have all of them.

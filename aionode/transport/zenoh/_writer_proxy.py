@@ -31,20 +31,20 @@ ACK_BYTES: Final = 64 * 1024
 """A reader acknowledges unasked after so many bytes."""
 
 ACK_OVERHEAD_BYTES: Final = 256
-"""What each message counts besides its payload: 256 messages without any make one acknowledgement,
-and a writer's window is more than ten times that."""
+"""Bytes that each message counts besides its payload: 256 messages without any make one
+acknowledgement, and a writer's window is more than ten times that."""
 
 NACK_NS: Final = 5_000_000
 """A reader asks for missing messages no more often than this, unless it gets a heartbeat."""
 
 MAX_HELD: Final = 10_000
-"""How many messages a reader holds while earlier ones are missing; more will be sent again."""
+"""Number of messages that a reader holds while earlier ones are missing; more are sent again."""
 
 HELD_BYTES: Final = 2 * WINDOW_BYTES
-"""How many bytes it holds: a writer sends a window ahead, and may send it again."""
+"""Bytes that a reader holds: a writer sends a window ahead, and may send it again."""
 
 MAX_GAPS: Final = 1_000
-"""How many gaps a reader notes ahead of the next message; it asks again for more."""
+"""Number of gaps that a reader notes ahead of the next message; it asks again for more."""
 
 BELIEVED: Final = WINDOW_BYTES // OVERHEAD_BYTES
 """How many messages beyond those that have come a HEARTBEAT or GAP is believed: a full window of
@@ -257,7 +257,7 @@ class WriterProxy:
         return True
 
     def _may_hold(self, size: int) -> bool:
-        """Return whether one more message can be held; what is not will be sent again."""
+        """Return whether one more message can be held; a message that is not is sent again."""
         count = len(self._held)
         return count < WINDOW_MESSAGES or (
             count < MAX_HELD and self._held_bytes + size <= HELD_BYTES

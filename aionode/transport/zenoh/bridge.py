@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 __all__ = ["BridgeTransport"]
 
 KNOWN_S = 0.3
-"""How long `open` waits for the graph of connected bridges; it takes a millisecond."""
+"""Time for which `open` waits for the graph of connected bridges, in seconds; it takes a
+millisecond."""
 
 
 class Unannounced(Registration):

@@ -7,7 +7,7 @@ and fails when Zenoh no longer does it: ``make zenoh-defects``. Then the mend ca
 
 ``AIONODE_ZENOH_UNMENDED=closing,lingering`` switches the mends of these modules off.
 
-What Zenoh does as it says is no defect, though aionode has to live with it: DROP drops without a
-word (`_acknowledgements`), a router carries nothing between its peers (`_local_router`,
+Behaviour that Zenoh documents is no defect, though aionode has to live with it: DROP drops without
+a word (`_acknowledgements`), a router carries nothing between its peers (`_local_router`,
 `_router_matching`), gossip tells all of all (`_local_sessions`, `_turns`).
 """

@@ -28,11 +28,12 @@ from aionode.transport.zenoh._defects._switch import is_mended
 __all__ = ["BLOCK_US", "settings", "unread_ms"]
 
 BLOCK_US: Final = 7_000_000
-"""How long a blocking send waits for a peer, in microseconds, before the connection is ended."""
+"""Time for which a blocking send waits for a peer before the connection is ended, in
+microseconds."""
 
 UNREAD_MS: Final = BLOCK_US // 1000
-"""After so long in which the peer has read nothing, though there is something to read, a connection
-within this machine is lost, whichever thread waits for it."""
+"""Time in which a peer reads nothing, though there is something to read, after which a connection
+within this machine is lost, in milliseconds; whichever thread waits for the peer."""
 
 
 def settings() -> dict[str, object]:

@@ -45,13 +45,14 @@ INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
 """The families of connections between hosts."""
 
 STUCK_S: Final = 0.1
-"""A peer that reads not one byte for so long, while some wait, is not waited for."""
+"""Time in which a peer reads not one byte, while some wait, after which it is not waited for, in
+seconds."""
 
 RESET: Final = struct.pack("ii", 1, 0)
-"""SO_LINGER for a connection that is cut: what was not taken is dropped."""
+"""SO_LINGER for a connection that is cut: bytes that the peer has not taken are dropped."""
 
 ESTABLISHED: Final = 1
-"""How its first byte says that both ends are connected."""
+"""The first byte of ``struct tcp_info`` while both ends are connected."""
 
 FIRST_BYTES: Final = 2048
 """Zenoh sends 34 bytes before it waits for an answer, and TLS less than this."""

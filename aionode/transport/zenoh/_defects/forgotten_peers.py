@@ -51,31 +51,32 @@ __all__ = ["REMEMBERED", "Recovery", "nodes_at_introducer"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 FIRST_S: Final = 0.5
-"""The first look is so long after a connection was lost or made; Zenoh needs milliseconds."""
+"""Delay of the first look after a connection was lost or made, in seconds; Zenoh needs
+milliseconds."""
 
 POSTPONED_S: Final = 3.0
-"""How long connections that go on being made or lost may postpone a look."""
+"""Time for which connections that go on being made or lost may postpone a look, in seconds."""
 
 AGAIN_S: Final = 3.0
-"""The interval of further looks: a process that was frozen returns without a sign."""
+"""The interval of further looks, in seconds: a process that was frozen returns without a sign."""
 
 WATCH_S: Final = 120.0
-"""How long looks are repeated after the most recent loss of a connection."""
+"""Time for which looks are repeated after the most recent loss of a connection, in seconds."""
 
 SURE_S: Final = 0.3
-"""How long a participant must be missing. One that is starting is, for some milliseconds."""
+"""Time for which a participant must be missing, in seconds; a starting one is for milliseconds."""
 
 NODES_S: Final = 3.0
 """The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
 
 REMEMBERED: Final = 10_000
-"""How many lost sessions are remembered: others may open and close any number."""
+"""Number of lost sessions that are remembered: others may open and close any number."""
 
 ATTEMPTS: Final = 4
-"""How often the connection is cut for one participant; some are visible, but not reachable."""
+"""Number of cuts for one participant; some participants are visible, but not reachable."""
 
 CHECKS: Final = 3
-"""How often the graph is compared after connections have come or gone."""
+"""Number of comparisons of the graph after connections have come or gone."""
 
 
 class Introducer(NamedTuple):
@@ -117,7 +118,7 @@ class Recovery:
         self._lost: set[str] = set()
         # Those that were missing in the last look; used by its thread only.
         self._suspected: set[str] = set()
-        # How often the connection was cut for each missing participant.
+        # Number of cuts for each missing participant.
         self._attempts: dict[str, int] = {}
 
     def start(self, session: zenoh.Session) -> None:

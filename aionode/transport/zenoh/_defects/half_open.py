@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["settings"]
 
 OPEN_MS: Final = 30_000
-"""How long making a connection may take, in milliseconds."""
+"""Limit of the time that making a connection takes, in milliseconds."""
 
 FAR_OPEN_MS: Final = 3_000
 """The same where other machines may be dialled: `close` waits for one that is switched off."""

@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 __all__ = ["ANSWER_S", "tokens"]
 
 ANSWER_S: Final = 1.0
-"""How long the query for tokens may take; it takes a millisecond."""
+"""Timeout of a query for tokens, in seconds; it takes a millisecond."""
 
 ANSWERS: Final = 20
-"""How often a session is asked at most whose answer lacks tokens that are known."""
+"""Number of queries at most while answers lack known tokens."""
 
 ANSWERS_S: Final = 0.2
-"""For how long it is asked again; each answer takes a millisecond or two."""
+"""Time for which a session is asked again, in seconds; each answer takes a millisecond or two."""
 
 
 def tokens(
@@ -56,7 +56,7 @@ def tokens(
         timeout_s: How long each answer may take.
 
     Raises:
-        TimeoutError: an answer was not complete in time; what is missing in it may well be there.
+        TimeoutError: an answer was not complete in time; tokens that it lacks may exist.
     """
     found: set[str] = set()
     ends_ns = perf_ns() + int(ANSWERS_S * 1e9)

@@ -37,10 +37,11 @@ if TYPE_CHECKING:
 __all__ = ["SocketOptions"]
 
 UNREACHABLE_MS: Final = 5_000
-"""After so long without any answer to what was sent, a connection to another machine is lost."""
+"""Time without any acknowledgement of sent bytes after which a connection to another machine is
+lost, in milliseconds."""
 
 SETTLE_S: Final = 0.5
-"""How long after a new connection its socket is looked for; several are made at once."""
+"""Delay of the search for sockets after a new connection, in seconds; several are made at once."""
 
 
 class SocketOptions:

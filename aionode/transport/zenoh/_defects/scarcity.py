@@ -27,13 +27,13 @@ DESCRIPTORS: Final = Path("/proc/self/fd")
 PIDS_MAX: Final = Path("/sys/fs/cgroup/pids.max")
 
 NEEDED_DESCRIPTORS: Final = 24
-"""How many a session opens, and some for its first connections."""
+"""Number of descriptors that a session opens, with some for its first connections."""
 
 NEEDED_THREADS: Final = 16
-"""How many threads a session starts, and some for what it sends."""
+"""Number of threads that a session starts, with some for sending."""
 
 MANY: Final = 4096
-"""A limit from here on is that of a usual system, where one process does not meet it."""
+"""Limit from which on one process of a usual system does not meet it."""
 
 
 def refuse_scarcity() -> None:

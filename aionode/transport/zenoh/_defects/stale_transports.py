@@ -40,13 +40,14 @@ __all__ = ["StaleTransports"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 DECLARED_S: Final = 1.0
-"""How long after a participant has returned its tokens may take; they take some milliseconds."""
+"""Time for the tokens of a participant that has returned, in seconds; they take some
+milliseconds."""
 
 PEERS_PER_SECOND: Final = 20
-"""Tokens may take a second for each so many connected peers: all of these may have returned."""
+"""Number of connected peers for each of which tokens may take a second: all may have returned."""
 
 FEW: Final = 3
-"""If more participants than that have declared nothing, they may be slow, and have more time."""
+"""Number of participants without tokens from which on they may be slow, and have more time."""
 
 
 class StaleTransports:
@@ -69,7 +70,7 @@ class StaleTransports:
         self._lost: set[str] = set()
         # Participants whose connection was made anew, until it is known that they have declared.
         self._returned: set[str] = set()
-        # How often the connection to each participant was cut that declared nothing.
+        # Number of cuts of the connection to each participant that declared nothing.
         self._cuts: Counter[str] = Counter()
 
     def start(self, session: zenoh.Session) -> None:
