@@ -12,8 +12,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from aionode._first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
@@ -85,25 +86,4 @@ PLACES = {
 }
 """The module of each public name, imported on first use: few programs need all of them."""
 
-
-def __getattr__(name: str) -> Any:
-    """Import a public name on first use.
-
-    Raises:
-        AttributeError: there is no such name.
-        ImportError: the extra ``bag`` is not installed.
-    """
-    if name not in PLACES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    try:
-        value = getattr(import_module(f"{__name__}.{PLACES[name]}"), name)
-    except ModuleNotFoundError as error:
-        if (error.name or "").startswith("aionode"):
-            raise
-        missing = (error.name or "a module").partition(".")[0]
-        raise ModuleNotFoundError(
-            f"aionode.bag: {missing} is not installed; pip install 'aionode[bag]'",
-            name=error.name,
-        ) from error
-    globals()[name] = value
-    return value
+__getattr__ = imported_on_first_use(__name__, PLACES, "bag")

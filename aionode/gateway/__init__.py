@@ -13,8 +13,9 @@ them may do is said in one file; see `Policy`.
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
+
+from aionode._first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import GatewayStats
@@ -60,27 +61,6 @@ PLACES: Final = {
     "Session": "_session",
     "typescript": "_typescript",
 }
-"""The module of each public name that is not in that of the policy."""
+"""The module of each public name that is not in that of the policy, which needs no web server."""
 
-
-def __getattr__(name: str) -> Any:
-    """Import a public name on first use: a policy needs no web server.
-
-    Raises:
-        AttributeError: there is no such name.
-        ImportError: the extra ``gateway`` is not installed.
-    """
-    if name not in __all__:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    try:
-        value = getattr(import_module(f"{__name__}.{PLACES.get(name, '_policy')}"), name)
-    except ModuleNotFoundError as error:
-        if (error.name or "").startswith("aionode"):
-            raise
-        missing = (error.name or "a module").partition(".")[0]
-        raise ModuleNotFoundError(
-            f"aionode.gateway: {missing} is not installed; pip install 'aionode[gateway]'",
-            name=error.name,
-        ) from error
-    globals()[name] = value
-    return value
+__getattr__ = imported_on_first_use(__name__, dict.fromkeys(__all__, "_policy") | PLACES, "gateway")
