@@ -19,7 +19,7 @@
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make tf-differential TF2=<folder>   transforms beside those of geometry2's sources, compiled here
-#   make rosbridge-clients   roslib of npm and roslibpy talk to the gateway: needs node and npm
+#   make rosbridge-clients   roslib of npm, in Node and in Chromium, and roslibpy talk to the gateway: needs node and npm
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make system-stress   fifty processes that are killed, hang and print; a hundred starts and stops
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow

@@ -60,6 +60,7 @@ PROCESSES = (
     "tests/processes/",
     "tests/faults/",
     "tests/attacks/",
+    "tests/gateway/test_foreign_page.py",
     "tests/gateway/test_page.py",
     "tests/system/",
     "tests/launch/test_running.py",

@@ -63,7 +63,7 @@ class Page:
             raise AssertionError(f"{expression}: {answer['exceptionDetails']}")
         return answer["result"].get("value")
 
-    async def until(self, expression: str) -> Any:
+    async def until(self, expression: str, patience_sec: float = 20.0) -> Any:
         """Wait until an expression is true, and return its value."""
         looking = (
             "new Promise(done => { const look = () => { let found;"
@@ -71,11 +71,11 @@ class Page:
             "found ? done(found) : setTimeout(look, 20); }; look(); })"
         )
         try:
-            async with asyncio.timeout(20):
+            async with asyncio.timeout(patience_sec):
                 return await self.value(looking)
         except TimeoutError:
             text = await self.value("document.body?.innerText")
-            raise AssertionError(f"not true for 20 s: {expression}\n{text}") from None
+            raise AssertionError(f"not true for {patience_sec:g} s: {expression}\n{text}") from None
 
     async def text(self, selector: str) -> str:
         """Return the text of an element."""

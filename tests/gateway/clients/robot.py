@@ -1,6 +1,7 @@
 """A robot for clients of rosbridge: topics, services, an action and parameters, and a gateway.
 
-Run it as ``python tests/gateway/clients/robot.py PORT``. Everything is allowed, on this host only.
+Run it as ``python tests/gateway/clients/robot.py PORT [ORIGIN...]``. Everything is allowed, on this
+host only; pages of these origins may connect.
 """
 
 from __future__ import annotations
@@ -8,6 +9,8 @@ from __future__ import annotations
 import asyncio
 import sys
 from typing import Any
+
+import msgspec
 
 from aionode import Context, Node
 from aionode.action import ActionServer, CancelResponse, ServerGoalHandle
@@ -50,9 +53,9 @@ class AddTwoIntsServer(Node):
         return Fibonacci.Result(sequence=sequence)
 
 
-async def main(port: int) -> None:
+async def main(port: int, origins: list[str]) -> None:
     """Serve until the process is ended."""
-    policy = Policy.default(allow_write=True)
+    policy = msgspec.structs.replace(Policy.default(allow_write=True), origins=origins)
     async with (
         Context(transport="local") as context,
         AddTwoIntsServer(context),
@@ -65,4 +68,4 @@ async def main(port: int) -> None:
 
 
 if __name__ == "__main__":
-    asyncio.run(main(int(sys.argv[1])))
+    asyncio.run(main(int(sys.argv[1]), sys.argv[2:]))

@@ -1,14 +1,40 @@
-// What pages do with roslib 2, beside a robot of robot.py:
-//   node roslib_checks.mjs PORT path/to/node_modules/roslib/dist/RosLib.js
-import assert from "node:assert/strict";
-import { resolve } from "node:path";
-import { pathToFileURL } from "node:url";
-
-const [port, library] = process.argv.slice(2);
-const ROSLIB = await import(pathToFileURL(resolve(library)));
+// What pages do with roslib 2, beside a robot of robot.py. Node runs it by roslib_node.mjs, and a
+// browser by roslib_page.html.
 const FIBONACCI = "example_interfaces/action/Fibonacci";
 
-const ros = new ROSLIB.Ros({ url: `ws://localhost:${port}` });
+const assert = {
+  ok(value, text = "it is not so") {
+    if (!value) throw new Error(text);
+  },
+  equal(value, wanted) {
+    assert.ok(value === wanted, `${value} is not ${wanted}`);
+  },
+  deepEqual(value, wanted) {
+    assert.equal(JSON.stringify(value), JSON.stringify(wanted)); // where NaN is null
+  },
+  async rejects(promise, pattern = /./) {
+    const error = await promise.then(() => null, (reason) => reason);
+    assert.ok(error && pattern.test(String(error)), `it is not rejected for ${pattern}: ${error}`);
+  },
+};
+
+/** Run all checks on a robot, and return those that failed, with the reasons. */
+export async function run(ROSLIB, url, say = () => undefined) {
+  const ros = new ROSLIB.Ros({ url });
+  const failed = {};
+  for (const [name, check] of Object.entries(checks(ROSLIB, ros))) {
+    try {
+      await check();
+      say(`ok      ${name}`);
+    } catch (error) {
+      failed[name] = String(error.stack);
+      say(`FAILED  ${name}: ${error.stack}`);
+    }
+  }
+  ros.close();
+  return failed;
+}
+
 const once = (make, what) =>
   new Promise((done, failed) => {
     const timer = setTimeout(() => failed(new Error(`${what}: no answer in 10 s`)), 10000);
@@ -17,7 +43,7 @@ const once = (make, what) =>
       (error) => (clearTimeout(timer), failed(new Error(`${what}: ${error}`))),
     );
   });
-const checks = {
+const checks = (ROSLIB, ros) => ({
   "topics in every compression": async () => {
     for (const compression of ["none", "png", "cbor"]) {
       const topic = new ROSLIB.Topic({ ros, name: "/listener", messageType: "std_msgs/String", compression });
@@ -116,16 +142,4 @@ const checks = {
     const type = await once((done, failed) => ros.getServiceType("/add_two_ints", done, failed), "type");
     assert.equal(type, "example_interfaces/srv/AddTwoInts");
   },
-};
-
-let failures = 0;
-for (const [name, check] of Object.entries(checks)) {
-  try {
-    await check();
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    failures += 1;
-    console.log(`FAILED  ${name}: ${error.stack}`);
-  }
-}
-process.exit(failures ? 1 : 0);
+});

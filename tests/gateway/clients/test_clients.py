@@ -10,21 +10,34 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
+from tests.support.chromium import CHROMIUM, chromium
+from tests.support.web_server import web_server
+
 HERE = Path(__file__).parent
+
+
+@contextmanager
+def robot_process(*origins: str) -> Iterator[str]:
+    """Yield the port of a robot's gateway, in a process of its own."""
+    command = [sys.executable, str(HERE / "robot.py"), "0", *origins]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as robot:
+        assert robot.stdout is not None
+        try:
+            yield robot.stdout.readline().strip()
+        finally:
+            robot.terminate()
 
 
 @pytest.fixture
 def port() -> Iterator[str]:
-    """Yield the port of a robot's gateway, in a process of its own."""
-    command = [sys.executable, str(HERE / "robot.py"), "0"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as robot:
-        assert robot.stdout is not None
-        yield robot.stdout.readline().strip()
-        robot.terminate()
+    """Yield the port of a robot's gateway."""
+    with robot_process() as port:
+        yield port
 
 
 def given(variable: str) -> str:
@@ -48,8 +61,25 @@ def roslibpy() -> str:
 
 
 def test_roslib_of_npm(roslib: str, port: str) -> None:
-    """Pages use this library."""
-    subprocess.run(["node", HERE / "roslib_checks.mjs", port, roslib], check=True, timeout=50)
+    """Programs of Node use this library."""
+    subprocess.run(["node", HERE / "roslib_node.mjs", port, roslib], check=True, timeout=50)
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+async def test_roslib_of_npm_in_a_browser(roslib: str) -> None:
+    """Pages use this library: here one of another origin, which the policy lists."""
+    modules = next(each for each in Path(roslib).parents if each.name == "node_modules")
+    files = {
+        "/page": HERE / "roslib_page.html",
+        "/roslib_checks.mjs": HERE / "roslib_checks.mjs",
+        "/node_modules/": modules,
+    }
+    async with web_server(files) as web, chromium() as browser:
+        with robot_process(f"http://localhost:{web}") as port:
+            page = await browser.open(f"http://localhost:{web}/page?port={port}")
+            failed = await page.until("window.failed", patience_sec=50)
+
+    assert failed == {}, "\n".join(failed.values())
 
 
 def test_roslibpy(roslibpy: str, port: str) -> None:
