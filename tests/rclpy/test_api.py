@@ -17,13 +17,17 @@ from aionode import rclpy
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
+from aionode.message import SerializedMessage
 from aionode.rclpy._impl.topics import SubscriptionHandle
 from aionode.rclpy._rosidl import action_class, message_class, service_class
 from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
+from aionode.rclpy.duration import Duration
 from aionode.rclpy.executors import SingleThreadedExecutor
 from aionode.rclpy.experimental.asyncio import AsyncNode
 from aionode.rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from aionode.rclpy.parameter import Parameter
+from aionode.rclpy.qos import QoSProfile
+from aionode.rclpy.serialization import serialize_message
 from aionode.rclpy.task import Future
 from aionode.transport.base import SampleInfo
 from tests.support.peers import isolated_environment
@@ -70,9 +74,29 @@ def test_few_lifespans_of_publishers_are_remembered() -> None:
     handle: Any = object.__new__(SubscriptionHandle)
     handle._lifespans, handle.io = {}, SimpleNamespace(call=lambda *_: 0)
     for number in range(5000):
-        handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0))
+        handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0), 0)
 
     assert len(handle._lifespans) == REMEMBERED_PUBLISHERS
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.parametrize("stamp_ns", [0, 2**62])
+def test_a_message_whose_stamp_says_nothing_lives_from_its_arrival_on(stamp_ns: int) -> None:
+    """As DDS says: its publisher gives no stamp, or its clock is ahead."""
+    node = rclpy.create_node("lifespan")
+    subscription = node.create_subscription(String, "lifespan", print, 10)
+    profile = QoSProfile(depth=1, lifespan=Duration(seconds=60))
+    publisher = node.create_publisher(String, "lifespan", profile).handle.endpoint
+    data = SerializedMessage(serialize_message(String(data="here")))
+    inbox = subscription.handle.inbox
+    now_ns = node.get_clock().now().nanoseconds
+
+    inbox.deliver(data, publisher.gid, 1, stamp_ns, arrived_ns=now_ns - 61 * 10**9)
+    inbox.deliver(data, publisher.gid, 2, stamp_ns, arrived_ns=now_ns)
+
+    taken = subscription.handle.take_message(String, raw=False)
+    assert taken is not None
+    assert taken[1]["publication_sequence_number"] == 2
 
 
 @pytest.mark.usefixtures("initialised")

@@ -8,10 +8,23 @@ from typing import TYPE_CHECKING, Any, Final
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["NEVER_NS", "ExpiringItems"]
+__all__ = ["NEVER_NS", "ExpiringItems", "expires_ns"]
 
 NEVER_NS: Final = 1 << 63
 """When a message without a lifespan expires."""
+
+
+def expires_ns(source_ns: int, arrived_ns: int, limit_ns: int) -> int:
+    """Return when a message expires, in nanoseconds since 1970.
+
+    Args:
+        source_ns: When it was published, by the clock of its publisher; 0 if nothing says so.
+        arrived_ns: When it arrived.
+        limit_ns: Its lifespan.
+    """
+    # A stamp of the future is from a clock that is not synchronized with this one. DDS says to take
+    # the time of arrival then, and there is no other without a stamp.
+    return (source_ns if 0 < source_ns <= arrived_ns else arrived_ns) + limit_ns
 
 
 class ExpiringItems(deque[tuple[int, Any]]):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
-from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
+from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems, expires_ns
 from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (
@@ -223,12 +223,8 @@ class SubscriptionMonitor(EventHub):
             items.next_expires_ns = NEVER_NS
             return True
         now_ns = self._now_ns()
-        # A stamp of the future is from a clock that is not synchronized with this one. DDS says to
-        # take the time of arrival then, and there is no other without a stamp.
         arrived_ns = sample_info.arrived_ns or now_ns
-        source_ns = sample_info.source_ns
-        sent_ns = source_ns if 0 < source_ns <= arrived_ns else arrived_ns
-        items.next_expires_ns = sent_ns + limit_ns
+        items.next_expires_ns = expires_ns(sample_info.source_ns, arrived_ns, limit_ns)
         if items.next_expires_ns <= now_ns:
             self._reader.stats.expired += 1
             return False

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
+from aionode.endpoints._qos.lifespan import expires_ns
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.destroyable import Destroyable
@@ -344,7 +345,9 @@ class SubscriptionHandle(Destroyable):
             if inbox.room_waiters:
                 self.io.post(inbox.tell_of_room)
             # 0 for the messages of most publishers, which do not expire.
-            if self._lifespans.get(sample_info.gid) != 0 and self._has_expired(sample_info):
+            if self._lifespans.get(sample_info.gid) != 0 and self._has_expired(
+                sample_info, arrived_ns
+            ):
                 continue
             message = data
             if not raw:
@@ -378,7 +381,7 @@ class SubscriptionHandle(Destroyable):
             self._complained = True
             logger.warning("%s: not a message of this type: %s", self.endpoint.name, error)
 
-    def _has_expired(self, sample_info: SampleInfo) -> bool:
+    def _has_expired(self, sample_info: SampleInfo, arrived_ns: int) -> bool:
         """Whether the lifespan that the publisher gave its messages has passed."""
         lifespan_ns = self._lifespans.get(sample_info.gid)
         if lifespan_ns is None:
@@ -386,7 +389,9 @@ class SubscriptionHandle(Destroyable):
             if len(self._lifespans) >= REMEMBERED_PUBLISHERS:
                 del self._lifespans[next(iter(self._lifespans))]
             self._lifespans[sample_info.gid] = lifespan_ns
-        return bool(lifespan_ns) and now_ns() - sample_info.source_ns > lifespan_ns
+        if not lifespan_ns:
+            return False
+        return expires_ns(sample_info.source_ns, arrived_ns, lifespan_ns) <= now_ns()
 
     def _lifespan_of(self, gid: bytes) -> int:
         for publisher in self.bare.matched():
