@@ -284,8 +284,8 @@ class Stream(Response):
         self._first = first
         self._alive = alive
 
-    async def __call__(self, _scope: Scope, _receive: Receive, send: Send) -> None:
-        """Send the chunks. Cancelling closes their generator."""
+    async def __call__(self, scope: Scope, _receive: Receive, send: Send) -> None:
+        """Send the chunks; none to a request that asks for the head. Cancelling closes them."""
 
         async def put(chunk: Frame) -> None:
             data = chunk.encode() if isinstance(chunk, str) else chunk
@@ -294,14 +294,18 @@ class Stream(Response):
         head = {"status": self.status_code, "headers": self.raw_headers}
         async with aclosing(self._chunks):
             await send({"type": "http.response.start", **head})
-            with suppress(HTTPException):  # of a session that has ended: the stream has, too
-                async with until_ended(self._session), asyncio.TaskGroup() as tasks:
-                    living = tasks.create_task(self._stay_alive(put))
-                    await put(self._first)
-                    async for chunk in self._chunks:
-                        await put(chunk)
-                    living.cancel()
+            if scope["method"] != "HEAD":  # whose answer would have no end
+                await self._send_chunks(put)
         await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+    async def _send_chunks(self, put: Callable[[Frame], Awaitable[None]]) -> None:
+        with suppress(HTTPException):  # of a session that has ended: the stream has, too
+            async with until_ended(self._session), asyncio.TaskGroup() as tasks:
+                living = tasks.create_task(self._stay_alive(put))
+                await put(self._first)
+                async for chunk in self._chunks:
+                    await put(chunk)
+                living.cancel()
 
     async def _stay_alive(self, put: Callable[[Frame], Awaitable[None]]) -> None:
         """Send a sign of life again and again."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ipaddress
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
-from urllib.parse import parse_qsl, urlencode, urlsplit
+from urllib.parse import parse_qsl, urlencode
 
 import msgspec
 
@@ -18,6 +19,9 @@ TOKEN_PROTOCOL: Final = "bearer."  # noqa: S105  # what stands before one
 
 FORWARDED: Final = frozenset({"forwarded", "via", "x-real-ip"})
 """Headers that proxies add, beside those that begin with ``x-forwarded-``."""
+
+HOST: Final = re.compile(r"(\[[0-9A-Fa-f:.]+(?:%\w+)?\]|[\w.-]+)(?::[0-9]{1,5})?", re.ASCII)
+"""A ``Host`` header: an address or a name, and perhaps a port; nobody is named before an ``@``."""
 
 SAME_SITES: Final = frozenset({"", "none", "same-origin"})
 """The values of Sec-Fetch-Site of a request that no page of another origin has made."""
@@ -78,7 +82,11 @@ def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
         scope: The scope, of HTTP or of a WebSocket.
         token: The token, as `take_token` has found it.
     """
-    headers = {name.decode("latin-1"): value.decode("latin-1") for name, value in scope["headers"]}
+    headers: dict[str, str] = {}
+    for raw_name, raw_value in scope["headers"]:
+        name, value = raw_name.decode("latin-1"), raw_value.decode("latin-1")
+        # Of a header that comes twice neither counts: together they fit nothing.
+        headers[name] = f"{headers[name]}, {value}" if name in headers else value
     client = scope.get("client")
     return Credentials(
         address=client[0] if client else "",
@@ -161,12 +169,10 @@ def is_same_origin(credentials: Credentials) -> bool:
 
 def is_known_host(host: str, names: Iterable[str]) -> bool:
     """Return whether a ``Host`` header names this machine: no page can have such a name rebound."""
-    try:
-        name = urlsplit(f"//{host}").hostname
-    except ValueError:
+    found = HOST.fullmatch(host)
+    if found is None:
         return False
-    if name is None:
-        return False
+    name = found[1].strip("[]").lower()
     is_local = name == "localhost" or name.endswith(".localhost")
     return is_local or parsed_address(name) is not None or name in {each.lower() for each in names}
 

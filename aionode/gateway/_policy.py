@@ -66,6 +66,12 @@ MOST_CHARACTERS: Final = 1000
 """The longest name that is looked for in rules, in characters."""
 
 
+ORIGIN: Final = re.compile(
+    r"file://|[a-z][a-z0-9+.-]*://(\[[0-9a-f:.]+\]|[a-z0-9_.-]+)(:[0-9]{1,5})?"
+)
+"""The origin of a page, as browsers write it."""
+
+
 class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A part of a policy file: a key that nobody knows is an error, not a rule without effect."""
 
@@ -198,6 +204,7 @@ class Who(Part, frozen=True):
     loopback: bool = False
 
     def __post_init__(self) -> None:
+        check_origins([self.origin] if self.origin else [])
         if not (self.has_secret or self.origin or self.loopback):
             raise ValueError(
                 f"who {self.name!r}: give token, token_sha256, certificate, origin or loopback"
@@ -321,6 +328,12 @@ class Policy(Part, frozen=True):
     tls: Tls | None = None
     audit_file: str = ""
     path: str = ""
+
+    def __post_init__(self) -> None:
+        check_origins(self.origins)
+        for host in self.hosts:
+            if not re.fullmatch(r"[\w.-]+", host, re.ASCII):
+                raise ValueError(f"hosts: {host!r} is no name alone; leave out scheme and port")
 
     # A frozen struct has no place for what it remembers: see `first_rule`.
     def __hash__(self) -> int:
@@ -467,6 +480,23 @@ def first_rule(
         if rule.is_about(identity) and any(rule.covers(v, name, type_name) for v in allowing):
             return rule
     return None
+
+
+def check_origins(origins: Iterable[str]) -> None:
+    """Refuse an origin that no page has which may be told from others.
+
+    Raises:
+        ValueError: an origin is not written as browsers do, or is that of any page in a sandbox.
+    """
+    for origin in origins:
+        if origin == "null":
+            raise ValueError("origin 'null': every page in a sandbox has it; name a real one")
+        is_default = re.fullmatch("http://.*:80|https://.*:443", origin)
+        if is_default or not ORIGIN.fullmatch(origin):
+            raise ValueError(
+                f"origin {origin!r}: write it as browsers do, such as https://dash.example or "
+                "http://dash.example:3000: in small letters, without a path or the usual port"
+            )
 
 
 # Names

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from aionode.gateway._rosbridge_client import serve_frames
@@ -18,13 +17,6 @@ __all__ = ["serve"]
 
 async def serve(websocket: WebSocket, session: Session) -> None:
     """Serve a client of rosbridge until it leaves."""
-    await exchange(websocket, session, serve_frames, subprotocol(websocket.scope["subprotocols"]))
-
-
-def subprotocol(offered: Sequence[str]) -> str | None:
-    """Return which of the offered subprotocols to answer with: browsers want one of them.
-
-    One of them may be there only for its token.
-    """
-    named = [name for name in offered if not name.startswith("bearer.")]
-    return next(iter([*named, *offered]), None)
+    # Browsers want to hear one of those that they offer; the door has taken out the token.
+    chosen = next(iter(websocket.scope["subprotocols"]), None)
+    await exchange(websocket, session, serve_frames, chosen)

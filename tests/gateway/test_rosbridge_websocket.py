@@ -17,7 +17,6 @@ import pytest
 import websockets
 
 from aionode.gateway import Gateway, Policy
-from aionode.gateway._rosbridge import subprotocol
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -142,15 +141,6 @@ async def test_a_client_that_sends_garbage_is_disconnected(connect: Connect) -> 
 
         assert bad.close_code == 1008
         assert json.loads(await good.recv())["result"] is True
-
-
-async def test_a_subprotocol_of_the_client_is_answered(connect: Connect) -> None:
-    """Otherwise a browser closes the connection; one may be there only for its token."""
-    async with connect(subprotocols=["rosbridge"]) as client:
-        assert client.subprotocol == "rosbridge"
-    assert subprotocol(["bearer.t", "rosbridge"]) == "rosbridge"
-    assert subprotocol(["bearer.t"]) == "bearer.t"
-    assert subprotocol([]) is None
 
 
 async def test_no_token_reaches_a_log(
