@@ -20,6 +20,7 @@
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make tf-differential TF2=<folder>   transforms beside those of geometry2's sources, compiled here
 #   make rosbridge-clients   roslib of npm, in Node and in Chromium, and roslibpy talk to the gateway: needs node and npm
+#   make gateway-load  many clients, images, garbage, clients that vanish: writes docs/performance.md
 #   make crowd     300 nodes come and go beside a router, which has to answer all the while
 #   make system-stress   fifty processes that are killed, hang and print; a hundred starts and stops
 #   make soak      everything at once, for SOAK_SECONDS seconds: nothing may grow
@@ -39,11 +40,11 @@ WORKERS ?= auto
 CLIENTS := .rosbridge-clients
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks zenoh-defects motion live ros-test rosbridge-clients crowd \
+.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks zenoh-defects motion live ros-test rosbridge-clients gateway-load crowd \
 	tf-differential system-stress soak quotes clean
 
 help:
-	@sed -n '3,27s/^# *//p' Makefile
+	@sed -n '3,28s/^# *//p' Makefile
 
 demo: .venv/installed
 	$(BIN)/python -m aionode.examples.pubsub
@@ -130,6 +131,9 @@ rosbridge-clients: .venv/installed-dev
 	$(CLIENTS)/venv/bin/pip install --quiet --disable-pip-version-check roslibpy==2.1.0
 	AIONODE_ROSLIB=$(CLIENTS)/node_modules/roslib/dist/RosLib.js \
 		AIONODE_ROSLIBPY=$(CLIENTS)/venv/bin/python $(BIN)/python -m pytest -q -rs tests/gateway/clients
+
+gateway-load: .venv/installed-dev
+	$(BIN)/python -m tests.gateway --write docs/performance.md
 
 crowd: .venv/installed-dev
 	$(BIN)/python -m tests.faults.crowd

@@ -24,7 +24,6 @@ from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from aionode.bag import Player
-    from aionode.gateway._outbox import Frame
     from aionode.gateway._session import Session
 
 __all__ = ["serve_frames"]
@@ -55,7 +54,7 @@ ERROR: Final = 2
 
 
 async def serve_frames(
-    session: Session, incoming: AsyncIterator[Frame], player: Player | None = None
+    session: Session, incoming: AsyncIterator[bytes | str], player: Player | None = None
 ) -> None:
     """Speak with one client until its frames end.
 
@@ -126,7 +125,7 @@ class Client:
                 await changed
                 await robot.clock.sleep(SETTLING_SEC)
 
-    async def take(self, frame: Frame) -> None:
+    async def take(self, frame: bytes | str) -> None:
         """Begin what a frame asks for; what fails, the client is told as a status."""
         try:
             asked = frames.op_of(frame) if isinstance(frame, str) else frames.binary_of(frame)

@@ -18,10 +18,13 @@ from aionode.message import FieldType, Message, fields
 if TYPE_CHECKING:
     from aionode.gateway._feed import Received
 
-__all__ = ["base64_in_turns", "json_in_turns", "prepare_json"]
+__all__ = ["base64_in_turns", "json_in_turns", "pieces_of", "prepare_json"]
 
 OCTETS: Final = frozenset({"uint8", "char"})
 """Kinds of numbers whose arrays are base64 text in JSON."""
+
+HOLE: Final = b"\0"
+"""What JSON has nowhere: it writes control characters as escapes."""
 
 SLICE_BYTES: Final = 192 << 10
 """How many bytes are written between two turns of the loop, which take a quarter of a millisecond;
@@ -38,36 +41,62 @@ async def prepare_json(received: Received) -> None:
         DecodeError: the bytes are no message of its type.
     """
     if not received.has("json"):
-        data = await json_in_turns(received.message)
+        data = b"".join(await pieces_of(received))
         received.once("json", lambda _: data)
 
 
-async def json_in_turns(message: Message) -> bytes:
-    """Return the JSON of a valid message, as `json_of` does, while the event loop turns."""
-    values = await in_turns(message)
-    await checkpoint()
-    return ENCODER.encode(values)
+async def pieces_of(received: Received) -> list[bytes]:
+    """Return the JSON of a large message in pieces, which are written once for all.
+
+    Raises:
+        DecodeError: the bytes are no message of its type.
+    """
+    if not received.has("json in pieces"):
+        pieces = await json_in_turns(received.message)
+        received.once("json in pieces", lambda _: pieces)
+    return received.once("json in pieces", lambda _: [])
 
 
-async def in_turns(message: Message) -> dict[str, object]:
-    """Return a message as a dict, in which what is large is written."""
-    return {
-        field.name: await value_in_turns(field.type, getattr(message, field.name))
-        for field in fields(type(message))
-    }
+async def json_in_turns(message: Message) -> list[bytes]:
+    """Return the JSON of a valid message in pieces, written while the event loop turns."""
+    large = Large()
+    values = await large.leave_out(message)
+    around = ENCODER.encode(values).split(HOLE)
+    pieces = [around[0]]
+    for value, following in zip(large.values, around[1:], strict=True):
+        pieces += [*value, following]
+    return pieces
 
 
-async def value_in_turns(type_: FieldType, value: Any) -> object:
-    """Return the value of a field; JSON if it is large."""
-    if type_.container == "single":
-        return await in_turns(value) if type_.nested is not None else numbered_value(type_, value)
-    if type_.kind in OCTETS:
-        parts = [b'"', *await base64_in_turns(memoryview(value)), b'"']
-    elif len(value) <= SLICE_ITEMS:
-        return numbered_value(type_, value)
-    else:
-        parts = [b"[", *await items_in_turns(type_, value), b"]"]
-    return msgspec.Raw(b"".join(parts))
+class Large:
+    """The large values of a message, which are written first, in slices.
+
+    Attributes:
+        values: The JSON of each, in pieces.
+    """
+
+    def __init__(self) -> None:
+        self.values: list[list[bytes]] = []
+
+    async def leave_out(self, message: Message) -> dict[str, object]:
+        """Return a message as a dict, with holes in the places of what is large."""
+        return {
+            field.name: await self._value(field.type, getattr(message, field.name))
+            for field in fields(type(message))
+        }
+
+    async def _value(self, type_: FieldType, value: Any) -> object:
+        if type_.container == "single":
+            if type_.nested is not None:
+                return await self.leave_out(value)
+            return numbered_value(type_, value)
+        if type_.kind in OCTETS:
+            self.values.append([b'"', *await base64_in_turns(memoryview(value)), b'"'])
+        elif len(value) <= SLICE_ITEMS:
+            return numbered_value(type_, value)
+        else:
+            self.values.append([b"[", *await items_in_turns(type_, value), b"]"])
+        return msgspec.Raw(HOLE)
 
 
 async def base64_in_turns(data: memoryview) -> list[bytes]:

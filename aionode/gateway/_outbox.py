@@ -4,12 +4,33 @@ from __future__ import annotations
 
 import asyncio
 from collections import defaultdict, deque
-from collections.abc import AsyncIterator, Callable, Hashable
+from collections.abc import AsyncIterator, Callable, Hashable, Sequence
 from typing import Final, TypeAlias
 
-__all__ = ["Frame", "Outbox"]
+__all__ = ["Frame", "LongText", "Outbox"]
 
-Frame: TypeAlias = bytes | str
+
+class LongText:
+    """A frame of long text, as the pieces of its UTF-8: putting them together takes time.
+
+    Attributes:
+        pieces: What it consists of.
+    """
+
+    __slots__ = ("_size", "pieces")
+
+    def __init__(self, pieces: Sequence[bytes]) -> None:
+        self.pieces = tuple(pieces)
+        self._size = sum(map(len, self.pieces))
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __str__(self) -> str:
+        return b"".join(self.pieces).decode()
+
+
+Frame: TypeAlias = bytes | str | LongText
 """A WebSocket frame, or a chunk of an HTTP response."""
 
 MOST_ANSWERS: Final = 1000

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import struct
+from collections import deque
 from typing import TYPE_CHECKING, Any, Final
+
+from aionode.gateway._outbox import LongText
 
 if TYPE_CHECKING:
     from aionode.gateway._outbox import Frame
@@ -37,7 +40,7 @@ class Framing:
         self._parts: tuple[bytes, ...] = ()
 
     def parts(self, frame: Frame) -> tuple[bytes, ...]:
-        """Return the bytes that leave: one part, or a head and a large payload."""
+        """Return the bytes that leave: one part, or a head and the parts of a large payload."""
         if frame is not self._frame:
             self._parts = framed(frame)
             self._frame = frame
@@ -46,14 +49,20 @@ class Framing:
 
 def framed(frame: Frame) -> tuple[bytes, ...]:
     """Return a WebSocket frame with its head, which is a part of its own before a large payload."""
+    if isinstance(frame, LongText):
+        return (head(TEXT, len(frame)), *frame.pieces)
     first, payload = (TEXT, frame.encode()) if isinstance(frame, str) else (BINARY, frame)
-    size = len(payload)
+    before = head(first, len(payload))
+    return (before, payload) if len(payload) > SLICE else (before + payload,)
+
+
+def head(first: int, size: int) -> bytes:
+    """Return the head of a frame whose payload has a size."""
     if size < 126:
-        return (struct.pack(">BB", first, size) + payload,)
+        return struct.pack(">BB", first, size)
     if size < 1 << 16:
-        return (struct.pack(">BBH", first, 126, size) + payload,)
-    head = struct.pack(">BBQ", first, 127, size)
-    return (head + payload,) if size <= SLICE else (head, payload)
+        return struct.pack(">BBH", first, 126, size)
+    return struct.pack(">BBQ", first, 127, size)
 
 
 class Outgoing(asyncio.Transport):
@@ -72,7 +81,7 @@ class Outgoing(asyncio.Transport):
         self._transport = transport
         self._writable = writable
         self._is_paused = False
-        self._rest: memoryview | None = None  # of the frame that is leaving
+        self._rest: deque[bytes | memoryview] = deque()  # of the frame that is leaving
         self._after: list[bytes] = []
         self._after_bytes = 0
         self._turn: asyncio.Handle | None = None
@@ -82,7 +91,7 @@ class Outgoing(asyncio.Transport):
         self._transport.write(parts[0])
         if len(parts) > 1:
             self._writable.clear()
-            self._rest = memoryview(parts[1])
+            self._rest.extend(parts[1:])
             self._go_on()
 
     def pause(self) -> None:
@@ -93,28 +102,34 @@ class Outgoing(asyncio.Transport):
     def resume(self) -> None:
         """Go on with the frame that is leaving."""
         self._is_paused = False
-        if self._turn is None:
-            self._go_on()
+        if not self._rest:
+            self._writable.set()
+        elif self._turn is None:
+            # Not at once: a transport whose connection breaks within this call ends twice.
+            self._turn = asyncio.get_running_loop().call_soon(self._go_on)
 
     def _go_on(self) -> None:
         self._turn = None
         if self._transport.is_closing():
-            self._rest = None
+            self._rest.clear()
         for _ in range(SLICES_IN_A_TURN):
             if not self._rest or self._is_paused:
                 break
-            part, self._rest = self._rest[:SLICE], self._rest[SLICE:]
-            self._transport.write(part)
-        if self._is_paused:
-            return
-        if self._rest:
-            self._turn = asyncio.get_running_loop().call_soon(self._go_on)
-        else:
+            self._transport.write(self._slice())
+        if not self._rest:
             self._finish()
+        elif not self._is_paused:
+            self._turn = asyncio.get_running_loop().call_soon(self._go_on)
+
+    def _slice(self) -> bytes | memoryview:
+        part = self._rest.popleft()
+        if len(part) > SLICE:
+            part = memoryview(part)
+            self._rest.appendleft(part[SLICE:])
+        return part[:SLICE]
 
     def _finish(self) -> None:
         """Send what has waited for the end of the frame."""
-        self._rest = None
         after, self._after, self._after_bytes = self._after, [], 0
         if after:
             self._transport.write(b"".join(after))
@@ -133,7 +148,7 @@ class Outgoing(asyncio.Transport):
         waiting = self._after_bytes + self._transport.get_write_buffer_size()
         if waiting > MOST_CONTROL_BYTES:
             self.abort()
-        elif self._rest is None:
+        elif not self._rest:
             self._transport.write(data)
         else:
             self._after.append(bytes(data))
@@ -142,15 +157,16 @@ class Outgoing(asyncio.Transport):
     def close(self) -> None:
         """Close the connection when all has left."""
         self._forget_turn()
-        if self._rest is not None and not self._transport.is_closing():
-            self._transport.write(self._rest)
+        if self._rest and not self._transport.is_closing():
+            self._transport.write(b"".join(self._rest))
+            self._rest.clear()
             self._finish()
         self._transport.close()
 
     def abort(self) -> None:
         """Close the connection at once."""
         self._forget_turn()
-        self._rest = None
+        self._rest.clear()
         self._after.clear()
         self._transport.abort()
 

@@ -25,7 +25,7 @@ Prepare: TypeAlias = Callable[["Received"], Awaitable[None]]
 LARGE_BYTES: Final = 128 << 10
 """What is no longer is encoded at once, which takes half a millisecond."""
 
-MOST_BYTES: Final = 16 << 20
+MOST_BYTES: Final = 32 << 20
 """How much may wait for one subscription to be encoded; beyond it the oldest is dropped."""
 
 

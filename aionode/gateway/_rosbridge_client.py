@@ -135,6 +135,7 @@ class Client:
         elif name in self._in_order:
             await self._attempt(op, self._put)
         else:
+            self._link.session.refused += 1
             known = ", ".join(sorted(["fragment", *self._at_once, *self._in_order]))
             self._link.status("error", f"op: {name[:60]!r} is unknown; there are {known}", op)
 
@@ -150,6 +151,8 @@ class Client:
         try:
             await handler(op)
         except (AionodeError, TimeoutError) as error:
+            if isinstance(error, MessageError):  # a refusal by the policy is counted there
+                self._link.session.refused += 1
             self._link.status("error", f"{op['op']}: {error}", op)
 
     async def _set_level(self, op: Op) -> None:

@@ -6,6 +6,7 @@ import base64
 import math
 import struct
 import zlib
+from collections.abc import Iterator, Sequence
 from typing import Any, Final
 
 import cbor2
@@ -13,6 +14,7 @@ import msgspec
 
 from aionode._concurrency import run_in_thread
 from aionode.gateway._large_json import base64_in_turns
+from aionode.gateway._outbox import LongText
 from aionode.gateway._rosbridge_values import cbor_values, json_of
 from aionode.message import Message
 
@@ -22,6 +24,7 @@ __all__ = [
     "cbor_raw_frame",
     "fragments",
     "json_frame",
+    "long_json_frame",
     "op_frame",
     "png_frame",
     "png_frame_in_turns",
@@ -40,10 +43,19 @@ def op_frame(op: dict[str, Any]) -> str:
 
 def json_frame(topic: str, message: Message | bytes) -> str:
     """Return a message of a topic as JSON, from the message or its JSON."""
-    head = msgspec.json.encode({"op": "publish", "topic": topic})
     values = message if isinstance(message, bytes) else json_of(message)
     # The message is copied once: it may be an image.
-    return b"".join((head[:-1], b',"msg":', values, b"}")).decode()
+    return b"".join((json_head(topic), values, b"}")).decode()
+
+
+def long_json_frame(topic: str, pieces: Sequence[bytes]) -> LongText:
+    """Return a message of a topic as JSON, from the pieces of its JSON."""
+    return LongText((json_head(topic), *pieces, b"}"))
+
+
+def json_head(topic: str) -> bytes:
+    """Return what is before the message in a frame of JSON."""
+    return msgspec.json.encode({"op": "publish", "topic": topic})[:-1] + b',"msg":'
 
 
 def cbor_frame(topic: str, message: Message) -> bytes:
@@ -71,11 +83,11 @@ def png_frame(text: str) -> str:
     return op_frame({"op": "png", "data": base64.b64encode(png_of(text)).decode()})
 
 
-async def png_frame_in_turns(text: str) -> str:
+async def png_frame_in_turns(text: str) -> LongText:
     """Return what `png_frame` does, of long text, while the event loop turns."""
     picture = await run_in_thread(png_of, text)
     parts = await base64_in_turns(memoryview(picture))
-    return b"".join((b'{"op":"png","data":"', *parts, b'"}')).decode()
+    return LongText((b'{"op":"png","data":"', *parts, b'"}'))
 
 
 def png_of(text: str) -> bytes:
@@ -121,8 +133,8 @@ class Fragmented(str):
         made.size, made.message_id = size, message_id
         return made
 
-    def parts(self) -> list[str]:
-        """Return what leaves."""
+    def parts(self) -> Iterator[str]:
+        """Yield what leaves."""
         return fragments(self, self.size, self.message_id)
 
 
@@ -130,15 +142,15 @@ MOST_FRAGMENTS: Final = 1000
 """A frame leaves in no more parts, however small the client wants them."""
 
 
-def fragments(frame: str, size: int, message_id: str) -> list[str]:
-    """Return a frame in parts of `size` characters, if it is longer."""
+def fragments(frame: str, size: int, message_id: str) -> Iterator[str]:
+    """Yield a frame in parts of `size` characters, if it is longer."""
     size = max(size, -(-len(frame) // MOST_FRAGMENTS))
     if len(frame) <= size:
-        return [frame]
-    parts = [frame[at : at + size] for at in range(0, len(frame), size)]
-    return [
-        op_frame(
-            {"op": "fragment", "id": message_id, "data": part, "num": num, "total": len(parts)}
+        yield frame
+        return
+    total = -(-len(frame) // size)
+    for num in range(total):
+        part = frame[num * size : (num + 1) * size]
+        yield op_frame(
+            {"op": "fragment", "id": message_id, "data": part, "num": num, "total": total}
         )
-        for num, part in enumerate(parts)
-    ]

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
-from aionode.gateway._large_json import prepare_json
+from aionode.gateway._large_json import pieces_of
 from aionode.gateway._rosbridge_frames import (
     Fragmented,
     cbor_frame,
     cbor_raw_frame,
     json_frame,
+    long_json_frame,
     png_frame,
     png_frame_in_turns,
 )
@@ -245,10 +246,10 @@ class Topics:
         if isinstance(frame, bytes):
             return frame
         self._fragmented += 1
-        return Fragmented.of(frame, max(int(wish.fragment_size), 1), str(self._fragmented))
+        return Fragmented.of(str(frame), max(int(wish.fragment_size), 1), str(self._fragmented))
 
 
-def frame_of(compression: str, topic: str, received: Received) -> str | bytes:
+def frame_of(compression: str, topic: str, received: Received) -> Frame:
     """Return the frame of a message, for a topic by the name that the client uses."""
     if compression == "cbor-raw":
         return cbor_raw_frame(topic, received.raw, received.time_ns)
@@ -260,17 +261,24 @@ def frame_of(compression: str, topic: str, received: Received) -> str | bytes:
 
 def prepare_of(compression: str, topic: str) -> Prepare | None:
     """Return what encodes large messages; None if that takes next to no time."""
-    if compression == "none":
-        return prepare_json
-    return partial(prepare_png, topic) if compression == "png" else None
+    prepared = {"none": prepare_text, "png": prepare_png}.get(compression)
+    return None if prepared is None else partial(prepared, topic)
+
+
+async def prepare_text(topic: str, received: Received) -> None:
+    """Make the frame of JSON of a large message."""
+    kind = ("rosbridge", "none", topic)
+    if not received.has(kind):
+        frame = long_json_frame(topic, await pieces_of(received))
+        received.once(kind, lambda _: frame)
 
 
 async def prepare_png(topic: str, received: Received) -> None:
     """Make the picture of a large message; compressing it takes most of a second."""
     kind = ("rosbridge", "png", topic)
     if not received.has(kind):
-        await prepare_json(received)
-        frame = await png_frame_in_turns(json_frame(topic, received.once("json", plain_json)))
+        text = str(long_json_frame(topic, await pieces_of(received)))
+        frame = await png_frame_in_turns(text)
         received.once(kind, lambda _: frame)
 
 

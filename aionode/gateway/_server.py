@@ -21,8 +21,10 @@ from aionode.clock import S_TO_NS
 from aionode.gateway._outgoing import Framing, Outgoing
 from aionode.gateway._portions import Portions
 from aionode.gateway._robot import Bucket
+from aionode.gateway._rosbridge_frames import Fragmented
 
 if TYPE_CHECKING:
+    from aionode.gateway._outbox import Frame
     from aionode.gateway._policy import Limits, Policy
 
 __all__ = ["HttpConnection", "Server", "WebSocketConnection", "server_config"]
@@ -330,7 +332,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         elif message["type"] == "websocket.close":
             self._portions.go_on()  # the client's answer may be behind what waits
 
-    async def _send_frame(self, frame: bytes | str) -> None:
+    async def _send_frame(self, frame: Frame) -> None:
         """Send a frame when the client has read the earlier ones.
 
         Raises:
@@ -345,11 +347,11 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     def _is_open(self) -> bool:
         return self.handshake_complete and not (self.close_sent or self.transport.is_closing())
 
-    def send_now(self, frame: bytes | str) -> bool:
+    def send_now(self, frame: Frame) -> bool:
         """Send a frame, if its client has read enough of the earlier ones; return whether."""
         if not (self.writable.is_set() and self._is_open()):
             return False
-        if type(frame) is not bytes and type(frame) is not str:  # a frame in parts
+        if isinstance(frame, Fragmented):
             return False
         self._outgoing.send(self._framing.parts(frame))
         return True

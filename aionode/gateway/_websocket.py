@@ -13,12 +13,12 @@ from aionode.gateway._rosbridge_frames import Fragmented
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
-    from aionode.gateway._outbox import Frame, Outbox
+    from aionode.gateway._outbox import Outbox
     from aionode.gateway._session import Session
 
 __all__ = ["exchange"]
 
-Serve: TypeAlias = Callable[["Session", AsyncIterator["Frame"]], Awaitable[None]]
+Serve: TypeAlias = Callable[["Session", AsyncIterator[bytes | str]], Awaitable[None]]
 
 POLICY_VIOLATION: Final = 1008
 """Why a WebSocket is closed whose client sends no ops, or reads no answers (RFC 6455)."""
@@ -40,7 +40,7 @@ async def exchange(
         writing = tasks.create_task(write(websocket, session.outbox))
         has_left = False
 
-        async def frames() -> AsyncIterator[Frame]:
+        async def frames() -> AsyncIterator[bytes | str]:
             nonlocal has_left
             while (message := await websocket.receive())["type"] == "websocket.receive":
                 text = message.get("text")
@@ -63,7 +63,7 @@ async def write(websocket: WebSocket, outbox: Outbox) -> None:
             elif isinstance(frame, str):
                 await websocket.send_text(frame)
             else:
-                await websocket.send_bytes(frame)
+                await websocket.send({"type": "websocket.send", "bytes": frame})
         await websocket.close(POLICY_VIOLATION, "too many answers that the client does not read")
     except WebSocketDisconnect:
         return  # the reader is told as well

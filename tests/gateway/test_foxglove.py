@@ -35,7 +35,6 @@ if TYPE_CHECKING:
 
     from aionode.bag import Player
     from aionode.context import Context
-    from aionode.gateway._outbox import Frame
 
 WITHOUT_LIMIT = """
 [[who]]
@@ -55,11 +54,11 @@ class Client:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self.frames: asyncio.Queue[Frame | None] = asyncio.Queue()
+        self.frames: asyncio.Queue[bytes | str | None] = asyncio.Queue()
         self.got: list[Any] = []
         self._news = asyncio.Event()
 
-    async def incoming(self) -> AsyncIterator[Frame]:
+    async def incoming(self) -> AsyncIterator[bytes | str]:
         """Yield what `send` is given."""
         while (frame := await self.frames.get()) is not None:
             yield frame

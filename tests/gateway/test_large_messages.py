@@ -28,13 +28,13 @@ from tests.support.rosbridge import RosbridgeClient, rosbridge_client
 
 Make = Callable[..., Node]
 
-OCTETS = np.arange(2 * SLICE_BYTES + 5, dtype=np.uint32).astype(np.uint8)
+OCTETS = np.arange(3 * SLICE_BYTES + 5, dtype=np.uint32).astype(np.uint8)
 LARGE = [
     Image(height=1, encoding="rgb8", data=OCTETS),
     Image(encoding="rgb8", data=OCTETS.tobytes()),
-    LaserScan(ranges=np.linspace(0.5, np.nan, 2 * SLICE_ITEMS + 1, dtype=np.float32)),
-    Polygon(points=[Point32(x=0.5 * i) for i in range(SLICE_ITEMS + 2)]),
-    ByteMultiArray(data=[bytes([i % 256]) for i in range(SLICE_ITEMS + 3)]),
+    LaserScan(ranges=np.linspace(0.5, np.nan, 3 * SLICE_ITEMS + 1, dtype=np.float32)),
+    Polygon(points=[Point32(x=0.5 * i) for i in range(2 * SLICE_ITEMS + 2)]),
+    ByteMultiArray(data=[bytes([i % 256]) for i in range(2 * SLICE_ITEMS + 3)]),
 ]
 
 
@@ -63,7 +63,7 @@ async def test_json_of_a_large_message_is_written_while_the_loop_turns(message: 
 
     written, turns = await turns_during(json_in_turns(taken))
 
-    assert written == json_of(taken) == await json_in_turns(received)
+    assert b"".join(written) == json_of(taken) == b"".join(await json_in_turns(received))
     assert turns >= 2
 
 
@@ -73,7 +73,7 @@ async def test_a_png_of_long_text_is_compressed_beside_the_loop() -> None:
 
     made, turns = await turns_during(png_frame_in_turns(text))
 
-    assert made == png_frame(text)
+    assert str(made) == png_frame(text)
     assert turns >= 1
 
 
@@ -158,7 +158,7 @@ async def test_a_large_message_is_written_once_for_all_clients(
     """Beside the loop, which turns meanwhile, and in order with what follows it."""
     written = []
 
-    async def count(message: Any) -> bytes:
+    async def count(message: Any) -> list[bytes]:
         written.append(message)
         return await json_in_turns(message)
 

@@ -10,6 +10,7 @@ from websockets.frames import Frame as WebSocketFrame
 from websockets.frames import Opcode
 
 from aionode._concurrency import checkpoint
+from aionode.gateway._outbox import LongText
 from aionode.gateway._outgoing import MOST_CONTROL_BYTES, SLICE, SLICES_IN_A_TURN, Framing, Outgoing
 
 LARGE = bytes(range(256)) * 16 * 1024  # 4 MiB
@@ -119,6 +120,26 @@ async def test_no_more_leaves_than_the_client_reads(connection: Connection) -> N
     await connection.writable.wait()
 
     assert connection.sent == whole(LARGE)
+
+
+async def test_nothing_is_written_within_the_transports_own_call(connection: Connection) -> None:
+    """Asyncio ends a connection twice that breaks then, and says so with a traceback."""
+    connection.outgoing.pause()
+    connection.send(LARGE)
+    before = len(connection.sent)
+    connection.outgoing.resume()
+
+    assert len(connection.sent) == before
+
+
+async def test_long_text_leaves_in_its_pieces(connection: Connection) -> None:
+    """Nothing puts them together before."""
+    pieces = [b"a" * 10, b"b" * (SLICE + 1), b"c" * 10]
+    connection.outgoing.send(Framing().parts(LongText(pieces)))
+    await connection.writable.wait()
+
+    assert connection.sent == whole(str(LongText(pieces)))
+    assert pieces[0] in connection.transport.written
 
 
 async def test_pongs_leave_after_the_frame_that_is_leaving(connection: Connection) -> None:

@@ -248,6 +248,17 @@ async def test_a_client_that_sends_no_ops_is_disconnected(robot: Robot) -> None:
         assert not robot.node.get_subscriptions_info_by_topic("/words")
 
 
+@pytest.mark.parametrize("op", [{"op": "nonsense"}, {"op": "publish"}, {"op": "subscribe"}])
+async def test_ops_that_come_to_nothing_are_counted(robot: Robot, op: dict[str, str]) -> None:
+    """The gateway reads a client more slowly that sends many of them."""
+    async with rosbridge_client(robot) as client:
+        for _ in range(3):
+            client.send(**op)
+        await settle()
+
+        assert client.session.refused == 3
+
+
 async def test_a_frame_may_be_bytes_of_json(client: RosbridgeClient) -> None:
     """Some clients send text so, and rosbridge takes it."""
     client.send_frame(b'{"op": "call_service", "service": "rosapi/get_ros_version"}')

@@ -13,6 +13,7 @@ import msgspec
 
 from aionode.gateway._audit import Audit
 from aionode.gateway._identity import Identity
+from aionode.gateway._outbox import Frame
 from aionode.gateway._policy import Policy
 from aionode.gateway._robot import Robot
 from aionode.gateway._rosbridge_client import serve_frames
@@ -52,7 +53,7 @@ class RosbridgeClient:
         while (frame := await self._frames.get()) is not None:
             yield frame
 
-    async def frame(self) -> str | bytes:
+    async def frame(self) -> Frame:
         """Return the next frame that the client gets."""
         return await anext(self._received)
 
@@ -61,7 +62,7 @@ class RosbridgeClient:
         frame = await self.frame()
         if isinstance(frame, Fragmented):
             return [json.loads(part) for part in frame.parts()]
-        return json.loads(frame) if isinstance(frame, str) else cbor2.loads(frame)
+        return cbor2.loads(frame) if isinstance(frame, bytes) else json.loads(str(frame))
 
     async def call(self, name: str, /, **args: Any) -> Any:
         """Return the response of a service."""
