@@ -34,6 +34,8 @@ from aionode.testing import settle
 from tests.support.waiting import until
 
 FOREVER = ["sleep", "1000"]
+SUPERVISED = f"while kill -0 {os.getpid()}"
+"""A loop of sh that ends with the supervisor: without a guardian, nobody else would end it."""
 
 
 @pytest.fixture
@@ -209,11 +211,12 @@ async def test_members_stop_in_reverse_order_each_after_the_one_before(
 async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_killed(
     system: System, output: io.StringIO, tmp_path: Path
 ) -> None:
-    """The supervisor does its work, and ends: nothing would stop them if that were killed too."""
+    """The supervisor does its work, and ends."""
     ends, orphan = tmp_path / "ends", tmp_path / "orphan"
-    script = f"trap 'sleep 0.05; echo $0 >>{ends}; exit' INT; echo up; while :; do sleep 0.01; done"
-    deaf = f"trap '' INT; echo $$ >{orphan}; while :; do sleep 1; done"
-    forking = f'(setsid sh -c "{deaf}" &); exec sleep 1000'.replace("$$", "\\$\\$")
+    ending = f"trap 'sleep 0.05; echo $0 >>{ends}; exit' INT"
+    script = f"{ending}; echo up; {SUPERVISED}; do sleep 0.01; done"
+    deaf = f"trap '' INT; echo $$ >{orphan}; {SUPERVISED}; do sleep 1; done"
+    forking = f'(setsid sh -c "{deaf}" &); exec sleep 60'.replace("$$", "\\$\\$")
     async with system:
         for name in ("first", "second"):
             system.process(name, ["sh", "-c", script, name])
@@ -250,7 +253,7 @@ async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_
     system: System,
 ) -> None:
     """Nobody would wait for it in vain."""
-    script = "trap '' INT; echo up; while :; do sleep 0.1; done"
+    script = f"trap '' INT; echo up; {SUPERVISED}; do sleep 0.1; done"
     async with system:
         system.process("slow", ["sh", "-c", script], term_after_sec=0.2)
         await until(lambda: system.log.last_lines("slow"))
@@ -266,7 +269,7 @@ async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_
 
 async def test_a_second_signal_kills_all_although_the_guardian_was_killed(system: System) -> None:
     """Who presses Ctrl-C twice does not want to wait."""
-    script = "trap '' INT TERM; echo up; while :; do sleep 1; done"
+    script = f"trap '' INT TERM; echo up; {SUPERVISED}; do sleep 1; done"
     async with system:
         system.process("deaf", ["sh", "-c", script])
         await until(lambda: system.log.last_lines("deaf"))
@@ -285,7 +288,7 @@ def kill_guardian(system: System) -> None:
 
 async def test_a_program_that_ignores_signals_is_killed(system: System) -> None:
     """SIGINT, then SIGTERM, then SIGKILL."""
-    script = "trap '' INT TERM; echo deaf; while :; do sleep 1; done"
+    script = f"trap '' INT TERM; echo deaf; {SUPERVISED}; do sleep 1; done"
     async with system:
         system.process("deaf", ["sh", "-c", script], term_after_sec=0.1, kill_after_sec=0.1)
         await until(lambda: system.log.last_lines("deaf"))
