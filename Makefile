@@ -72,6 +72,7 @@ check: .venv/installed-dev
 	$(BIN)/lint-imports --no-logo
 	$(BIN)/python docs/quotes.py --check
 	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_structure.py
+	$(BIN)/python -m pytest -q -m checks tests/typing tests/idl/test_generator.py
 	$(BIN)/sphinx-build -q -W --keep-going -b html docs site
 
 # Lines are counted in the tests' own processes and in those that they start. Programs of rclpy run
@@ -79,7 +80,7 @@ check: .venv/installed-dev
 # meanwhile: `make test` is what judges them, so only the share of the code counts.
 coverage: .venv/installed-dev
 	-$(BIN)/python -m pytest -q -n $(WORKERS) \
-		-m "not processes and not faults and not stress and not second_loop" \
+		-m "not checks and not processes and not faults and not stress and not second_loop" \
 		--cov --cov-report= --cov-fail-under=0
 	-$(BIN)/python -m pytest -q -n $(WORKERS) tests/rclpy \
 		-m "processes and not faults and not stress and not second_loop" \

@@ -127,6 +127,7 @@ def test_modules_in_a_package_import_each_other_from_there(packages: Path, out: 
     assert fields(odd)[7].type.nested is importlib.import_module("mine.other_msgs.msg").Point
 
 
+@pytest.mark.checks
 def test_generated_modules_pass_the_tools(
     packages: Path, out: Path, pytestconfig: pytest.Config
 ) -> None:

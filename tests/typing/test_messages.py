@@ -15,6 +15,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.checks
+
 HERE = Path(__file__).parent
 ROOT = HERE.parents[1]
 # The types of numpy that is installed are read as its own Python does: 2.5 needs 3.12.
