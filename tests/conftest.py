@@ -30,7 +30,7 @@ settings.register_profile(
     deadline=None,
     suppress_health_check=[HealthCheck.too_slow],
     print_blob=True,
-    max_examples=20,
+    max_examples=10,
 )
 settings.load_profile("tests")
 # `.ci/run` and `make stress` use "thorough", for the same properties once more; `make fuzz` uses
@@ -129,7 +129,8 @@ def pytest_xdist_auto_num_workers() -> int:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtestloop() -> None:
-    """Look for garbage again when the tests are collected."""
+    """Look for garbage again when the tests are collected, and not at all that this has made."""
+    gc.freeze()
     gc.enable()
 
 

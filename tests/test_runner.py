@@ -8,6 +8,7 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -200,6 +201,15 @@ def test_run_takes_coroutine_functions() -> None:
     assert ran == [True]
 
 
+@pytest.fixture
+def nothing_is_frozen() -> Iterator[None]:
+    """Leave nothing frozen, as in a program: tests/conftest.py freezes what it collects."""
+    gc.unfreeze()
+    yield
+    gc.freeze()
+
+
+@pytest.mark.usefixtures("nothing_is_frozen")
 @pytest.mark.parametrize("is_frozen_before", [False, True])
 def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
     monkeypatch: pytest.MonkeyPatch, *, is_frozen_before: bool
@@ -227,6 +237,7 @@ def test_the_search_for_garbage_leaves_out_what_a_running_program_keeps(
     assert before is after is is_frozen_before
 
 
+@pytest.mark.usefixtures("nothing_is_frozen")
 @pytest.mark.parametrize("when", ["first", "afterwards"])
 def test_what_the_program_freezes_while_it_runs_stays_frozen(
     monkeypatch: pytest.MonkeyPatch, when: str
@@ -257,6 +268,7 @@ def is_frozen() -> bool:
     return gc.get_freeze_count() > FROZEN_BY_PYTHON
 
 
+@pytest.mark.usefixtures("nothing_is_frozen")
 async def test_frozen_objects_are_left_out_of_collections() -> None:
     """A full collection looks at all others, and the loop stands still meanwhile."""
     kept: list[list[int]] = [[] for _ in range(1000)]

@@ -6,11 +6,12 @@ import os
 import queue
 import signal
 import subprocess
-import sys
 import threading
 import time  # noqa: TID251  # how long a process takes is what is tested
 from pathlib import Path
 from typing import TYPE_CHECKING, Self
+
+from tests.support.fork_server import start
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,24 +36,31 @@ class Process:
     It has a process group of its own: the system suspends no process whose group is orphaned, as
     that of a test may be.
 
+    Args:
+        arguments: What follows `python` on the command line.
+        env: More variables of its environment.
+        fresh: Whether Python is started for it: where its start is what a test is about.
+
     Attributes:
         started_s: When it was started, by `time.monotonic`.
         lines: Each line so far, with when it came.
     """
 
-    def __init__(self, *arguments: str, env: dict[str, str] | None = None) -> None:
+    def __init__(
+        self, *arguments: str, env: dict[str, str] | None = None, fresh: bool = False
+    ) -> None:
         self.started_s = time.monotonic()
         self.lines: list[tuple[float, str]] = []
         self._queue: queue.SimpleQueue[tuple[float, str]] = queue.SimpleQueue()
-        self._popen = subprocess.Popen(
-            [sys.executable, *arguments],
+        self._popen = start(
+            [*arguments],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
-            text=True,
             process_group=0,
             cwd=ROOT,
-            env={**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1", **(env or {})},
+            env={**os.environ, "PYTHONPATH": str(ROOT), **(env or {})},
+            fresh=fresh,
         )
         self._reader = threading.Thread(target=self._read)
         self._reader.start()

@@ -6,7 +6,6 @@ import asyncio
 import os
 import signal
 import subprocess
-import sys
 import threading
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -30,6 +29,7 @@ from aionode.rclpy.qos import QoSProfile
 from aionode.rclpy.serialization import serialize_message
 from aionode.rclpy.task import Future
 from aionode.transport.base import SampleInfo
+from tests.support.fork_server import start
 from tests.support.peers import isolated_environment
 
 if TYPE_CHECKING:
@@ -380,12 +380,12 @@ def test_a_program_ends_however_it_ends(
     """At its end, by a signal or an exception; without `shutdown`, and without a hang."""
     program = tmp_path / "ending.py"
     program.write_text(ENDING)
-    process = subprocess.Popen(
-        [sys.executable, "-m", "aionode.rclpy", str(program), how],
+    process = start(
+        ["-m", "aionode.rclpy", str(program), how],
+        env={**os.environ, **isolated_environment()},
+        stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, **isolated_environment()},
     )
     assert process.stdout is not None
     first = process.stdout.readline()

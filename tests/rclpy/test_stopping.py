@@ -15,6 +15,7 @@ import pytest
 from aionode import rclpy
 from aionode.clock import MachineTime
 from aionode.interfaces.std_msgs.msg import Int32
+from tests.support import fork_server
 from tests.support.peers import isolated_environment
 
 PATIENCE_S = 30.0
@@ -103,12 +104,17 @@ def wheels(monkeypatch: pytest.MonkeyPatch) -> Iterator[Wheels]:
     wheels.context.try_shutdown()
 
 
-def start(tmp_path: Path, *arguments: str) -> subprocess.Popen[bytes]:
+def start(tmp_path: Path, *arguments: str) -> subprocess.Popen[str]:
     """Start the program that moves."""
     program = tmp_path / "mover.py"
     program.write_text(PROGRAM, encoding="utf-8")
-    command = [sys.executable, "-m", "aionode", "run", str(program), *arguments]
-    return subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    return fork_server.start(
+        ["-m", "aionode", "run", str(program), *arguments],
+        env=os.environ,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
 
 
 @pytest.mark.parametrize(

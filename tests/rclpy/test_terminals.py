@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 
 from aionode.clock import MachineTime
+from tests.support import fork_server
 from tests.support.peers import isolated_environment
 
 ROOT = Path(__file__).parents[2]
@@ -89,11 +90,12 @@ class Terminal:
     def __init__(self, output: Path, *command: str, environment: dict[str, str]) -> None:
         self._output = output
         with output.open("w", encoding="utf-8") as file:
-            self.process = subprocess.Popen(
-                [sys.executable, *command],
+            self.process = fork_server.start(
+                [*command],
+                env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+                stdin=subprocess.DEVNULL,
                 stdout=file,
                 stderr=subprocess.STDOUT,
-                env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
             )
 
     @property

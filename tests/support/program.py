@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
 import textwrap
 import threading
 from typing import Any, Self
+
+from tests.support.fork_server import start
 
 __all__ = ["PREAMBLE", "Program"]
 
@@ -31,11 +34,14 @@ class Program:
 
     def __init__(self, *parts: str, before: tuple[str, ...] = (), **options: Any) -> None:
         text = "\n".join([PREAMBLE, *map(textwrap.dedent, parts)])
-        self.process: subprocess.Popen[str] = subprocess.Popen(
-            [*before, sys.executable, "-c", text],
-            **{"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options},
-            text=True,
-        )
+        pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE}
+        self.process: subprocess.Popen[str]
+        if before:
+            command = [*before, sys.executable, "-c", text]
+            self.process = subprocess.Popen(command, text=True, **pipes | options)
+        else:
+            options = {"stdin": subprocess.DEVNULL, "env": os.environ, **pipes, **options}
+            self.process = start(["-c", text], **options)
 
     def __enter__(self) -> Self:
         return self
