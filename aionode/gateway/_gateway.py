@@ -17,6 +17,7 @@ from aionode._concurrency import to_the_end
 from aionode.errors import ConfigurationError, PolicyFileError
 from aionode.gateway import _foxglove, _http, _page_files, _rosbridge
 from aionode.gateway._audit import Audit
+from aionode.gateway._client_list import ClientList
 from aionode.gateway._clients import Clients
 from aionode.gateway._door import Door
 from aionode.gateway._identity import parsed_address
@@ -109,6 +110,8 @@ class Gateway(Clients):
             stack.callback(audit.close)
             self._robot = Robot(self.node, self._policy, audit, tasks, self._ask)
             stack.callback(self._robot.close)
+            self._client_list = ClientList(self.node)
+            stack.callback(self._client_list.close)
             for work in (audit.run(), self._follow_policy()):
                 stack.callback(tasks.create_task(work).cancel)
             app = Door(self._application(), self)
@@ -162,9 +165,11 @@ class Gateway(Clients):
             )
             if is_foxglove:
                 serving = _foxglove.serve(websocket, session, self._player)
-            else:
+                await until(session.ended, serving, self._watch(session))
+                return
+            with self._client_list.listing(session.identity.address):
                 serving = _rosbridge.serve(websocket, session)
-            await until(session.ended, serving, self._watch(session))
+                await until(session.ended, serving, self._watch(session))
 
     async def _watch(self, session: Session) -> None:
         """End the session of a client that gives no sign any more, though it has goals or commands.

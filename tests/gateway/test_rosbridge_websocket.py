@@ -17,10 +17,12 @@ import pytest
 import websockets
 
 from aionode.gateway import Gateway, Policy
+from aionode.gateway._client_list import ConnectedClients
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import settle
+from tests.support.waiting import until
 
 Connect = Callable[..., contextlib.AbstractAsyncContextManager[websockets.ClientConnection]]
 
@@ -172,3 +174,24 @@ async def test_no_token_reaches_a_log(
 
     assert "uvicorn" in {record.name.split(".")[0] for record in caplog.records}
     assert "hush" not in caplog.text
+
+
+async def test_topics_tell_how_many_clients_there_are_and_who(connect: Connect, node: Node) -> None:
+    """Dashboards of rosbridge read them, also those that come later."""
+    counts: list[int] = []
+    addresses: list[list[str]] = []
+    await settle()
+    async with connect(), connect():
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        node.create_subscription(Int32, "client_count", lambda m: counts.append(m.data), latched)
+        node.create_subscription(
+            ConnectedClients,
+            "connected_clients",
+            lambda message: addresses.append([client.ip_address for client in message.clients]),
+            latched,
+        )
+        await until(lambda: counts and counts[-1] == 2)
+    await until(lambda: counts[-1] == 0)
+
+    assert addresses[0] == ["127.0.0.1"] * 2
+    assert addresses[-1] == []
