@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode import DurabilityPolicy, HistoryPolicy, Node, ReliabilityPolicy
+from aionode.cli._nouns.topic_echo import qos_from
 from aionode.cli._support.completion import names_of
-from aionode.cli._support.options import qos_from
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import QoSPresetProfiles, qos_profile_sensor_data

@@ -10,7 +10,7 @@ import pytest
 
 from aionode._node_source import node_maker
 from aionode.cli._main import main
-from aionode.cli._support.programs import Programs
+from aionode.cli._nouns.run import Programs
 from aionode.errors import CommandError, ExecutableNotFoundError, PackageNotFoundError
 
 SOURCE = """

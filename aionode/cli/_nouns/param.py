@@ -24,7 +24,7 @@ from aionode.cli._support import lookup
 from aionode.cli._support.command import command
 from aionode.cli._support.completion import complete_of_node, name_argument
 from aionode.cli._support.lookup import absolute
-from aionode.cli._support.options import hidden_option, timeout_option
+from aionode.cli._support.options import hidden_option, positive
 from aionode.cli._support.yaml_messages import shortened
 from aionode.errors import AionodeError, CommandError, ParameterFileError
 from aionode.graph import EndpointKind
@@ -51,6 +51,15 @@ __all__ = [
 
 ANSWER_S = 5.0
 """Timeout for the parameter services of a node, in seconds; normally they take milliseconds."""
+
+timeout_option = click.option(
+    "--timeout",
+    metavar="N",
+    type=positive,
+    default=1.0,
+    show_default=True,
+    help="Wait at most N seconds for the node.",
+)
 
 
 @click.group("param")
@@ -141,10 +150,7 @@ async def names_of(node: Node, node_name: str) -> list[str]:
 
 node_argument = name_argument("node")
 parameter_argument = click.argument("parameter_name", shell_complete=complete_of_node(names_of))
-node_options = (
-    hidden_option("--include-hidden-nodes", what="nodes"),
-    timeout_option,
-)
+node_options = (hidden_option("--include-hidden-nodes", what="nodes"),)
 """The options that all commands have."""
 
 

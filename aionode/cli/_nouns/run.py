@@ -1,17 +1,32 @@
-"""``aionode run``: node classes together in one process, or a program of rclpy."""
+"""``aionode run``: node classes together in one process, or a program of rclpy.
+
+A program, and an executable of a package, takes the place of this process.
+"""
 
 from __future__ import annotations
 
+import ast
+import os
+import re
+import subprocess
 import sys
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING, Final, NoReturn
 
 import click
 
-from aionode.cli._support.programs import Programs, replace_process
+from aionode.errors import CommandError, PackageNotFoundError
+from aionode.interfaces import shipped_packages
 
-__all__ = ["run_command"]
+if TYPE_CHECKING:
+    from aionode._packages import Packages
 
-ROS_ARGS = "--ros-args"
+__all__ = ["Programs", "run_command"]
+
+ROS_ARGS: Final = "--ros-args"
+PACKAGE: Final = re.compile(r"[a-zA-Z][a-zA-Z0-9_-]+")
 
 
 @click.command(
@@ -101,3 +116,144 @@ def run_command(
         raise click.UsageError(f"Nothing to run: {FITS}.")
     sys.path[:0] = [str(Path.cwd()), *programs.module_folders(specs)]
     run(*(node_maker(spec) for spec in specs), args=list(ros_args))
+
+
+class Programs:
+    """Programs of rclpy and executables of packages.
+
+    Args:
+        interfaces: Folders with message packages.
+        workspace: The folder with the packages; else that around the current folder is searched.
+    """
+
+    def __init__(self, interfaces: Sequence[str], workspace: str | None) -> None:
+        self._interfaces = [part for folder in interfaces for part in ("--interfaces", folder)]
+        self._workspace = [] if workspace is None else ["--workspace", workspace]
+
+    @cached_property
+    def _packages(self) -> Packages:
+        """The packages of the workspace, which the file of a program does not need."""
+        from aionode._packages import Packages, workspace_of
+
+        if self._workspace:
+            return Packages(Path(self._workspace[1]))
+        current = Path.cwd()
+        return Packages(workspace_of(current) or current)
+
+    def under_rclpy(self, *program: str) -> list[str]:
+        """Return the command for a program of rclpy: its file, or ``-m`` and its module."""
+        own = [sys.executable, "-m", "aionode.rclpy"]
+        return [*own, *self._interfaces, *self._workspace, *program]
+
+    def command(self, args: Sequence[str]) -> list[str] | None:
+        """Return the command that the arguments mean; None if they name classes of nodes.
+
+        Raises:
+            CommandError: An executable of a package is missing.
+            PackageNotFoundError: Two words are neither a package with an executable, nor modules.
+            ExecutableNotFoundError: The package has no such executable.
+        """
+        if not args:
+            return None
+        if is_rclpy_program(args[0]):
+            return self.under_rclpy(*args)
+        source, colon, function = args[0].partition(":")
+        if not colon:
+            return self._executable(args)
+        file = self._module_file(source)
+        if file is None or not is_rclpy_program(str(file)):
+            return None
+        path = ("--path", str(module_folder(source, file)))
+        module = file.stem if source.endswith(".py") else source
+        return self.under_rclpy(*path, "-m", f"{module}:{function}", *args[1:])
+
+    def module_folders(self, specs: Sequence[str]) -> list[str]:
+        """Return the folders of packages that classes of nodes are imported from."""
+        sources = dict.fromkeys(spec.partition(":")[0] for spec in specs)
+        files = {source: self._module_file(source) for source in sources}
+        return [str(module_folder(source, file)) for source, file in files.items() if file]
+
+    def _executable(self, args: Sequence[str]) -> list[str] | None:
+        """Return the command for a package and its executable."""
+        name, *rest = args
+        if not PACKAGE.fullmatch(name):
+            return None
+        named = rest[0] if rest and not rest[0].startswith("-") and ":" not in rest[0] else None
+        try:
+            if named is not None:
+                return [*self._packages.command(name, named, self._interfaces), *rest[1:]]
+            if self._module_file(name, here=True) is not None:
+                return None
+            known = ", ".join(self._packages.executables(name)) or "none"
+        except PackageNotFoundError:
+            if named is None or self._module_file(name) is not None:
+                return None  # modules, each with its class of nodes; an error for them says so
+            raise
+        raise CommandError(f"{name}: name an executable of this package; it has: {known}")
+
+    def _module_file(self, source: str, *, here: bool = False) -> Path | None:
+        """Return the file of a module that lies here, on PYTHONPATH or else in a package."""
+        if source.endswith(".py"):
+            return Path(source) if Path(source).is_file() else None
+        inside = Path(*source.split("."))
+        for folder in self._module_folders("" if here or not source else inside.parts[0]):
+            for file in (inside.with_suffix(".py"), inside / "__init__.py"):
+                if Path(folder, file).is_file():
+                    return Path(folder, file)
+        return None
+
+    def _module_folders(self, module: str) -> Iterator[str]:
+        """Yield the folders in which a module may lie; its name is for packages, at the end."""
+        yield str(Path.cwd())
+        yield from filter(None, sys.path)
+        root = self._packages.module_root(module) if module else None
+        if root is not None:
+            yield str(root)
+
+
+def module_folder(source: str, file: Path) -> Path:
+    """Return the folder from which a module of this name, which has this file, is imported."""
+    if source.endswith(".py"):
+        return file.parent
+    depth = source.count(".") + (file.name == "__init__.py")
+    return file.parents[depth]
+
+
+def is_rclpy_program(name: str) -> bool:
+    """Return whether a name is that of a file that imports rclpy or ROS's message packages.
+
+    An executable that an installed package has in Python is one, too: it imports that package.
+    """
+    if not name.endswith(".py"):
+        from aionode._packages import is_python
+
+        return Path(name).is_file() and is_python(Path(name))
+    try:
+        tree = ast.parse(Path(name).read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return False
+    modules = {
+        module
+        for node in ast.walk(tree)
+        for module in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [node.module or ""]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+    }
+    return not {"rclpy", *shipped_packages()}.isdisjoint(
+        module.partition(".")[0] for module in modules
+    )
+
+
+def replace_process(command: Sequence[str]) -> NoReturn:
+    """Run a command in the place of this process, as it is the owner of its signals.
+
+    Raises:
+        SystemExit: The command has ended, on Windows.
+    """
+    if sys.platform == "win32":  # where the new process would not take the place of this one
+        sys.exit(subprocess.run(command, check=False).returncode)  # noqa: S603 (the user's program)
+    os.execv(command[0], list(command))  # noqa: S606 (the same)

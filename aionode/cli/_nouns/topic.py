@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from aionode.cli._nouns.topic_echo import echoing
+from aionode.cli._nouns.topic_echo import echoing, name_option, qos_from, qos_options
 from aionode.cli._nouns.topic_measure import measuring
 from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
@@ -19,10 +19,7 @@ from aionode.cli._support.options import (
     count_option,
     hertz,
     hidden_option,
-    name_option,
     positive,
-    qos_from,
-    qos_options,
     read_values,
     seconds,
     types_option,

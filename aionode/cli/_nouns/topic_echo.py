@@ -1,4 +1,4 @@
-"""``aionode topic echo``."""
+"""``aionode topic echo``, and the options that it shares with ``pub``."""
 
 from __future__ import annotations
 
@@ -18,21 +18,28 @@ from aionode.cli._support.completion import (
 from aionode.cli._support.follow import Follower, filter_from
 from aionode.cli._support.formatting import Printer
 from aionode.cli._support.options import (
+    CommandT,
     clear_full_length,
     csv_option,
     filter_option,
-    name_option,
     positive,
     print_options,
-    qos_from,
-    qos_options,
+    whole,
 )
+from aionode.clock import Duration
 from aionode.errors import CommandError
 from aionode.graph import TOPIC_KINDS, EndpointKind
-from aionode.qos import DurabilityPolicy, ReliabilityPolicy, qos_profile_sensor_data
+from aionode.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPresetProfiles,
+    ReliabilityPolicy,
+    qos_profile_sensor_data,
+)
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from enum import Enum
 
     from aionode.cli._support.output import Output
@@ -41,13 +48,82 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from aionode.qos import QoSProfile
 
-__all__ = ["echo", "echoing"]
+__all__ = ["echo", "echoing", "name_option", "qos_from", "qos_options"]
 
 DEPTH = 1000
 """Default queue depth: the maximum number of messages that wait to be printed."""
 
 echoing = click.Group("topic")
 """The command of this module; the group ``topic`` has it too."""
+
+
+# Options, those of publishers included
+
+
+def name_option(whose: str) -> Callable[[CommandT], CommandT]:
+    """Return the option that names the node of the command itself."""
+    return click.option(
+        "-n", "--node-name", "own_name", help=f"Name of the {whose} node (default: a hidden one)."
+    )
+
+
+POLICIES = {
+    "history": HistoryPolicy,
+    "reliability": ReliabilityPolicy,
+    "durability": DurabilityPolicy,
+    "liveliness": LivelinessPolicy,
+}
+"""The policies that have an option each."""
+
+
+def qos_options(preset: str) -> tuple[Callable[[CommandT], CommandT], ...]:
+    """Return the options for a QoS profile that starts from `preset`."""
+
+    def short_keys(kind: Any) -> click.Choice[str]:
+        return click.Choice([k for k in kind.short_keys() if k != "unknown"], case_sensitive=False)
+
+    return (
+        click.option(
+            "--qos-profile",
+            type=short_keys(QoSPresetProfiles),
+            help=f"Preset to start from (default: {preset}).",
+        ),
+        click.option("--qos-depth", type=whole, help="Length of the queue."),
+        *(click.option(f"--qos-{name}", type=short_keys(kind)) for name, kind in POLICIES.items()),
+        click.option("--qos-liveliness-lease-duration-seconds", type=positive, metavar="N"),
+    )
+
+
+def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
+    """Remove the options of `qos_options` from `options` and return their profile.
+
+    Returns None if the user gave none of them.
+    """
+    names = ("profile", "depth", *POLICIES, "liveliness_lease_duration_seconds")
+    given = {name: options.pop(f"qos_{name}") for name in names}
+    if all(value is None for value in given.values()):
+        return None
+    profile = QoSPresetProfiles.get_from_short_key(given["profile"] or preset).replace()
+    for name, kind in POLICIES.items():
+        if given[name] is not None:
+            setattr(profile, name, kind.get_from_short_key(given[name]))
+    if given["depth"] is not None:
+        profile.depth = given["depth"]
+    elif profile.durability is DurabilityPolicy.TRANSIENT_LOCAL and profile.depth == 0:
+        profile.depth = 1
+    if (
+        given["durability"] == "transient_local"
+        and given["reliability"] is given["profile"] is None
+    ):
+        # Over DDS, best-effort subscriptions get nothing of what was kept.
+        profile.reliability = ReliabilityPolicy.RELIABLE
+    lease = given["liveliness_lease_duration_seconds"]
+    if lease is not None:
+        profile.liveliness_lease_duration = Duration(seconds=lease)
+    return profile
+
+
+# Echo
 
 
 def complete_fields(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:

@@ -6,21 +6,9 @@ import math
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
-
-from aionode.clock import Duration
-from aionode.qos import (
-    DurabilityPolicy,
-    HistoryPolicy,
-    LivelinessPolicy,
-    QoSPresetProfiles,
-    ReliabilityPolicy,
-)
-
-if TYPE_CHECKING:
-    from aionode.qos import QoSProfile
 
 __all__ = [
     "CommandT",
@@ -34,17 +22,13 @@ __all__ = [
     "interfaces_option",
     "json_option",
     "load_interface_folders",
-    "name_option",
     "natural",
     "positive",
     "print_options",
-    "qos_from",
-    "qos_options",
     "read_values",
     "ros2_options",
     "seconds",
     "sim_time_option",
-    "timeout_option",
     "types_option",
     "whole",
 ]
@@ -88,15 +72,6 @@ natural = click.IntRange(min=1, max=MOST)
 whole = click.IntRange(min=0, max=MOST)
 """A count, possibly zero."""
 
-timeout_option = click.option(
-    "--timeout",
-    metavar="N",
-    type=positive,
-    default=1.0,
-    show_default=True,
-    help="Wait at most N seconds for the node.",
-)
-
 types_option = click.option(
     "-t", "--show-types", "types", is_flag=True, help="Print the types too."
 )
@@ -116,13 +91,6 @@ def count_option(what: str) -> Callable[[CommandT], CommandT]:
 def hidden_option(*names: str, what: str) -> Callable[[CommandT], CommandT]:
     """Return the option that includes hidden `what`."""
     return click.option(*names, "hidden", is_flag=True, help=f"Consider hidden {what} as well.")
-
-
-def name_option(whose: str) -> Callable[[CommandT], CommandT]:
-    """Return the option that names the node of the command itself."""
-    return click.option(
-        "-n", "--node-name", "own_name", help=f"Name of the {whose} node (default: a hidden one)."
-    )
 
 
 def filter_option(does: str) -> Callable[[CommandT], CommandT]:
@@ -218,61 +186,3 @@ def clear_full_length(options: dict[str, Any]) -> None:
     """Replace ``full_length`` in `options` by a ``truncate_length`` of None."""
     if options.pop("full_length"):
         options["truncate_length"] = None
-
-
-# Quality of service
-
-POLICIES = {
-    "history": HistoryPolicy,
-    "reliability": ReliabilityPolicy,
-    "durability": DurabilityPolicy,
-    "liveliness": LivelinessPolicy,
-}
-"""The policies that have an option each."""
-
-
-def qos_options(preset: str) -> tuple[Callable[[CommandT], CommandT], ...]:
-    """Return the options for a QoS profile that starts from `preset`."""
-
-    def short_keys(kind: Any) -> click.Choice[str]:
-        return click.Choice([k for k in kind.short_keys() if k != "unknown"], case_sensitive=False)
-
-    return (
-        click.option(
-            "--qos-profile",
-            type=short_keys(QoSPresetProfiles),
-            help=f"Preset to start from (default: {preset}).",
-        ),
-        click.option("--qos-depth", type=whole, help="Length of the queue."),
-        *(click.option(f"--qos-{name}", type=short_keys(kind)) for name, kind in POLICIES.items()),
-        click.option("--qos-liveliness-lease-duration-seconds", type=positive, metavar="N"),
-    )
-
-
-def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
-    """Remove the options of `qos_options` from `options` and return their profile.
-
-    Returns None if the user gave none of them.
-    """
-    names = ("profile", "depth", *POLICIES, "liveliness_lease_duration_seconds")
-    given = {name: options.pop(f"qos_{name}") for name in names}
-    if all(value is None for value in given.values()):
-        return None
-    profile = QoSPresetProfiles.get_from_short_key(given["profile"] or preset).replace()
-    for name, kind in POLICIES.items():
-        if given[name] is not None:
-            setattr(profile, name, kind.get_from_short_key(given[name]))
-    if given["depth"] is not None:
-        profile.depth = given["depth"]
-    elif profile.durability is DurabilityPolicy.TRANSIENT_LOCAL and profile.depth == 0:
-        profile.depth = 1
-    if (
-        given["durability"] == "transient_local"
-        and given["reliability"] is given["profile"] is None
-    ):
-        # Over DDS, best-effort subscriptions get nothing of what was kept.
-        profile.reliability = ReliabilityPolicy.RELIABLE
-    lease = given["liveliness_lease_duration_seconds"]
-    if lease is not None:
-        profile.liveliness_lease_duration = Duration(seconds=lease)
-    return profile
