@@ -28,6 +28,7 @@ __all__ = [
     "dialling",
     "endpoint",
     "frozen",
+    "is_frozen",
     "is_matched",
     "listening",
     "opened",
@@ -109,11 +110,19 @@ with session(listening(sys.argv[1])) as one:
 """A process that listens at an endpoint, and hears everything."""
 
 
+def is_frozen(running: subprocess.Popen[str]) -> bool:
+    """Return whether a process has been stopped, with all its threads."""
+    tasks = Path(f"/proc/{running.pid}/task").iterdir()
+    states = [(task / "stat").read_text("utf-8").rpartition(")")[2].split()[0] for task in tasks]
+    return set(states) == {"T"}
+
+
 @contextmanager
 def frozen(running: subprocess.Popen[str]) -> Iterator[None]:
     """The process stands still."""
     os.kill(running.pid, signal.SIGSTOP)
     try:
+        assert until(lambda: is_frozen(running))
         yield
     finally:
         os.kill(running.pid, signal.SIGCONT)

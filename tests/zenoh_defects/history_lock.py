@@ -6,6 +6,7 @@ from zenoh import ext
 
 from tests.zenoh_defects._support import (
     endpoint,
+    is_frozen,
     listening,
     process,
     session,
@@ -19,17 +20,13 @@ with session(dialling(sys.argv[1])) as one:
     sys.stdin.readline()
     one.get(
         "a/@adv/**?_anyke;_max=1000",
-        lambda _: os.kill(os.getpid(), signal.SIGSTOP),
+        zenoh.handlers.Callback(
+            lambda _: os.kill(os.getpid(), signal.SIGSTOP), indirect=False
+        ),
         consolidation=zenoh.ConsolidationMode.NONE,
     )
     threading.Event().wait()
 """
-
-
-def state_of(pid: int) -> str:
-    """Return the letter for the state of a process."""
-    with open(f"/proc/{pid}/stat") as file:  # noqa: PTH123
-        return file.read().rpartition(")")[2].split()[0]
 
 
 def test_a_put_waits_for_a_reader_of_the_history_that_reads_nothing() -> None:
@@ -43,7 +40,7 @@ def test_a_put_waits_for_a_reader_of_the_history_that_reads_nothing() -> None:
         assert running.stdin is not None
         running.stdin.write("\n")
         running.stdin.flush()
-        assert until(lambda: state_of(running.pid) == "T")
+        assert until(lambda: is_frozen(running))
 
         assert stands_still(lambda: publisher.put(b""))
         running.kill()

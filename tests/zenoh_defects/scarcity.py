@@ -15,6 +15,8 @@ except zenoh.ZError:
     print("an error", flush=True)
 except BaseException:
     print("a panic", flush=True)
+else:
+    print("a session", flush=True)
 os._exit(0)
 """
 
