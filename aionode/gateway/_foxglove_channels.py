@@ -172,6 +172,15 @@ class Channels:
         )
         self._subscriptions[subscription_id] = (channel_id, subscribed)
 
+    def tell_ended(self, ended: list[Subscribed]) -> None:
+        """Tell the client what the policy, which has changed, does not allow any more."""
+        for subscription_id, (_, subscribed) in list(self._subscriptions.items()):
+            if subscribed in ended:
+                del self._subscriptions[subscription_id]
+                text = f"{subscribed.topic}: the policy has ended the subscription"
+                status = {"level": WARNING, "message": text, "id": f"ended {subscribed.topic}"}
+                self._session.outbox.send(frames.op_frame("status", status))
+
     def unsubscribe(self, subscription_ids: Iterable[int]) -> None:
         """End subscriptions; those that are not known have ended with their channel."""
         for each in list(subscription_ids):

@@ -25,6 +25,7 @@ from aionode.wire import cdr
 if TYPE_CHECKING:
     from aionode.bag import Player
     from aionode.gateway._session import Session
+    from aionode.gateway._session_topics import Subscribed
 
 __all__ = ["serve_frames"]
 
@@ -95,10 +96,12 @@ class Client:
         self._lanes = lanes
         self._published: dict[int, frames.ClientChannel] = {}
         self._graph: Connections | None = None
+        self._news = asyncio.Event()
         self.malformed = 0
         self.playback = Playback(session, player)
         self._channels = Channels(session, self.playback.time_ns)
         self._parameters = Parameters(session)
+        session.on_policy = self._note_policy
 
     def greet(self) -> None:
         """Say what this server can do."""
@@ -113,17 +116,28 @@ class Client:
         self._session.outbox.send(frames.op_frame("serverInfo", info))
 
     async def watch(self) -> None:
-        """Announce topics and services, and do it again whenever the graph has changed."""
+        """Announce topics and services again whenever the graph or the policy has changed."""
         robot = self._session._robot
         with suppress(EntityDestroyedError):  # the context has closed
             while True:
+                self._news.clear()
                 changed = robot.node.graph.changed()
+                changed.add_done_callback(lambda _: self._news.set())
                 await self._session.turn()
                 await self._channels.announce()
                 if self._graph is not None:
                     self._graph.tell()
-                await changed
+                await self._news.wait()
+                if changed.done():
+                    changed.result()
+                changed.cancel()
                 await robot.clock.sleep(SETTLING_SEC)
+
+    def _note_policy(self, ended: list[Subscribed]) -> None:
+        """Take that the policy has changed, which has ended subscriptions."""
+        self._channels.tell_ended(ended)
+        self._parameters.forget(ended)
+        self._news.set()
 
     async def take(self, frame: bytes | str) -> None:
         """Begin what a frame asks for; what fails, the client is told as a status."""

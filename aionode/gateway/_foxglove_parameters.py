@@ -112,6 +112,12 @@ class Parameters:
             self._events.close()
             self._events = None
 
+    def forget(self, ended: list[Subscribed]) -> None:
+        """Forget what the client follows if the policy has ended it; the client may ask again."""
+        if self._events in ended:
+            self._events, self._follows_all = None, False
+            self._followed.clear()
+
     def _frame(self, received: Received) -> str | None:
         """Return the frame for an event, if the client follows one of its parameters."""
         event = received.message

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib.metadata
 from collections.abc import AsyncGenerator, Awaitable, Callable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
@@ -49,6 +50,7 @@ if TYPE_CHECKING:
 
     from aionode.gateway._clients import Clients
     from aionode.gateway._session import Session
+    from aionode.gateway._session_topics import Subscribed
 
 __all__ = ["answer_http_error", "routes"]
 
@@ -102,6 +104,7 @@ class Endpoint:
                 until_disconnected(request),
             ):
                 session.owner = Caller(session.identity)
+                session.on_policy = partial(end_with, session)
                 async with until_ended(session):
                     if request.method != "POST":  # about the graph, or the nodes in it
                         await session.turn()
@@ -111,6 +114,12 @@ class Endpoint:
             if isinstance(error, HTTPException) and error.status_code == CLIENT_GONE:
                 return  # there is nobody to answer
             await error_response(error)(scope, receive, send)
+
+
+def end_with(session: Session, ended: list[Subscribed]) -> None:
+    """End a session whose request was for a topic that the policy does not allow any more."""
+    if ended:
+        session.ended.set()
 
 
 class Caller(msgspec.Struct, frozen=True):

@@ -133,6 +133,7 @@ class Topics:
         self._views: dict[str, View] = {}
         self._advertised: dict[str, set[str | None]] = {}
         self._fragmented = 0
+        self._session.on_policy = self._tell_ended
 
     async def advertise(self, op: Op) -> None:
         """Make a publisher for the client."""
@@ -202,10 +203,10 @@ class Topics:
             del self._wishes[topic]
             self._views.pop(topic).subscribed.close()
             return
-        self._wishes[topic] = left
         wish = combined(list(left.values()))
         if wish != self._views[topic].wish:
             await self._open(topic, wish)
+        self._wishes[topic] = left
 
     async def _open(self, topic: str, wish: Wish) -> None:
         """Subscribe to a topic; the earlier subscription of the client then ends."""
@@ -225,6 +226,13 @@ class Topics:
         self._views[topic] = View(wish, subscribed, queue)
         if earlier is not None:
             earlier.subscribed.close()
+
+    def _tell_ended(self, ended: list[Subscribed]) -> None:
+        """Tell the client which topics the policy, which has changed, does not allow any more."""
+        for topic, view in list(self._views.items()):
+            if view.subscribed in ended:
+                del self._views[topic], self._wishes[topic]
+                self._link.status("error", f"subscribe: the policy has ended {topic}")
 
     def _frames(self, topic: str, wish: Wish) -> Callable[[Received], Frame | None]:
         """Return what makes the frame of a message, once for all clients that want the same."""

@@ -146,8 +146,9 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
     def check_again(self) -> None:
         """End what the policy, which was read again, does not allow any more.
 
-        A subscription ends by itself. For a call, a goal, a publisher, or a service that it offers,
-        the client is disconnected, which ends them as they end with any client.
+        A subscription ends by itself, and the client is told. For a call, a goal, a publisher, or a
+        service that it offers, the client is disconnected, which ends them as they end with any
+        client.
         """
         policy = self._robot.policy
         if self.credentials is not None:
@@ -156,11 +157,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             except RefusedError:
                 self.ended.set()
         self._limits = policy.limits
-        for subscribed in list(self._subscribed):
-            if not policy.decide(
-                self.identity, "subscribe", subscribed.topic, subscribed.type_name
-            ).allowed:
-                subscribed.close()
+        self._end_subscriptions()
         held: list[tuple[Verb, str, str]] = [attempt.asked for attempt in self._attempts]
         held += [
             ("publish", topic, publisher.msg_type.__ros_type__)
@@ -169,3 +166,15 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         held += [("advertise", name, self._served_types[name]) for name in self._served]
         if not all(policy.decide(self.identity, *each).allowed for each in held):
             self.ended.set()  # which cancels its goals, and sends the stops of its leases
+
+    def _end_subscriptions(self) -> None:
+        """End the subscriptions that the policy does not allow any more."""
+        ended = []
+        for each in list(self._subscribed):
+            decide = self._robot.policy.decide
+            if not decide(self.identity, "subscribe", each.topic, each.type_name).allowed:
+                ended.append(each)
+                each.close()
+                result = "ended: the policy has changed"
+                self._robot.audit.note(self.identity, "subscribe", each.topic, result=result)
+        self.on_policy(ended)

@@ -106,11 +106,20 @@ class Subscribed:
             self._session.outbox.discard(self._key)
 
 
+def ignore(_: object) -> None:
+    """Do nothing."""
+
+
 class SessionTopics(SessionBase):
-    """The part of `Session` that subscribes and publishes."""
+    """The part of `Session` that subscribes and publishes.
+
+    Attributes:
+        on_policy: Called when the policy has changed, with the subscriptions that it has ended.
+    """
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
+        self.on_policy: Callable[[list[Subscribed]], object] = ignore
         self._subscribed: dict[Subscribed, None] = {}
         self._published: dict[str, tuple[Any, Callable[[], None]]] = {}
         self._counts: dict[str, int] = defaultdict(int)
