@@ -5,8 +5,6 @@ from __future__ import annotations
 import asyncio
 import os
 import socket
-import subprocess
-import sys
 from contextlib import closing
 from typing import Any
 
@@ -17,9 +15,9 @@ from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.node import Node
 from aionode.qos import qos_profile_default
 from aionode.wire._liveliness import endpoint_token
+from tests.support.fork_server import run
 from tests.support.peers import DOMAIN_ID, isolated_environment, raw_session
 
-AIONODE = [sys.executable, "-m", "aionode"]
 TOPICS = 3000
 
 
@@ -46,14 +44,7 @@ def test_three_thousand_topics_are_all_listed(env: dict[str, str]) -> None:
                 for n in range(1, TOPICS + 1)
             )
         ]
-        done = subprocess.run(
-            [*AIONODE, "topic", "list", "-c"],
-            env=env,
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        done = run(["-m", "aionode", "topic", "list", "-c"], env=env, timeout=60)
 
     assert len(tokens) == TOPICS
     assert done.stdout == f"{TOPICS}\n", done.stderr
@@ -64,14 +55,7 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
     """A process that accepts connections and sends nothing is frozen, or not a node."""
     port = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
     with closing(socket.create_server(("127.0.0.1", port))):
-        done = subprocess.run(
-            [*AIONODE, "topic", "list", "-c"],
-            env=env,
-            capture_output=True,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        done = run(["-m", "aionode", "topic", "list", "-c"], env=env, timeout=60)
 
     assert (done.returncode, done.stdout) == (0, "0\n")
     assert "this may be incomplete" in done.stderr

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import re
+import struct
 import subprocess
 import sys
+import termios
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -17,9 +20,11 @@ from aionode.cli import main
 from aionode.cli._main import root
 from aionode.cli._support import completion
 from aionode.transport.link import available
+from tests.support.fork_server import run, start
 from tests.support.peers import isolated_environment
 
 pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
+fdspawn = pytest.importorskip("pexpect.fdpexpect").fdspawn
 
 ROOT = Path(__file__).parents[2]
 ROBOT = Path(__file__).with_name("robot.py")
@@ -55,21 +60,23 @@ class Terminals:
 
     def shown(self, *arguments: str) -> tuple[str, int]:
         """Return the output of a command in a terminal, and its exit status."""
-        child = self.open(*arguments)
-        child.expect(pexpect.EOF)
-        child.close()
-        return child.before.replace("\r\n", "\n"), child.exitstatus
+        terminal, tty = os.openpty()
+        fcntl.ioctl(tty, termios.TIOCSWINSZ, struct.pack("4H", 50, 200, 0, 0))
+        command = ["-m", "aionode", *arguments]
+        process = start(command, env=self.env, stdin=tty, stdout=tty, stderr=tty)
+        os.close(tty)
+        reader = fdspawn(terminal, encoding="utf-8", timeout=STARTED_S)
+        try:
+            reader.expect(pexpect.EOF)
+            status = process.wait(STARTED_S)
+        finally:
+            process.kill()
+            reader.close()
+        return reader.before.replace("\r\n", "\n"), status
 
     def run(self, *arguments: str, **env: str) -> subprocess.CompletedProcess[str]:
         """Run a command with its output in pipes."""
-        return subprocess.run(
-            [*AIONODE, *arguments],
-            env=self.env | env,
-            capture_output=True,
-            text=True,
-            timeout=STARTED_S,
-            check=False,
-        )
+        return run(["-m", "aionode", *arguments], env=self.env | env, timeout=STARTED_S)
 
 
 @pytest.fixture(scope="module")

@@ -109,7 +109,7 @@ def start(tmp_path: Path, *arguments: str) -> subprocess.Popen[str]:
     program = tmp_path / "mover.py"
     program.write_text(PROGRAM, encoding="utf-8")
     return fork_server.start(
-        ["-m", "aionode", "run", str(program), *arguments],
+        ["-m", "aionode.rclpy", str(program), *arguments],  # as `aionode run` does
         env=os.environ,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.DEVNULL,

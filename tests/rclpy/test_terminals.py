@@ -133,7 +133,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
             path = tmp_path / f"program{len(terminals)}.py"
             path.write_text(program, encoding="utf-8")
             program = path
-        runner = ("-m", "aionode", "run") if rclpy else ()
+        runner = ("-m", "aionode.rclpy") if rclpy else ()  # as `aionode run` does
         output = tmp_path / f"output{len(terminals)}"
         terminal = Terminal(output, *runner, str(program), *args, environment=environment)
         terminals.append(terminal)
