@@ -39,6 +39,7 @@ SHARED = {
     "aionode.lifecycle._answers": "managed nodes of rclpy's API give the same answers",
     "aionode.logging._severity": "arguments name severities, and do not log",
     "aionode.bag._shrinking": "`aionode bag shrink` is its only user",
+    "aionode.bag._yaml_files": "`aionode bag` and programs of rosbag2_py take these files",
     "aionode.bag._types": "programs of rosbag2_py write topics by the names of their types",
     "aionode.message._field_types": "the codec compiles the fields of a message",
     "aionode.message._memory_size": "queues add up what their messages take",

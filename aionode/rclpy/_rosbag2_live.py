@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 import msgspec
 
 from aionode import Context, bag
+from aionode.bag._yaml_files import PRESETS, static_topics_in
 from aionode.clock import Duration, Time
 from aionode.errors import AionodeError
 from aionode.logging import LoggingSeverity
@@ -29,9 +30,6 @@ __all__ = [
     "Recorder",
     "ServiceRequestsSource",
 ]
-
-PRESETS: Final = {"none": "none", "fastwrite": "none", "zstd_small": "zstd_small"}
-"""The compressions of rosbag2's presets; of all others it is ``zstd``."""
 
 CHECK_S: Final = 0.1
 """Time between two looks of a wait for Ctrl-C, which a lock does not let through everywhere."""
@@ -86,9 +84,16 @@ class RecordOptions(msgspec.Struct):
     ignore_leaf_topics: bool = False
     start_paused: bool = False
     use_sim_time: bool = False
+    static_topics_uri: str = ""
     disable_keyboard_controls: bool = True
     statistics_max_publishing_rate: float = 1.0
     repeat_transient_local_messages: dict[str, int] = {}
+    repeat_all_transient_local_depth: int = 0
+
+    def repeated(self) -> dict[str, int]:
+        """Return how many messages of which latched topics further files begin with."""
+        depth = self.repeat_all_transient_local_depth
+        return ({"*": depth} if depth > 0 else {}) | self.repeat_transient_local_messages
 
     def selection(self) -> bag.Selection:
         """Return which topics are wanted."""
@@ -200,9 +205,8 @@ class LiveThread:
         try:
             asyncio.run(self._run())
         except BaseException as error:  # noqa: BLE001  # raised in the thread that waits
-            failure = (
-                RuntimeError(str(error)) if isinstance(error, AionodeError | OSError) else error
-            )
+            expected = isinstance(error, AionodeError | OSError | ValueError)
+            failure = RuntimeError(str(error)) if expected else error
             for future in (self._entered, self._ended):
                 if not future.done():
                     future.set_exception(failure)
@@ -369,10 +373,11 @@ class Recorder(Live):
             max_bytes=storage.max_bagfile_size,
             max_duration_sec=storage.max_bagfile_duration,
             snapshot=storage.snapshot_mode,
-            repeat_latched=options.repeat_transient_local_messages or True,
+            repeat_latched=options.repeated() or True,
             discovery=not options.is_discovery_disabled,
             include_unpublished=options.include_unpublished_topics,
             ignore_leaf=options.ignore_leaf_topics,
+            static_topics=static_topics_in(options.static_topics_uri),
             qos=options.topic_qos_profile_overrides,
             use_sim_time=options.use_sim_time,
             start_paused=options.start_paused,

@@ -21,6 +21,7 @@ from aionode.rclpy._rosbag2_live import (
     RecordOptions,
     ServiceRequestsSource,
 )
+from aionode.rclpy._rosbag2_rewrite import Reindexer, bag_rewrite
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
 from aionode.wire.typehash import type_hash
@@ -47,6 +48,7 @@ __all__ = [
     "StorageOptions",
     "TopicInformation",
     "TopicMetadata",
+    "bag_rewrite",
     "get_default_storage_id",
     "get_registered_compressors",
     "get_registered_readers",
@@ -553,21 +555,6 @@ def definition_by_name(typename: str) -> MessageDefinition:
     except InterfaceNotFoundError:
         return MessageDefinition(topic_type=typename)
     return MessageDefinition(typename, "ros2msg", definition_of(cls), type_hash(cls))
-
-
-class Reindexer:
-    """Writes the metadata of bags anew."""
-
-    def reindex(self, storage_options: StorageOptions) -> None:
-        """Write ``metadata.yaml`` from the files of a bag.
-
-        Raises:
-            RuntimeError: there are no files, or one is damaged.
-        """
-        try:
-            bag.reindex(storage_options.uri)
-        except (AionodeError, OSError) as error:
-            raise RuntimeError(str(error)) from error
 
 
 # Listings

@@ -16,9 +16,9 @@ from click.testing import CliRunner
 
 from aionode import bag
 from aionode.bag._writer import topic_info
+from aionode.bag._yaml_files import chunk_compression, outputs_in, static_topics_in
 from aionode.cli._main import main, root
 from aionode.cli._nouns.bag_live import record_command, recorder_options
-from aionode.cli._nouns.bag_yaml import chunk_compression, outputs_in, static_topics_in
 from aionode.interfaces.std_msgs.msg import String
 from aionode.wire import cdr
 
@@ -104,16 +104,16 @@ def test_a_yaml_file_without_what_it_needs_is_refused(tmp_path: Path) -> None:
     """The error names the file and the key."""
     file = tmp_path / "x.yaml"
     file.write_text("output_bags:\n- storage_id: sqlite3\n  uri: x\n")
-    with pytest.raises(click.BadParameter, match="writes mcap"):
+    with pytest.raises(ValueError, match="writes mcap"):
         outputs_in(str(file))
     file.write_text("a: [")
-    with pytest.raises(click.BadParameter, match="no YAML"):
+    with pytest.raises(ValueError, match="no YAML"):
         static_topics_in(str(file))
     file.write_text("static_topics_and_types_list: [x]")
-    with pytest.raises(click.BadParameter, match="static_topics_and_types_list"):
+    with pytest.raises(ValueError, match="static_topics_and_types_list"):
         static_topics_in(str(file))
     file.write_text("compression: Zip")
-    with pytest.raises(click.BadParameter, match="Lz4"):
+    with pytest.raises(ValueError, match="Lz4"):
         chunk_compression(None, str(file), "zstd")
 
 

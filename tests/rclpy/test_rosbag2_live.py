@@ -139,3 +139,37 @@ def test_metadata_are_written_anew(tmp_path: Path) -> None:
         assert run.message_count == 2
     with pytest.raises(RuntimeError, match="only a folder"):
         rosbag2_py.Reindexer().reindex(options_of(tmp_path / "none"))
+
+
+def test_bags_are_written_anew_by_a_file(tmp_path: Path) -> None:
+    """By `bag_rewrite`, as `ros2 bag convert` calls it."""
+    write(tmp_path / "a", 2)
+    write(tmp_path / "b", 3)
+    options = tmp_path / "out.yaml"
+    options.write_text(f"output_bags:\n- uri: {tmp_path / 'both'}\n  topics: [/words]\n")
+    places = [options_of(tmp_path / name) for name in "ab"]
+    rosbag2_py.bag_rewrite(places, str(options))
+    with bag.open(tmp_path / "both") as run:
+        assert run.counts == {"/words": 5}
+    with pytest.raises(RuntimeError, match="already exists"):
+        rosbag2_py.bag_rewrite(places, str(options))
+    options.write_text("output_bags: 1")
+    with pytest.raises(RuntimeError, match=r"out\.yaml: it needs output_bags"):
+        rosbag2_py.bag_rewrite(places, str(options))
+
+
+def test_a_recorder_takes_the_topics_of_a_file_and_repeats_latched_ones(tmp_path: Path) -> None:
+    """Options of Lyrical, which programs set as attributes."""
+    file = tmp_path / "topics.yaml"
+    file.write_text("static_topics_and_types_list:\n- [map, std_msgs/msg/String]\n")
+    record = rosbag2_py.RecordOptions()
+    record.static_topics_uri = str(file)
+    record.repeat_all_transient_local_depth = 3
+    record.repeat_transient_local_messages = {"/map": 1}
+    recorder = rosbag2_py.Recorder(options_of(tmp_path / "run"), record)
+    made = recorder._make(Context(transport="local"))
+    assert made._static_topics == {"/map": "std_msgs/msg/String"}
+    assert made._repeated == {"*": 3, "/map": 1}
+    file.write_text("static_topics_and_types_list: [1]")
+    with pytest.raises(RuntimeError, match=r"topics\.yaml"):
+        rosbag2_py.Recorder(options_of(tmp_path / "run"), record).record()

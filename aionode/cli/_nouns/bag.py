@@ -6,18 +6,19 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from aionode.bag._yaml_files import inputs_in, outputs_in
 from aionode.cli._nouns.bag_live import burst_command, play_command, record_command
 from aionode.cli._nouns.bag_options import (
     TOPICS,
     bag_names,
     names,
+    option_from,
     selection_of,
     selection_options,
     spread,
     time_span,
 )
 from aionode.cli._nouns.bag_replay import diff_command, shrink_command
-from aionode.cli._nouns.bag_yaml import inputs_in, outputs_in
 from aionode.cli._support.options import json_option
 from aionode.cli._support.output import Output
 from aionode.errors import CommandError
@@ -228,7 +229,7 @@ def convert_command(paths: tuple[str, ...], json: bool, **values: Any) -> None:
 
     outputs = []
     if values["output_options"] is not None:
-        outputs = outputs_in(values["output_options"])
+        outputs = option_from(outputs_in, values["output_options"])
     elif paths:
         start, end = time_span(values)
         options = {
@@ -239,7 +240,7 @@ def convert_command(paths: tuple[str, ...], json: bool, **values: Any) -> None:
             "max_bytes": values["max_bag_size"],
         }
         outputs, paths = [(paths[-1], options)], paths[:-1]
-    bags = [*paths, *bag_names(values["inputs"]), *inputs_in(values["input_options"])]
+    bags = [*paths, *bag_names(values["inputs"]), *option_from(inputs_in, values["input_options"])]
     if not bags or not outputs:
         raise click.UsageError("give the bags and the new one: convert IN... OUT")
     for out, options in outputs:

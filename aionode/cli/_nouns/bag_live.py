@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from aionode._concurrency import checkpoint
+from aionode.bag._yaml_files import PRESETS, chunk_compression, static_topics_in
 from aionode.cli._nouns.bag_options import (
     bag_names,
     checked_selection,
     names,
+    option_from,
     output_folder,
     overrides,
     selection_of,
@@ -27,7 +29,6 @@ from aionode.cli._nouns.bag_terminal import (
     keys_pressed,
     progress_shown,
 )
-from aionode.cli._nouns.bag_yaml import PRESETS, chunk_compression, static_topics_in
 from aionode.cli._support.options import json_option, positive, seconds
 from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_until_stopped
@@ -213,7 +214,8 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
     return {
         "selection": selection,
         "node_name": values["node_name"],
-        "compression": chunk_compression(
+        "compression": option_from(
+            chunk_compression,
             values["storage_preset_profile"],
             values["storage_config_file"],
             values["compression_format"],
@@ -228,7 +230,7 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
         "discovery": not values["no_discovery"],
         "include_unpublished": values["include_unpublished_topics"],
         "ignore_leaf": values["ignore_leaf_topics"],
-        "static_topics": static_topics_in(values["static_topics_path"]),
+        "static_topics": option_from(static_topics_in, values["static_topics_path"]),
         "qos": overrides(values["qos_profile_overrides_path"]),
         "use_sim_time": values["use_sim_time"],
         "start_paused": values["start_paused"],

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
@@ -21,6 +21,7 @@ __all__ = [
     "bag_names",
     "checked_selection",
     "names",
+    "option_from",
     "output_folder",
     "overrides",
     "selection_of",
@@ -28,6 +29,8 @@ __all__ = [
     "spread",
     "time_span",
 ]
+
+T = TypeVar("T")
 
 Decorator = Callable[[Any], Any]
 
@@ -166,6 +169,18 @@ def output_folder() -> str:
     seconds = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds / 1e9
     local = datetime.fromtimestamp(seconds, UTC).astimezone()
     return local.strftime("rosbag2_%Y_%m_%d-%H_%M_%S")
+
+
+def option_from(read: Callable[..., T], *values: Any) -> T:
+    """Return what a function makes of an option, such as the content of a file.
+
+    Raises:
+        click.BadParameter: it does not fit.
+    """
+    try:
+        return read(*values)
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from error
 
 
 def overrides(path: str | None) -> dict[str, QoSProfile]:

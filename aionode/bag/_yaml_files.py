@@ -1,12 +1,14 @@
-"""The YAML files that rosbag2's commands take, for users who have them."""
+"""The YAML files that rosbag2 takes, on the command line and in programs of `rosbag2_py`."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any, Final
 
-import click
 import yaml
+
+from aionode.bag._selection import Selection
+from aionode.clock import Time
 
 __all__ = ["PRESETS", "chunk_compression", "inputs_in", "outputs_in", "static_topics_in"]
 
@@ -26,30 +28,30 @@ def content_of(path: str) -> dict[str, Any]:
     """Return what a YAML file has.
 
     Raises:
-        click.BadParameter: it has no names with values.
+        ValueError: it has no names with values.
     """
     try:
         content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
     except yaml.YAMLError as error:
-        raise click.BadParameter(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+        raise ValueError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
     if not isinstance(content, dict):
-        raise click.BadParameter(f"{path}: there are no names with values in it")
+        raise ValueError(f"{path}: there are no names with values in it")  # noqa: TRY004  # of a file, and not of an argument
     return content
 
 
 def static_topics_in(path: str | None) -> dict[str, str]:
-    """Return the types by topic of a file for ``--static-topics-path``.
+    """Return the types by topic of a file for ``--static-topics-path``; none without a file.
 
     Raises:
-        click.BadParameter: it is no such file.
+        ValueError: it is no such file.
     """
-    if path is None:
+    if not path:
         return {}
     listed = content_of(path).get("static_topics_and_types_list")
     try:
         return {f"/{name.removeprefix('/')}": str(kind) for name, kind in listed or ()}
     except (TypeError, ValueError, AttributeError) as error:
-        raise click.BadParameter(
+        raise ValueError(
             f"{path}: it needs static_topics_and_types_list, with [topic, type] for each"
         ) from error
 
@@ -58,12 +60,12 @@ def chunk_compression(preset: str | None, config: str | None, compression: str) 
     """Return how chunks are compressed, by the most particular of three options.
 
     Raises:
-        click.BadParameter: the file names no compression of MCAP.
+        ValueError: the file names no compression of MCAP.
     """
     if config is not None:
         named = content_of(config).get("compression")
         if named is not None and named not in COMPRESSIONS:
-            raise click.BadParameter(f"{config}: compression is one of {', '.join(COMPRESSIONS)}")
+            raise ValueError(f"{config}: compression is one of {', '.join(COMPRESSIONS)}")
         if named is not None:
             return COMPRESSIONS[named]
     return compression if preset is None else PRESETS[preset]
@@ -73,13 +75,13 @@ def bags_in(path: str, key: str) -> list[dict[str, Any]]:
     """Return the entries of a list of bags in a file.
 
     Raises:
-        click.BadParameter: there is none, or one has no ``uri``.
+        ValueError: there is none, or one has no ``uri``.
     """
     listed = content_of(path).get(key)
     if not isinstance(listed, list) or not all(
         isinstance(bag, dict) and bag.get("uri") for bag in listed
     ):
-        raise click.BadParameter(f"{path}: it needs {key}: a list of entries with a uri")
+        raise ValueError(f"{path}: it needs {key}: a list of entries with a uri")
     return listed
 
 
@@ -92,15 +94,12 @@ def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:
     """Return the new bags of a file for ``--output-options``: folder, and how `convert` makes it.
 
     Raises:
-        click.BadParameter: it is no such file, or asks for a bag that is not written.
+        ValueError: it is no such file, or asks for a bag that is not written.
     """
-    from aionode.bag import Selection
-    from aionode.clock import Time
-
     outputs: list[tuple[str, dict[str, Any]]] = []
     for entry in bags_in(path, "output_bags"):
         if entry.get("storage_id") not in {None, "", "mcap"}:
-            raise click.BadParameter(
+            raise ValueError(
                 f"{path}: {entry['uri']}: aionode writes mcap, and not {entry['storage_id']}"
             )
         every = [
@@ -113,7 +112,7 @@ def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:
             every = ["topic", "service", "action"]
         preset = entry.get("storage_preset_profile") or None
         if preset is not None and preset not in PRESETS:
-            raise click.BadParameter(f"{path}: there is no storage_preset_profile {preset}")
+            raise ValueError(f"{path}: there is no storage_preset_profile {preset}")
         start_ns, end_ns = entry.get("start_time_ns", -1), entry.get("end_time_ns", -1)
         outputs.append(
             (

@@ -1,0 +1,53 @@
+"""Programs import these from `rosbag2_py`: bags and their metadata are written anew."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from aionode import bag
+from aionode.bag._yaml_files import outputs_in
+from aionode.errors import AionodeError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["Reindexer", "bag_rewrite"]
+
+
+class Place(Protocol):
+    """What of `StorageOptions` is used: the place of a bag."""
+
+    uri: str
+
+
+def bag_rewrite(input_options: Sequence[Place], output_config_file: str) -> None:
+    """Write bags anew, as one or several others.
+
+    Args:
+        input_options: The bags.
+        output_config_file: A YAML file with ``output_bags``, as ``ros2 bag convert -o`` takes it.
+
+    Raises:
+        RuntimeError: a bag cannot be read, a new one exists or cannot be written, or the file asks
+            for something else than MCAP.
+    """
+    try:
+        for uri, options in outputs_in(output_config_file):
+            bag.convert([each.uri for each in input_options], uri, **options)
+    except (AionodeError, OSError, ValueError) as error:
+        raise RuntimeError(str(error)) from error
+
+
+class Reindexer:
+    """Writes the metadata of bags anew."""
+
+    def reindex(self, storage_options: Place) -> None:
+        """Write ``metadata.yaml`` from the files of a bag.
+
+        Raises:
+            RuntimeError: there are no files, or one is damaged.
+        """
+        try:
+            bag.reindex(storage_options.uri)
+        except (AionodeError, OSError) as error:
+            raise RuntimeError(str(error)) from error
