@@ -11,6 +11,7 @@ import aionode.rclpy
 from aionode.action import GoalStatus
 from aionode.endpoints.actions import _goal_store
 from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
+from aionode.interfaces.tf2_msgs.action import LookupTransform as OwnLookupTransform
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._rosidl import action_class
 from aionode.rclpy.action import (
@@ -34,9 +35,17 @@ from aionode.rclpy.task import Future
 from tests.support.peers import DOMAIN_ID, isolated_environment
 
 Fibonacci = action_class("example_interfaces/action/Fibonacci")
+LookupTransform = action_class("tf2_msgs/action/LookupTransform")
+BOTH = ["rosidl", "aionode"]
 Goal = ServerGoalHandle[Any, Any, Any]
 
 PATIENCE_S = 20.0
+
+
+@pytest.fixture
+def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limit what waits in contexts that are made from now on."""
+    monkeypatch.setenv("AIONODE_QUEUE_BYTES", "65536")
 
 
 @pytest.fixture
@@ -300,6 +309,25 @@ def test_goals_beyond_the_limit_are_rejected_before_the_program_is_asked(
     assert len(asked) == 3
     (line,) = [each for each in caplog.records if "rejected" in each.message]
     assert "as 3 are active: max_goals=3" in line.message
+
+
+@pytest.mark.usefixtures("small_queues")
+@pytest.mark.parametrize("action_type", [LookupTransform, OwnLookupTransform], ids=BOTH)
+def test_goals_that_are_too_large_together_are_rejected(
+    node: Node,
+    result_of: Callable[..., Any],
+    caplog: pytest.LogCaptureFixture,
+    action_type: Any,
+) -> None:
+    """A thousand active goals of some megabytes each would fill the memory."""
+    Server(node, action_type)
+    client = client_of(node, action_type)
+    goal = action_type.Goal(target_frame="x" * 40_000)
+
+    answers = [result_of(client.send_goal_async(goal)) for _ in range(2)]
+
+    assert [answer.accepted for answer in answers] == [True, False]
+    assert "AIONODE_QUEUE_BYTES" in caplog.text
 
 
 def test_of_too_many_results_the_oldest_is_forgotten(

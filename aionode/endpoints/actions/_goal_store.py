@@ -58,18 +58,25 @@ class GoalStore(dict[bytes, Any]):
         kept_ns: How long goals are kept after their end; negative for ever.
         limit_bytes: How much the messages of active goals take at most, and as much those of kept
             ones; 0 for any. A single one always fits.
+        goal_class: The class of aionode whose fields the messages have; their own by default.
 
     Attributes:
         kept_ns: The same.
     """
 
     def __init__(
-        self, now_ns: Callable[[], int], limit: int, kept_ns: int, limit_bytes: int = 0
+        self,
+        now_ns: Callable[[], int],
+        limit: int,
+        kept_ns: int,
+        limit_bytes: int = 0,
+        goal_class: Any = None,
     ) -> None:
         super().__init__()
         self._now_ns = now_ns
         self._limit = limit
         self._limit_bytes = limit_bytes
+        self._goal_class = goal_class
         self.kept_ns = kept_ns
         # When each kept goal is forgotten. All are kept equally long, so the first is due first.
         self._kept: dict[bytes, int] = {}
@@ -99,7 +106,7 @@ class GoalStore(dict[bytes, Any]):
 
     def _fit(self, goals: list[Any]) -> bool:
         """Return whether messages of goals take no more than the limit."""
-        kind: Any = type(goals[0])
+        kind: Any = self._goal_class or type(goals[0])
         size_of = memory_size(kind) if self._limit_bytes else None
         return size_of is None or sum(map(size_of, goals)) <= self._limit_bytes
 
@@ -108,15 +115,15 @@ class GoalStore(dict[bytes, Any]):
         """When the next goal is to be forgotten; None if none waits for its time."""
         return None if self.kept_ns < 0 else next(iter(self._kept.values()), None)
 
-    def keep(self, goal_id: bytes) -> Any | None:
-        """Keep a goal that has ended; return the goal that is forgotten for it, or None."""
-        forgotten = None
+    def keep(self, goal_id: bytes) -> list[Any]:
+        """Keep a goal that has ended; return the goals that are forgotten for it."""
+        forgotten = []
         if len(self._kept) >= self._limit:
-            forgotten = self._forget(next(iter(self._kept)))
+            forgotten.append(self._forget(next(iter(self._kept))))
         self._kept[goal_id] = self._now_ns() + self.kept_ns
         if self._limit_bytes:
             while len(self._kept) > 1 and not self._fit([self[key].request for key in self._kept]):
-                forgotten = self._forget(next(iter(self._kept)))
+                forgotten.append(self._forget(next(iter(self._kept))))
         return forgotten
 
     def expire(self) -> list[Any]:
@@ -149,8 +156,8 @@ class AlarmedGoalStore(GoalStore):
         self._time_base = time_base
         self._alarm: Alarm | None = None  # for the first, if it waits for its time
 
-    def keep(self, goal_id: bytes) -> Any | None:
-        """Keep a goal that has ended; return the goal that is forgotten for it, or None."""
+    def keep(self, goal_id: bytes) -> list[Any]:
+        """Keep a goal that has ended; return the goals that are forgotten for it."""
         forgotten = super().keep(goal_id)
         if self._alarm is None and self.kept_ns:
             self._set_alarm()

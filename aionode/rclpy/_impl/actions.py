@@ -22,7 +22,7 @@ from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
-from aionode.rclpy._impl.typesupport import message_like
+from aionode.rclpy._impl.typesupport import aionode_class, message_like
 
 if TYPE_CHECKING:
     from aionode.rclpy._impl.node import NodeHandle
@@ -47,10 +47,12 @@ class GoalState:
 
     Attributes:
         info: Its id, and when it was accepted.
+        request: Its message.
         status: Its state.
     """
 
     info: Any
+    request: Any
     status: GoalStatus = GoalStatus.ACCEPTED
 
     @property
@@ -177,9 +179,7 @@ class Expiry(Destroyable):
 
     def keep(self, goal_id: bytes) -> None:
         """Keep a goal that has ended for the time of results, and forget the oldest of too many."""
-        forgotten = self.goals.keep(goal_id)
-        if forgotten is not None:
-            self.forgotten.append(forgotten)
+        self.forgotten += self.goals.keep(goal_id)
         self.signal.notify()
 
     def ready(self) -> bool:
@@ -234,12 +234,18 @@ class ActionServerHandle(ActionHandle):
         self._io = node.io
         self.action_type = action_type
         self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
-        self.goals = GoalStore(clock.clock.now_ns, max_goals, int(result_timeout * 1e9))
+        self.goals = GoalStore(
+            clock.clock.now_ns,
+            max_goals,
+            int(result_timeout * 1e9),
+            node.bare.context.network.queue_bytes,
+            aionode_class(action_type.Goal),
+        )
         self.expiry = Expiry(node, clock, self.goals)
         self.parts.append(self.expiry)
 
-    def add_goal(self, info: Any) -> GoalState:
-        """Return the state of a new goal.
+    def add_goal(self, info: Any, request: Any) -> GoalState:
+        """Return the state of a new goal, whose message is `request`.
 
         Raises:
             RCLError: there is one of this id.
@@ -247,7 +253,7 @@ class ActionServerHandle(ActionHandle):
         goal_id = bytes(info.goal_id.uuid)
         if goal_id in self.goals:
             raise RCLError("Failed to accept new goal: goal ID already exists")
-        state = self.goals[goal_id] = GoalState(info)
+        state = self.goals[goal_id] = GoalState(info, request)
         return state
 
     def publish_status(self) -> None:

@@ -61,7 +61,9 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         goal_info: Any,
         goal_request: Any,
     ) -> None:
-        self._goal_handle: GoalState | None = action_server._handle.add_goal(goal_info)
+        self._goal_handle: GoalState | None = action_server._handle.add_goal(
+            goal_info, goal_request
+        )
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
@@ -253,7 +255,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         info = message_like(self._action_type, "action_msgs/msg/GoalInfo")()
         info.goal_id = goal_id
         accepted = False
-        if bytes(goal_id.uuid) not in self._handle.goals and not self._is_full():
+        if bytes(goal_id.uuid) not in self._handle.goals and not self._is_full(request.goal):
             answer = await await_or_execute(self._goal_callback, request.goal)
             if isinstance(answer, GoalResponse):
                 accepted = answer is GoalResponse.ACCEPT
@@ -270,9 +272,9 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             self._handle.publish_status()
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
-    def _is_full(self) -> bool:
-        """Return whether `max_goals` are active; if so, say why another one is rejected."""
-        why: str = self._handle.goals.refusal()
+    def _is_full(self, goal: Any) -> bool:
+        """Return whether there is no room for a goal; if so, say why it is rejected."""
+        why: str = self._handle.goals.refusal(goal)
         if why:
             tell_full(self._logger, f"action server {self._action_name}", why)
         return bool(why)

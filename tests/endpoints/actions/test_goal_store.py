@@ -147,6 +147,19 @@ def test_goals_are_limited_in_bytes() -> None:
     assert list(goals) == [b"b"]
 
 
+def test_all_goals_that_make_room_for_a_large_one_are_told_of() -> None:
+    """Who has more to forget of each of them would keep that for ever."""
+    goals = GoalStore(lambda: 0, limit=10, kept_ns=-1, limit_bytes=10_000)
+    small = [Large(3_000) for _ in range(3)]
+    for number, handle in enumerate(small):
+        goals[bytes([number])] = handle
+        assert goals.keep(bytes([number])) == []
+
+    goals[b"large"] = Large(9_000)
+
+    assert goals.keep(b"large") == small
+
+
 async def test_a_full_server_says_why_it_rejects_once_a_second(
     node: Node, caplog: pytest.LogCaptureFixture
 ) -> None:
