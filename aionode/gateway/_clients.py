@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import AsyncIterator, MutableMapping
 from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 __all__ = ["Clients", "GatewayStats"]
+
+WARN_SEC: Final = 10.0
+"""The time between two warnings about clients that are not let in, in seconds."""
 
 
 class GatewayStats(msgspec.Struct, frozen=True):
@@ -140,6 +143,9 @@ class Clients:
         self._refused += 1
         stranger = Identity("", address=credentials.address)
         self.robot.audit.note(stranger, "connect", "", result=error.reason, code=error.code)
+        if error.code == "unauthorized":  # a browser does not tell its page why
+            log = self.node.get_logger()
+            log.warning(f"gateway: {error}", throttle_duration_sec=WARN_SEC)
 
     def use_policy(self, policy: Policy) -> None:
         """Have another policy count from now on; what it does not allow any more is ended."""

@@ -1,4 +1,4 @@
-"""The limits of a policy for the fields of messages."""
+"""The limits that a policy sets to the fields of messages."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ __all__ = ["FieldLimit", "OutOfLimitsError", "limited"]
 
 
 class FieldLimit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The limits of one field of a message; a NaN is never within them.
+    """The limits of one field of a message. A NaN is never within the limits.
 
     Attributes:
         min: The least value.
         max: The greatest value.
-        outside: Whether a value outside is refused, or replaced by the nearest limit.
+        outside: ``refuse`` refuses a message with a value outside the limits, and ``clamp``
+            replaces the value by the nearest limit.
     """
 
     min: float = -math.inf

@@ -49,22 +49,25 @@ class Gateway(Clients):
     """Serves a robot to browsers, programs and apps: ``async with Gateway(node) as gateway:``.
 
     Args:
-        node: The node by which it takes part; it has to run.
-        policy: Who may do what; by default `Policy.default`, which only reads, on this host only.
-        host: The address to listen on.
-        port: The port; 0 for a free one.
-        ask: Asks a person whether a client may do something, where the policy says ``ask``; called
-            with the identity, the verb, the name and the message. Without it that is refused.
-        player: A bag's player, which Foxglove's timeline controls, as far as the policy allows to
-            call the services of the player's node.
+        node: The node by which the gateway takes part in the graph. The node has to run.
+        policy: Who may do what; by default `Policy.default`, by which programs of this host read
+            everything, and nobody writes.
+        host: The address on which the gateway listens.
+        port: The port on which the gateway listens; 0 for a free port.
+        ask: A coroutine function that asks a person, where a rule of the policy has ``ask``. The
+            gateway calls it with the identity of the client, the verb, the name and the message,
+            and it returns whether the person says yes. Without `ask`, such requests are refused.
+        player: The player of a bag. Foxglove's timeline controls it, as far as the policy allows
+            calls of the services of the player's node.
 
     Raises:
-        ConfigurationError: another interface than loopback is to be served, and the policy knows
-            no client by a token or certificate (a ValueError).
+        ConfigurationError: other machines can connect to `host`, and the policy knows no client by
+            a token or certificate (a ValueError).
 
     Attributes:
         node: The node.
-        port: The port it listens on.
+        host: The address on which the gateway listens.
+        port: The port on which the gateway listens.
     """
 
     def __init__(
@@ -121,6 +124,11 @@ class Gateway(Clients):
             await server.has_started.wait()
             self._stack = stack.pop_all()
         self.node.get_logger().info(f"gateway: listening on {self.host}:{self.port}")
+        if not self._policy.who:
+            self.node.get_logger().warning(
+                "gateway: the policy has no [[who]], so nobody can connect; add clients with a "
+                "token, or programs of this host with loopback = true"
+            )
         return self
 
     async def __aexit__(

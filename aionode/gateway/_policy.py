@@ -1,7 +1,8 @@
 """Who may do what with the robot: rules, as a person reviews them in a file.
 
-A rule names who it is about, what they may do with which names, and within which limits. What no
-rule allows is refused, and ``[[refuse]]`` has precedence over ``[[allow]]``.
+A rule says which clients it is about, what these clients may do with which names, and within which
+limits. The policy refuses a request that no rule allows, and a ``[[refuse]]`` has precedence over
+every ``[[allow]]``.
 """
 
 from __future__ import annotations
@@ -60,10 +61,15 @@ COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
 
 MOST_REMEMBERED: Final = 4096
-"""How many answers to who may do what are kept."""
+"""How many decisions, and how many patterns of names, are kept."""
 
 MOST_CHARACTERS: Final = 1000
 """The longest name that is looked for in rules, in characters."""
+
+READ_ONLY: Final = (
+    "without a policy, clients only read; start the gateway with --allow-write, or write a policy"
+)
+"""Why a client may not write, where there is no policy file."""
 
 
 ORIGIN: Final = re.compile(
@@ -73,17 +79,18 @@ ORIGIN: Final = re.compile(
 
 
 class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A part of a policy file: a key that nobody knows is an error, not a rule without effect."""
+    """A part of a policy file. An unknown key is an error: as a rule, it would have no effect."""
 
 
 class LeaseRule(Part, frozen=True):
-    """How commands of a topic are published: one holder at a time, and a stop when it ends.
+    """How commands of a topic are published: by one client at a time, and with a stop at the end.
 
     Attributes:
-        ttl_sec: For how long the holder may publish nothing, in seconds.
-        priority: A client takes the topic from a holder of lower priority.
-        max_age_sec: How old a command may be by its stamp, or since it arrived, in seconds.
-        stop: The message that stops what the commands move; its other fields have their defaults.
+        ttl_sec: The longest time between two commands of the holder, in seconds. After it, the
+            gateway publishes the stop.
+        priority: A client takes the topic from a holder of a lower priority.
+        max_age_sec: The greatest age of a command, in seconds: by its stamp, and since it arrived.
+        stop: The values of the message that stops the robot. Other fields have their defaults.
     """
 
     ttl_sec: float = 0.3
@@ -99,24 +106,29 @@ class LeaseRule(Part, frozen=True):
 class Rule(Part, frozen=True):
     """One ``[[allow]]`` or ``[[refuse]]``.
 
-    Names are full and may have ``*`` for a part without a slash, and ``**`` for anything.
+    Names are full names, or patterns: ``*`` stands for any characters but a slash, ``?`` for one
+    character but a slash, and ``**`` for any characters. Each key takes one name or a list.
 
     Attributes:
-        who: Names and groups that it is about; everyone if empty.
-        see: What they see: names of topics, services, actions and nodes, and ``/node:parameter``.
-        subscribe: Topics that they may subscribe to.
-        publish: Topics that they may publish to.
-        call: Services that they may call.
-        goal: Actions that they may send goals to.
-        parameter: Parameters that they may set, as ``/node:parameter``; ``/node`` for all of it.
-        advertise: Services and actions that they may offer themselves.
-        type: The types that it is about; all if empty.
-        rate_hz: How often, for each of the names; a second's worth may come at once.
-        max_bytes: The largest message, in bytes of CDR.
-        fields: Limits of fields, by their paths such as ``linear.x``.
+        who: The names and groups of the clients that the rule is about; all clients if empty.
+        see: The topics, services, actions and nodes that these clients see, and the parameters that
+            they read, as ``/node:parameter``. ``/node`` stands for the node and its parameters.
+        subscribe: The topics to which they may subscribe.
+        publish: The topics to which they may publish.
+        call: The services that they may call.
+        goal: The actions to which they may send goals.
+        parameter: The parameters that they may set, as ``/node:parameter``. ``/node`` stands for
+            all parameters of the node.
+        advertise: The services and actions that they may offer themselves.
+        type: The types that the rule is about; all types if empty.
+        rate_hz: How often they may do so with each name, in hertz. The number of one second may
+            come at once.
+        max_bytes: The largest message, request or goal, in bytes of CDR; None for any size.
+        fields: The limits of fields, by paths such as ``linear.x``; a parameter has the one field
+            ``value``.
         ask: Whether a person has to say yes each time.
-        lease: How commands are published.
-        because: What a refused client is told.
+        lease: How commands are published; None for messages that are no commands.
+        because: The reason that a refused client is told.
     """
 
     who: Names = []
@@ -144,41 +156,42 @@ class Rule(Part, frozen=True):
             raise ValueError("rate_hz is a number of messages a second, above 0")
         for key, verbs in LIMITED.items():
             without = [verb for verb in VERBS if getattr(self, verb) and verb not in verbs]
-            if without and self.has(key):
+            if without and has_key(self, key):
                 raise ValueError(
                     f"{key}: it limits {', '.join(verbs)}, and not {without[0]}; write a rule of "
                     f"its own for {without[0]}"
                 )
 
-    def has(self, key: str) -> bool:
-        """Return whether a key of `LIMITED` is given."""
-        value = getattr(self, key)
-        return value != math.inf if key == "rate_hz" else value not in (None, False, "", [], {})
-
     def is_about(self, identity: Identity) -> bool:
-        """Return whether the rule names a client, or nobody and so everyone."""
+        """Return whether the rule names a client, or names nobody and so all clients."""
         who = listed(self.who)
         return not who or identity.name in who or not identity.groups.isdisjoint(who)
 
     def covers(self, verb: Verb, name: str, type_name: str) -> bool:
-        """Return whether the rule is about doing this with that name."""
+        """Return whether the rule is about doing something with a name of a type."""
         if type_name and not matches_type(self.type, type_name):
             return False
         return matches(getattr(self, verb), name)
 
 
+def has_key(rule: Rule, key: str) -> bool:
+    """Return whether a key of `LIMITED` is given in a rule."""
+    value = getattr(rule, key)
+    return value != math.inf if key == "rate_hz" else value not in (None, False, "", [], {})
+
+
 class Who(Part, frozen=True):
-    """A client that the policy knows: all that is given here has to be true of it.
+    """A client that the policy knows. All keys that are given have to be true of the client.
 
     Attributes:
-        name: Its name.
-        groups: Groups of clients, for rules about several.
+        name: The name of the client, for rules and for the audit log.
+        groups: The groups of the client, for rules about several clients.
         token: A secret that the client shows.
-        token_sha256: The SHA-256 of that secret in hexadecimal, in place of it.
-        certificate: The common name of its TLS certificate.
-        origin: The origin of the page; on its own it counts on loopback only, as programs may
-            claim any.
-        loopback: Whether the client runs on this host, where every user of the host may connect.
+        token_sha256: The SHA-256 of the secret, in hexadecimal digits, in place of ``token``.
+        certificate: The common name of the client's TLS certificate.
+        origin: The origin of the page. Without a token or certificate it counts on loopback only,
+            since a program may claim any origin.
+        loopback: Whether the client has to run on this host, whose users all may connect.
     """
 
     name: str
@@ -200,17 +213,17 @@ class Who(Part, frozen=True):
 
     @property
     def has_secret(self) -> bool:
-        """Whether something that nobody else has tells the client from others."""
+        """Whether the client shows a token or a certificate, which no other client has."""
         return bool(self.token or self.token_sha256 or self.certificate)
 
     def has_token(self, token: str) -> bool:
-        """Return whether a token is the client's, in the same time for all that are not."""
+        """Return whether a token is the client's. All wrong tokens take the same time."""
         wanted = self.token_sha256.lower() or hashlib.sha256(self.token.encode()).hexdigest()
         given = hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()
         return bool(self.token or self.token_sha256) and hmac.compare_digest(wanted, given)
 
     def fits(self, credentials: Credentials) -> bool:
-        """Return whether all that is given here is true of a client."""
+        """Return whether all keys that are given are true of a client."""
         if (self.token or self.token_sha256) and not self.has_token(credentials.token):
             return False
         if self.certificate and self.certificate != credentials.certificate:
@@ -221,20 +234,22 @@ class Who(Part, frozen=True):
 
 
 class Limits(Part, frozen=True):
-    """How much there may be of what clients cause.
+    """The limits for all clients, so that no client takes the robot's memory or processor.
 
     Attributes:
-        clients: Connections at once.
-        frame_bytes: The largest frame or request of a client.
-        frames_per_sec: How many frames a client may send a second.
-        queued_bytes: How much may wait for one client; beyond it the oldest is dropped.
-        subscriptions: For each client.
-        advertised: Topics, services and actions that one client offers.
-        calls: Calls and goals of one client at once.
-        handshake_sec: How long a request may take to arrive, and for how long the client may read
-            nothing of the answer, in seconds.
-        client_lost_sec: After how long without a sign a client with goals or commands is lost, in
-            seconds.
+        clients: The most connections at a time.
+        frame_bytes: The largest frame or request of a client, in bytes.
+        frames_per_sec: The most frames of a client that the gateway reads in a second.
+        queued_bytes: The most bytes that wait for one client; beyond it, the oldest messages are
+            dropped.
+        subscriptions: The most subscriptions of one client.
+        advertised: The most topics to which one client publishes, and the most services and actions
+            that it offers.
+        calls: The most calls, goals and questions about parameters of one client at a time.
+        handshake_sec: The longest time in which a request arrives, and the longest time for which
+            its client reads nothing of the answer, in seconds.
+        client_lost_sec: The longest time without a sign of a client that has goals or commands, in
+            seconds; after it, the client is lost.
     """
 
     clients: int = 64
@@ -252,9 +267,9 @@ class Tls(Part, frozen=True):
     """The files of TLS, in PEM.
 
     Attributes:
-        certificate: The certificate of the gateway, with those of its authorities.
-        key: Its private key.
-        clients: The authorities of clients' certificates; empty to ask for none.
+        certificate: The certificate of the gateway, with the certificates of its authorities.
+        key: The private key of the gateway.
+        clients: The authorities of the clients' certificates; empty to ask for no certificate.
     """
 
     certificate: str
@@ -263,14 +278,14 @@ class Tls(Part, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """What the policy says about one thing that a client wants to do.
+    """What the policy says about a request of a client.
 
     Attributes:
-        allowed: Whether it may.
-        reason: Why not; empty if it may.
+        allowed: Whether the request is allowed.
+        reason: Why the request is refused; empty if it is allowed.
         code: The reason as a word for programs, as in `RefusedError`.
-        message: The message that was given, with its fields within their limits.
-        rule: The rule that allows it.
+        message: The message of the request, with its fields within their limits.
+        rule: The rule that allows the request.
     """
 
     allowed: bool
@@ -286,23 +301,23 @@ class Decision(msgspec.Struct, frozen=True):
 
     @property
     def lease(self) -> LeaseRule | None:
-        """How commands are published, if the rule says so."""
+        """How commands are published; None if the message is no command."""
         return None if self.rule is None else self.rule.lease
 
 
 class Policy(Part, frozen=True):
-    """Who may do what. Made by `load` or `default`, and asked by sessions.
+    """Who may do what with the robot: the content of a policy file, or `default`.
 
     Attributes:
-        who: The clients that it knows.
-        allow: What they may do; of several rules the first that covers it counts.
-        refuse: What they may not do, whatever `allow` says.
-        hosts: Names of this machine, beside addresses and ``localhost``.
-        origins: Origins of pages that may connect, beside the gateway's own page.
-        limits: How much there may be.
+        who: The clients that the policy knows.
+        allow: The rules that allow. The first rule that covers a request counts.
+        refuse: The rules that refuse, whatever `allow` says.
+        hosts: The names of this machine, beside addresses and ``localhost``.
+        origins: The origins of pages that may connect, beside the gateway's own page.
+        limits: The limits for all clients.
         tls: The certificate of the gateway; None for connections without TLS.
-        audit_file: The file of the audit log; empty for none.
-        path: The file that it was read from; empty if it was not.
+        audit_file: The file of the audit log; empty for no file.
+        path: The file of the policy; empty for a policy without a file.
     """
 
     who: list[Who] = []
@@ -357,7 +372,7 @@ class Policy(Part, frozen=True):
         known |= {group for each in found.who for group in each.groups}
         for rule in found.refuse:
             for key in LIMITED:
-                if key != "type" and rule.has(key):
+                if key != "type" and has_key(rule, key):
                     raise PolicyFileError(
                         path, f"{key}: a [[refuse]] has no limits, an [[allow]] has"
                     )
@@ -369,18 +384,23 @@ class Policy(Part, frozen=True):
 
     @classmethod
     def default(cls, *, allow_write: bool = False) -> Policy:
-        """Return the policy without a file: this host only, which reads all and writes nothing.
+        """Return the policy of a gateway without a policy file.
+
+        Only programs of this host may connect. They read everything, and write nothing.
 
         Args:
-            allow_write: Whether it may also publish, call, send goals, set parameters and offer
-                services; velocities are published by lease.
+            allow_write: Whether these programs may also publish, call, send goals, set parameters
+                and offer services. Velocities are then published by lease.
         """
         everything = "/**"
-        allow = [Rule(see=everything, subscribe=everything)]
+        writing: dict[str, Any] = dict.fromkeys(WRITING, everything)
+        allow, refuse = [Rule(see=everything, subscribe=everything)], []
         if allow_write:
             allow.append(Rule(publish=everything, type=COMMANDS, lease=LeaseRule(ttl_sec=0.5)))
-            allow.append(Rule(**dict.fromkeys(WRITING, everything)))  # type: ignore[arg-type]
-        return cls(who=[Who("local", loopback=True)], allow=allow)
+            allow.append(Rule(**writing))
+        else:
+            refuse.append(Rule(**writing, because=READ_ONLY))
+        return cls(who=[Who("local", loopback=True)], allow=allow, refuse=refuse)
 
     @property
     def knows_secrets(self) -> bool:
@@ -418,14 +438,15 @@ class Policy(Part, frozen=True):
     def decide(
         self, identity: Identity, verb: Verb, name: str, type_name: str, message: Any = None
     ) -> Decision:
-        """Return whether a client may do something, and within which limits.
+        """Return whether a request of a client is allowed, and within which limits.
 
         Args:
             identity: The client.
-            verb: What it wants to do.
-            name: With what: a full name.
-            type_name: The name of its type; empty for nodes and parameters.
-            message: What it sends: a message or a mapping; None to ask before there is one.
+            verb: What the client wants to do.
+            name: The full name of the topic, service, action, node or parameter.
+            type_name: The name of its type; empty for nodes and parameters, and while it is not
+                known.
+            message: The message or mapping that the client sends; None before there is one.
         """
         if len(name) > MOST_CHARACTERS:
             return Decision(allowed=False, reason="the name is too long", code="too_large")

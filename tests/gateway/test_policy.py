@@ -361,7 +361,9 @@ def test_without_a_file_this_host_reads_and_nobody_writes() -> None:
 
     assert policy.decide(local, "subscribe", "/scan", "sensor_msgs/msg/LaserScan").allowed
     for verb in ("publish", "call", "goal", "parameter", "advertise"):
-        assert not policy.decide(local, verb, "/x", "").allowed
+        refused = policy.decide(local, verb, "/x", "")
+        assert not refused.allowed
+        assert "--allow-write" in refused.reason  # what to do
         assert Policy.default(allow_write=True).decide(local, verb, "/x", "").allowed
     with pytest.raises(RefusedError):
         policy.identify(credentials(address="192.168.0.7"))

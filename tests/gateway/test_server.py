@@ -82,13 +82,18 @@ async def test_strangers_are_refused_on_every_way_in() -> None:
         assert gateway.stats.sessions == {}
 
 
-async def test_a_refused_client_is_no_error_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
-    """Anybody could fill the log of the robot otherwise."""
+async def test_refused_clients_are_one_warning_in_the_log(caplog: pytest.LogCaptureFixture) -> None:
+    """It names the origin, which a browser does not tell its page; and nobody can fill the log."""
+    caplog.set_level(logging.WARNING)
     async with serving() as gateway:
-        with caplog.at_level(logging.WARNING), pytest.raises(InvalidStatus, match="401"):
-            await connect(address(gateway), origin=Origin("http://evil.example"))
+        for _ in range(3):
+            with pytest.raises(InvalidStatus, match="401"):
+                await connect(address(gateway), origin=Origin("http://evil.example"))
 
-    assert [each.message for each in caplog.records if each.levelno >= logging.WARNING] == []
+    (warning,) = [each for each in caplog.records if each.levelno >= logging.WARNING]
+    assert warning.levelno == logging.WARNING
+    assert "http://evil.example" in warning.message
+    assert "`origins`" in warning.message
 
 
 async def test_a_page_of_an_allowed_origin_may_read_the_answers() -> None:
@@ -495,3 +500,11 @@ async def test_a_client_whose_frames_are_refused_is_read_slowly(bench: Bench) ->
         await bench.advance(1.0)
         assert read == 101
         serving.cancel()
+
+
+async def test_a_policy_that_lets_nobody_in_is_in_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A file with rules alone replaces the rules that hold without a file."""
+    async with serving(Policy.parse("[[allow]]\nsubscribe = '/**'")):
+        assert "[[who]]" in caplog.text

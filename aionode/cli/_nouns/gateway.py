@@ -49,7 +49,8 @@ def gateway_command(
     """Serve the robot to browsers, programs and apps.
 
     Clients of rosbridge and Foxglove, HTTP and a page of its own share one port. Without --policy,
-    this host may read everything and write nothing.
+    programs of this host may read everything and write nothing. Pages of other web servers have to
+    be listed in a policy, also those of this host.
     """
     if ctx.invoked_subcommand is not None:
         return
