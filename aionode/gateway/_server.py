@@ -45,6 +45,9 @@ MOST_ASKED: Final = 16
 MOST_PARTS: Final = 10_000
 """How many parts a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
 
+ENDED_SEC: Final = 0.02
+"""What each frame costs, in seconds, that a client sends after the end of its WebSocket."""
+
 SPARE: Final = 16
 """How many more connections there may be than clients: those for pages, and those that are told
 that there are too many."""
@@ -414,6 +417,12 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
             self._asked.clear()
             message: Any = {"type": ANSWERED, "answered": answered}
             self.queue.put_nowait(message)
+
+    def send_receive_event_to_app(self) -> None:
+        """Hand a message to the application; after the goodbye, a few a second are read at most."""
+        if self.close_sent:
+            self._portions.owed_sec += ENDED_SEC
+        super().send_receive_event_to_app()
 
     def handle_cont(self, event: Any) -> None:
         """Take a part of a message; without any bytes in them, there could be any number."""

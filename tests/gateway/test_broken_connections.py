@@ -16,6 +16,7 @@ from websockets.exceptions import ConnectionClosed
 
 from aionode.action import CancelResponse
 from aionode.gateway import Gateway, Policy
+from aionode.gateway._server import WebSocketConnection
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
@@ -443,6 +444,32 @@ async def test_parts_without_bytes_do_not_pile_up() -> None:
         assert await closed(reader) == b""
         await until(lambda: not gateway._sessions)
         writer.close()
+
+
+async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The gateway waits some seconds for the client's own goodbye, which may be behind it."""
+    monkeypatch.setattr("aionode.gateway._rosbridge_client.MOST_MALFORMED", 3)
+    read = 0
+    handle_text = WebSocketConnection.handle_text
+
+    def count(self: WebSocketConnection, event: Any) -> None:
+        nonlocal read
+        read += 1
+        handle_text(self, event)
+
+    monkeypatch.setattr(WebSocketConnection, "handle_text", count)
+    async with serving(Policy.parse(POLICY)) as gateway:
+        reader, writer, _ = await upgraded(gateway)
+        writer.write(frame(b"garbage") * 4)
+        assert (await reader.readexactly(1))[0] == 0x80 | CLOSE
+        for _ in range(10):
+            writer.write(frame(b"garbage") * 1000)
+            await writer.drain()
+            await asyncio.sleep(0.01)  # noqa: TID251  # a real connection
+        assert read < 300
+        writer.transport.abort()
 
 
 async def test_pings_are_read_no_faster_than_frames() -> None:

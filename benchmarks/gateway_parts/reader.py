@@ -6,7 +6,9 @@ ones subscribe and then read nothing; ``wait_sec``, after how long without any m
 
 Each message has a number: the first one in it, or the seconds of a stamp at its beginning.
 It prints ``ready`` when every client has got one, and at the end JSON: for each client how many of
-the numbers from 1 to the last one it lacks, got twice, and got out of order.
+the numbers from 1 to the last one it lacks, got twice, and got out of order. With ``count`` in the
+place of ``last``, messages have no numbers: it prints ``ready`` when all have connected, and then
+how many of so many messages each client lacks.
 It knows no aionode and no library of WebSockets: those would take more time than the gateway does.
 """
 
@@ -17,6 +19,7 @@ import re
 import selectors
 import socket
 import sys
+from collections.abc import Callable
 from typing import Any
 
 CHUNK = bytearray(1 << 20)
@@ -34,7 +37,7 @@ REQUEST = (
 MASK = b"\0\0\0\0"
 """The key that a frame of a client is masked with; that of zeros changes nothing."""
 
-TEXT = 0x81
+TEXT, PING, PONG = 0x81, 0x89, 0x8A
 
 
 def frame_of(text: str) -> bytes:
@@ -69,6 +72,7 @@ class Client:
         self.socket = opened(port)
         self.socket.sendall(frame_of(subscribe))
         self.numbers: list[int] = []
+        self.count = 0
         self._begun = bytearray()  # the beginning of a frame: its head, and of its payload
         self._skip = 0  # how much of the frame is still to come, and has no number
 
@@ -111,7 +115,10 @@ class Client:
 
     def _note(self, first: int, beginning: bytes) -> None:
         if first & 0x0F > 2:
-            return  # a ping
+            if first == PING:
+                self.socket.sendall(bytes((PONG, 0x80 | len(beginning))) + MASK + beginning)
+            return
+        self.count += 1
         found = NUMBER.search(beginning)
         if found is not None:
             self.numbers.append(int(found[1] or found[2]))
@@ -129,19 +136,30 @@ class Client:
 
 def main(options: dict[str, Any]) -> None:
     """Read until every client has the last message."""
-    subscribe, last = json.dumps(options["subscribe"]), options["last"]
+    subscribe = json.dumps(options["subscribe"])
     deaf = [opened(options["port"], 4096) for _ in range(options.get("deaf", 0))]
     for each in deaf:
         each.sendall(frame_of(json.dumps(options["subscribe"] | {"queue_length": 10})))
-    selector = selectors.DefaultSelector()
     clients = [Client(options["port"], subscribe) for _ in range(options["clients"])]
+    if "count" in options:
+        print("ready", flush=True)
+        read(clients, lambda client: client.count >= options["count"], options)
+        verdicts = [[options["count"] - client.count] for client in clients]
+    else:
+        read(clients, lambda client: client.numbers[-1:] == [options["last"]], options)
+        verdicts = [client.verdict(options["last"]) for client in clients]
+    print(json.dumps(verdicts), flush=True)
+    sys.stdin.read()  # the connections last until their counts have been read
+
+
+def read(clients: list[Client], has_all: Callable[[Client], bool], options: dict[str, Any]) -> None:
+    """Read until every client has all, or nothing has arrived for some time."""
+    selector = selectors.DefaultSelector()
     for client in clients:
         selector.register(client.socket, selectors.EVENT_READ, client)
-    without, unfinished = set(clients), set(clients)
-    while unfinished:
-        events = selector.select(options.get("wait_sec", 5.0))
-        if not events:
-            break
+    without = set() if "count" in options else set(clients)  # any message so far
+    unfinished = set(clients)
+    while unfinished and (events := selector.select(options.get("wait_sec", 5.0))):
         for key, _ in events:
             client = key.data
             if not client.take():
@@ -151,10 +169,8 @@ def main(options: dict[str, Any]) -> None:
                 without.discard(client)
                 if not without:
                     print("ready", flush=True)
-            if client.numbers and client.numbers[-1] == last:
+            if has_all(client):
                 unfinished.discard(client)
-    print(json.dumps([client.verdict(last) for client in clients]), flush=True)
-    sys.stdin.read()  # the connections last until their counts have been read
 
 
 if __name__ == "__main__":
