@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-from collections import deque
+import json
+import os
+from collections import Counter, deque
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
@@ -11,7 +14,10 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode._concurrency import run_in_thread
+from aionode.clock import S_TO_NS
+from aionode.gateway._rosbridge_request import shown
 from aionode.interfaces.std_msgs.msg import String
+from aionode.message import Message, fields
 
 if TYPE_CHECKING:
     from aionode.gateway._identity import Identity
@@ -26,7 +32,13 @@ MOST_TEXT: Final = 500
 """The longest text of the arguments of one line, in characters."""
 
 REFUSALS_PER_SEC: Final = 20
-"""How many refusals are written a second: a client that asks in vain must not fill the disk."""
+"""How many refusals of one client are written a second: to ask in vain must not fill the disk."""
+
+MOST_REFUSALS: Final = 200
+"""How many refusals of all clients are written a second."""
+
+MOST_LEVELS: Final = 20
+"""How deeply nested arguments are written."""
 
 
 class Audit:
@@ -47,8 +59,10 @@ class Audit:
         self._node = node
         self._lines: deque[str] = deque()
         self._filled = asyncio.Event()
+        self._time_base = node.context.time_base
         self._second = 0
-        self._refusals = 0
+        self._refusals: Counter[Identity] = Counter()  # in this second
+        self._refused = 0
 
     def use_file(self, path: str) -> None:
         """Append to another file from now on, also what waits; empty for none."""
@@ -76,13 +90,11 @@ class Audit:
             duration_ns: How long it took, in nanoseconds.
             more: Further keys.
         """
-        now = self._node.get_clock().now().nanoseconds
-        is_refusal = "code" in more
-        if is_refusal and self._are_too_many(now // 1_000_000_000):
+        if "code" in more and self._is_one_too_many(identity):
             self.lost += 1
             return
         line: dict[str, Any] = {
-            "time": round(now / 1e9, 6),
+            "time": round(self._time_base.system_ns() / 1e9, 6),
             "who": identity.name,
             "address": identity.address,
             "action": action,
@@ -90,16 +102,20 @@ class Audit:
             "result": result[:MOST_TEXT],
         }
         if arguments is not None:
-            line["arguments"] = repr(arguments)[:MOST_TEXT]
+            line["arguments"] = shortened(arguments)
         if duration_ns is not None:
             line["duration_ms"] = round(duration_ns / 1e6, 3)
-        self._put(msgspec.json.encode(line | more).decode())
+        self._put(printable(msgspec.json.encode(line | more).decode()))
 
-    def _are_too_many(self, second: int) -> bool:
+    def _is_one_too_many(self, identity: Identity) -> bool:
+        """Count a refusal; each client has a number of its own, so that none hides another's."""
+        second = self._time_base.steady_ns() // S_TO_NS
         if second != self._second:
-            self._second, self._refusals = second, 0
-        self._refusals += 1
-        return self._refusals > REFUSALS_PER_SEC
+            self._second, self._refused = second, 0
+            self._refusals.clear()
+        self._refused += 1
+        self._refusals[identity] += 1
+        return self._refused > MOST_REFUSALS or self._refusals[identity] > REFUSALS_PER_SEC
 
     def _put(self, line: str) -> None:
         if not self._publisher.destroyed:
@@ -142,8 +158,62 @@ class Audit:
 
 def append(path: Path, text: str) -> None:
     """Append a text to a file that only its owner can read."""
-    is_new = not path.exists()
-    with path.open("a", encoding="utf-8") as file:
-        if is_new:
-            path.chmod(0o600)
+
+    def opened(name: str, flags: int) -> int:
+        return os.open(name, flags, 0o600)
+
+    with open(path, "a", encoding="utf-8", opener=opened) as file:  # has no opener
         file.write(text)
+
+
+def printable(line: str) -> str:
+    """Return a line of JSON in which what is not printable is escaped.
+
+    JSON itself leaves characters as they are that move the cursor of a terminal, or turn the order
+    of the others around.
+    """
+    if line.isprintable():
+        return line
+    return "".join(each if each.isprintable() else json.dumps(each)[1:-1] for each in line)
+
+
+def shortened(arguments: Any) -> str:
+    """Return the beginning of what a client has sent; the rest of it costs nothing."""
+    text = ""
+    for part in parts_of(arguments):
+        text += part
+        if len(text) > MOST_TEXT:
+            break
+    return text[:MOST_TEXT]
+
+
+def parts_of(value: Any, level: int = 0) -> Iterator[str]:
+    """Yield the text of a value, piece by piece: the rest of it is not made unless wanted."""
+    if level > MOST_LEVELS:
+        yield "..."
+    elif isinstance(value, Message):
+        members = ((f"{field.name}=", getattr(value, field.name)) for field in fields(type(value)))
+        yield from joined(f"{value.__ros_type__.replace('/', '.')}(", members, ")", level)
+    elif isinstance(value, Mapping):
+        items = ((f"{shown(key)}: ", each) for key, each in value.items())
+        yield from joined("{", items, "}", level)
+    elif isinstance(value, list | tuple):
+        yield from joined("[", (("", each) for each in value), "]", level)
+    elif hasattr(value, "tolist") and hasattr(value, "__len__"):  # an array of numbers
+        yield from parts_of(value[:MOST_TEXT].tolist(), level)
+    elif isinstance(value, str | bytes | bytearray | memoryview):
+        piece = value[:MOST_TEXT]
+        yield repr(bytes(piece) if isinstance(piece, memoryview) else piece)
+    else:
+        yield shown(value)
+
+
+def joined(
+    opening: str, items: Iterable[tuple[str, Any]], closing: str, level: int
+) -> Iterator[str]:
+    """Yield the text of several values, each behind a label."""
+    yield opening
+    for number, (label, each) in enumerate(items):
+        yield f", {label}" if number else label
+        yield from parts_of(each, level + 1)
+    yield closing
