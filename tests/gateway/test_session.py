@@ -28,7 +28,7 @@ from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.rcl_interfaces.srv import SetParameters
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.parameter import Parameter
-from aionode.qos import DurabilityPolicy, QoSProfile
+from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import settle
 from tests.support.gateway_bench import Bench
 
@@ -369,16 +369,48 @@ async def test_a_client_that_comes_late_gets_what_is_kept_for_it(bench: Bench) -
         assert (waiting(first), waiting(second)) == (["map"], ["map"])
 
 
-async def test_a_publisher_that_comes_later_is_heard(bench: Bench) -> None:
-    """Whatever it offers: who subscribed first has to fit it."""
-    for offered in (LATCHED, QoSProfile(depth=1, reliability=2)):
-        async with bench.session() as session:
-            await session.subscribe("/late", "std_msgs/String", frame=text_of, key="l")
-            publisher = bench.node.create_publisher(String, "/late", offered)
-            publisher.publish(String(data="x"))
-            await settle()
-            assert waiting(session) == ["x"]
-            publisher.destroy()
+BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+@pytest.mark.parametrize("offered", [LATCHED, BEST_EFFORT])
+async def test_a_publisher_that_comes_later_is_heard(bench: Bench, offered: QoSProfile) -> None:
+    """Whatever it offers: who subscribed first has to fit it. What it keeps, comes once."""
+    async with bench.session() as session:
+        await session.subscribe("/late", "std_msgs/String", frame=text_of, key="l")
+        await settle()
+        publisher = bench.node.create_publisher(String, "/late", offered)
+        publisher.publish(String(data="x"))
+        await settle()
+        publisher.publish(String(data="y"))
+        await settle()
+        assert waiting(session) == ["x", "y"]
+
+
+async def test_a_subscription_is_as_strong_as_the_publishers_that_there_are(bench: Bench) -> None:
+    """Without one it asks for nothing; later it misses no message that a publisher repeats."""
+
+    async def wanted() -> tuple[ReliabilityPolicy, DurabilityPolicy]:
+        await settle()
+        (subscription,) = bench.node.get_subscriptions_info_by_topic("/late")
+        profile = subscription.qos_profile
+        return profile.reliability, profile.durability
+
+    weak = (ReliabilityPolicy.BEST_EFFORT, DurabilityPolicy.VOLATILE)
+    strong = (ReliabilityPolicy.RELIABLE, DurabilityPolicy.TRANSIENT_LOCAL)
+    async with bench.session() as session:
+        await session.subscribe("/late", "std_msgs/String", frame=text_of, key="l")
+        assert await wanted() == weak
+        reliable = bench.node.create_publisher(String, "/late", LATCHED)
+        assert await wanted() == strong
+        unreliable = bench.node.create_publisher(String, "/late", BEST_EFFORT)
+        assert await wanted() == weak
+        unreliable.publish(String(data="u"))
+        await settle()
+        unreliable.destroy()
+        assert await wanted() == strong
+        reliable.publish(String(data="r"))
+        await settle()
+        assert waiting(session) == ["u", "r"]
 
 
 async def test_a_rate_leaves_messages_out(bench: Bench) -> None:
