@@ -6,11 +6,16 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from aionode import rclpy
+from aionode.interfaces.rcl_interfaces.srv import ListParameters
 from aionode.interfaces.std_msgs.msg import Int32
+from aionode.message import SerializedMessage
 from aionode.rclpy._impl import destroyable
 from aionode.rclpy._impl.destroyable import Destroyable, Signal, Wakeup
 from aionode.rclpy._impl.errors import InvalidHandle
@@ -20,6 +25,12 @@ from tests.support.peers import isolated_environment
 TIMES = 20_000
 
 pytestmark = pytest.mark.timeout(60)
+
+
+@pytest.fixture
+def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Limit what waits in contexts that are made from now on."""
+    monkeypatch.setenv("AIONODE_QUEUE_BYTES", "65536")
 
 
 @pytest.fixture
@@ -165,3 +176,38 @@ def test_who_waits_for_room_learns_of_room_that_was_made_before(context: rclpy.C
     io.post(lambda: subscription.handle.inbox.when_room(told.set))
 
     assert told.wait(10.0)
+
+
+@pytest.mark.usefixtures("small_queues")
+def test_the_log_says_once_that_messages_for_a_subscription_are_too_large_together(
+    context: rclpy.Context, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Else nobody learns why messages are missing that the depth would hold."""
+    node = rclpy.create_node("node", context=context)
+    handle = node.create_subscription(Int32, "heavy", print, 100).handle
+
+    for sequence in range(1, 6):
+        handle.inbox.deliver(SerializedMessage(bytes(40_000)), bytes(16), sequence, 0)
+    handle.io.call(lambda: None)
+
+    (line,) = [each for each in caplog.messages if "AIONODE_QUEUE_BYTES" in each]
+    assert line.startswith("/heavy: more than 0.0625 MiB wait here")
+
+
+@pytest.mark.usefixtures("small_queues")
+def test_the_log_says_once_that_requests_for_a_service_are_too_large_together(
+    context: rclpy.Context, caplog: pytest.LogCaptureFixture
+) -> None:
+    """As for messages; the clients of the oldest ones learn that these were dropped."""
+    node = rclpy.create_node("node", context=context)
+    handle: Any = node.create_service(ListParameters, "heavy", print).handle
+    dropped: list[int] = []
+
+    for number in range(5):
+        message = SimpleNamespace(data=bytes(40_000))
+        drop = partial(dropped.append, number)
+        handle._requests.serve(SimpleNamespace(message=message, drop=drop))
+
+    (line,) = [each for each in caplog.messages if "AIONODE_QUEUE_BYTES" in each]
+    assert line.startswith("/heavy: more than 0.0625 MiB wait here")
+    assert dropped == [0, 1, 2, 3]

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.loop_affinity import LoopAffinity
     from aionode.graph import EndpointInfo, Graph
 
-__all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
+__all__ = ["Endpoint", "EndpointSetup", "heavy_text", "report_heavy"]
 
 
 class EndpointSetup(NamedTuple):
@@ -37,10 +37,21 @@ class EndpointSetup(NamedTuple):
 
 def report_heavy(setup: EndpointSetup, what: str) -> None:
     """Log that messages or requests were dropped or refused since they have too many bytes."""
-    setup.callbacks.logger.warning(
-        f"{setup.endpoint.name}: more than {setup.queue_bytes / 2**20:.3g} MiB wait here for "
-        f"their callback; what is more is {what}, and only counted from now on, in stats.dropped. "
-        "AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
+    what = f"{what}, and only counted from now on, in stats.dropped"
+    setup.callbacks.logger.warning(heavy_text(setup.endpoint.name, setup.queue_bytes, what))
+
+
+def heavy_text(name: str, limit_bytes: int, what: str) -> str:
+    """Return what the log says of an endpoint for which messages or requests wait.
+
+    Args:
+        name: Its topic or service.
+        limit_bytes: How many bytes may wait.
+        what: What happens to more.
+    """
+    return (
+        f"{name}: more than {limit_bytes / 2**20:.3g} MiB wait here for their callback; what is "
+        f"more is {what}. AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
     )
 
 

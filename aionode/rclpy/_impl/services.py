@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.clock import MachineTime
+from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints.service_introspection import (
     REQUEST_RECEIVED,
     REQUEST_SENT,
@@ -61,15 +62,21 @@ class rmw_service_info_t(NamedTuple):  # noqa: N801  # rclpy's name
 class Requests:
     """The requests that wait for a server; filled by the thread of the context."""
 
-    def __init__(self, limit: int, limit_bytes: int, arrivals: Arrivals) -> None:
+    def __init__(
+        self, limit: int, limit_bytes: int, arrivals: Arrivals, on_heavy: Callable[[], None]
+    ) -> None:
         self.items: deque[tuple[Request, int]] = deque()
         self._limit = limit
         self._limit_bytes = limit_bytes
+        self._on_heavy: Callable[[], None] | None = on_heavy  # called once
         self._arrivals = arrivals
 
     def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
         """Take one request; the oldest makes room, and its client learns that."""
         while self.items and (len(self.items) >= self._limit or self._is_heavy(request)):
+            if len(self.items) < self._limit and self._on_heavy is not None:
+                on_heavy, self._on_heavy = self._on_heavy, None
+                on_heavy()
             with suppress(IndexError):  # another thread has taken it
                 self.items.popleft()[0].drop()
         self.items.append((request, now_ns()))
@@ -92,11 +99,16 @@ class ServiceHandle(Destroyable):
         self.srv_type = srv_type
         node.context_handle.refuse_after_shutdown("failed to create service")
         profile = profile_of(qos_profile)
+        self._name = node.resolve(srv_name, is_service=True)
+        limit_bytes = node.bare.context.network.queue_bytes
+        text = heavy_text(self._name, limit_bytes, "refused, without another word")
         self._requests = Requests(
-            profile.depth or MOST_REQUESTS, node.bare.context.network.queue_bytes, node.requests
+            profile.depth or MOST_REQUESTS,
+            limit_bytes,
+            node.requests,
+            partial(logger.warning, text),
         )
         self._taken: dict[rmw_request_id_t, Request] = {}
-        self._name = node.resolve(srv_name, is_service=True)
         self._introspection = Introspection(node, srv_type, self._name)
         self._bare: BareEndpoint = node.io.call(
             node.bare.create_server,

@@ -9,6 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
+from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.endpoints._qos.lifespan import expires_ns
 from aionode.errors import DecodeError, MessageError, QueueFullError
@@ -179,6 +180,7 @@ class Inbox:
         limit_bytes: int,
         arrivals: Arrivals,
         post: Callable[[Callable[[], object]], None],
+        on_heavy: Callable[[], None],
     ) -> None:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
@@ -187,6 +189,7 @@ class Inbox:
             maxlen=None if keep_all else self.limit
         )
         self._limit_bytes = limit_bytes
+        self._on_heavy: Callable[[], None] | None = on_heavy  # called once
         self._largest_bytes = 0  # of what waits, or did while others have waited
         self.dropped = 0
         self.rejected = 0
@@ -242,6 +245,9 @@ class Inbox:
         """Drop the oldest messages until one of this size fits; return whether it does."""
         while self.items and self._is_heavy(size_bytes):
             self.dropped += 1
+            if self._on_heavy is not None:
+                on_heavy, self._on_heavy = self._on_heavy, None
+                self._post(on_heavy)  # not here, where another thread may wait to deliver
             if self.keep_all:
                 return False
             with suppress(IndexError):  # another thread has taken it
@@ -303,7 +309,11 @@ class SubscriptionHandle(Destroyable):
         self._filter_options = content_filter_options
         profile = profile_of(qos_profile)
         limit_bytes = node.bare.context.network.queue_bytes
-        self.inbox = Inbox(profile, limit_bytes, node.messages, node.io.post)
+        name = node.resolve(topic)
+        text = heavy_text(name, limit_bytes, "dropped, without another word")
+        self.inbox = Inbox(
+            profile, limit_bytes, node.messages, node.io.post, partial(logger.warning, text)
+        )
         self.feed = self.inbox.feed
         self.assertions = self.inbox.assertions
         if content_filter_options is not None:
@@ -311,7 +321,6 @@ class SubscriptionHandle(Destroyable):
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
-        name = node.resolve(topic)
         create = partial(
             node.bare.create_subscription, self._support.wire_type, name, profile, self.inbox
         )
