@@ -117,8 +117,10 @@ class ChunkWriter:
 
     def add(self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: Parts) -> None:
         """Add a message. Its bytes are kept, and must not change."""
-        parts = raw if isinstance(raw, list) else (raw,)
-        size = sum(map(len, parts))
+        if isinstance(raw, list):
+            parts, size, largest = raw, sum(map(len, raw)), max(raw, key=len)
+        else:
+            parts, size, largest = [raw], len(raw), raw
         entries = self.entries.get(channel)
         if entries is None:
             entries = self.entries[channel] = []
@@ -134,8 +136,8 @@ class ChunkWriter:
             self.start_ns = log_ns
         if log_ns > self.end_ns:  # noqa: PLR1730  # as above
             self.end_ns = log_ns
-        if size >= LARGE_BYTES:
-            self.largest = max(parts, key=len)
+        if len(largest) >= LARGE_BYTES:
+            self.largest = largest
 
     def joined(self) -> list[bytes | memoryview]:
         """Return the bytes of the chunk, with small pieces joined and large messages as given."""

@@ -347,7 +347,7 @@ def decoding(msg_type: type[Message], accepts: Callable[[Any], bool]) -> Callabl
 
     def accepts_bytes(data: Any) -> bool:
         try:
-            return accepts(decode(b"".join(data) if isinstance(data, list) else data))
+            return accepts(decode(data))
         except DecodeError:
             return True  # a raw subscription gets malformed messages, too
 

@@ -239,25 +239,21 @@ class SubscriptionReader(MessageQueue[Any]):
 
     def _deliver_with(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int) -> None:
         """Deliver a message to a filter, a monitor, or a callback that takes its info."""
-        if not self._admits(msg, sample_info):
-            return
-        item = (msg, self._info(sample_info)) if self.wants_info else msg
-        if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
-            self.put(item)
-
-    def _admits(self, msg: Any, sample_info: SampleInfo) -> bool:
-        """Return whether filter, monitor and watch let a message pass; count what is missing."""
         if self._accepts is not None:
             if not self._accepts(msg):
                 self.stats.filtered += 1
                 if self.monitor is not None:
                     self.monitor.note_filtered(sample_info.gid)
-                return False
+                return
         else:
             self._note_sequence(sample_info.gid, sample_info.sequence)
         if self.on_arrival is not None and not self.on_arrival(sample_info):
-            return False
-        return self.watch is None or self.watch.admits(sample_info)
+            return
+        if self.watch is not None and not self.watch.admits(sample_info):
+            return
+        item = (msg, self._info(sample_info)) if self.wants_info else msg
+        if not (inline_deadline_ns and self.take_inline(item, inline_deadline_ns)):
+            self.put(item)
 
     def weigh_messages(
         self, size_of: Callable[[Any], int], limit_bytes: int, on_heavy: Callable[[], None]
@@ -327,7 +323,8 @@ class DirectReader(SubscriptionReader):
     """Hands each message on within the event that brings it, past the queue.
 
     For aionode's own subscriptions that only put messages elsewhere: nothing is woken, no call is
-    timed, and the queue stays empty. The event may be the `publish` of another node.
+    timed, and the queue stays empty. The event may be the `publish` of another node. There is no
+    content filter.
 
     Args:
         endpoint: The subscription in the graph.
@@ -354,13 +351,14 @@ class DirectReader(SubscriptionReader):
         arrived_ns: int = 0,
     ) -> None:
         """Take one message from a transport; see `Reader` for the arguments."""
-        if self._accepts is not None or self.on_arrival is not None:
-            if not self._admits(msg, SampleInfo(gid, sequence, source_ns, arrived_ns)):
-                return
-        elif self._last_sequences.get(gid) == sequence - 1:
+        if self._last_sequences.get(gid) == sequence - 1:
             self._last_sequences[gid] = sequence
         else:
             self._note_sequence(gid, sequence)
+        if self.on_arrival is not None and not self.on_arrival(
+            SampleInfo(gid, sequence, source_ns, arrived_ns)
+        ):
+            return
         self.stats.received += 1
         self._take(msg, sequence, source_ns, arrived_ns or self._now_ns())
 
