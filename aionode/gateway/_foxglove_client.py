@@ -10,13 +10,12 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 from uuid import uuid4
 
-import msgspec
-
 from aionode.errors import AionodeError, EntityDestroyedError, MessageError
 from aionode.gateway import _foxglove_frames as frames
 from aionode.gateway._foxglove_channels import Channels
 from aionode.gateway._foxglove_parameters import Parameters
 from aionode.gateway._foxglove_playback import Playback
+from aionode.gateway._json import decoded
 from aionode.gateway._lanes import Lanes
 from aionode.gateway._rosbridge_values import json_of
 from aionode.graph import EndpointKind
@@ -142,7 +141,8 @@ class Client:
     async def take(self, frame: bytes | str) -> None:
         """Begin what a frame asks for; what fails, the client is told as a status."""
         try:
-            asked = frames.op_of(frame) if isinstance(frame, str) else frames.binary_of(frame)
+            most = self._session._limits.frame_parts
+            asked = frames.op_of(frame, most) if isinstance(frame, str) else frames.binary_of(frame)
         except MessageError as error:
             self.malformed += 1
             self._session.refused += 1
@@ -244,7 +244,7 @@ class Client:
         if channel is None:
             problem = f"there is no channel {given.channel_id} of this client; advertise it first"
             raise MessageError("message", problem)
-        values = values_of(channel.encoding, given.data)
+        values = values_of(channel.encoding, given.data, self._session._limits.frame_parts)
         await self._session.publish(
             channel.topic, values, channel.schema_name, arrived_ns=arrived_ns
         )
@@ -254,7 +254,7 @@ class Client:
             if call.encoding not in ENCODINGS:
                 raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
             name, type_name = self._channels.service(call.service_id)
-            values = values_of(call.encoding, call.data)
+            values = values_of(call.encoding, call.data, self._session._limits.frame_parts)
             response = await self._session.call(
                 name, values, type_name=type_name, timeout_sec=CALL_SEC
             )
@@ -270,7 +270,7 @@ class Client:
         self._session.outbox.send(frames.response_frame(call, data))
 
 
-def values_of(encoding: str, data: memoryview) -> Any:
+def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
     """Return what a session publishes or calls with: CDR as it is, JSON as values.
 
     Raises:
@@ -278,10 +278,7 @@ def values_of(encoding: str, data: memoryview) -> Any:
     """
     if encoding == "cdr":
         return bytes(data)
-    try:
-        return msgspec.json.decode(data)
-    except (msgspec.DecodeError, RecursionError) as error:
-        raise MessageError("message", f"no JSON: {error}") from None
+    return decoded(data, most_parts, "message")
 
 
 class Connections:

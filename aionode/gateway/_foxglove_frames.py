@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, TypeAlias
 import msgspec
 
 from aionode.errors import MessageError
+from aionode.gateway._json import check_items, check_parts
 from aionode.parameter import Parameter, ParameterType
 
 if TYPE_CHECKING:
@@ -157,14 +158,16 @@ ClientOp: TypeAlias = (
 DECODER: Final = msgspec.json.Decoder(ClientOp)
 
 
-def op_of(frame: str) -> Op:
+def op_of(frame: str, most_parts: int) -> Op:
     """Return the op in a text frame.
 
     Raises:
         MessageError: the frame is no op that clients send.
     """
     try:
-        op: Op = DECODER.decode(frame)
+        octets = frame.encode()
+        check_parts(octets, most_parts)
+        op: Op = DECODER.decode(octets)
     except (msgspec.DecodeError, RecursionError, UnicodeError) as error:
         raise MessageError("frame", f"{error}") from None
     return op
@@ -315,6 +318,7 @@ def parameter_of(name: str, given: FoxgloveParameter, now: ParameterType) -> Par
         MessageError: a node can have no such value.
     """
     value = given.value
+    check_items(value, name)
     try:
         if value is None:
             return Parameter(name)

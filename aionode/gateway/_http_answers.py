@@ -17,6 +17,7 @@ from aionode import errors
 from aionode.errors import AionodeError, RefusedError
 from aionode.fastapi import watching
 from aionode.gateway._door import STATUS
+from aionode.gateway._json import decoded
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable
@@ -203,9 +204,9 @@ class Asked:
             text = f"the body is {given or 'of no type'}; send application/json, as curl --json"
             raise HTTPException(415, text)
         try:
-            return msgspec.json.decode(self.body)
-        except (msgspec.DecodeError, RecursionError) as error:
-            raise HTTPException(400, f"the body is no JSON: {error}") from None
+            return decoded(self.body, self.session._limits.frame_parts, "body")
+        except errors.MessageError as error:
+            raise HTTPException(400, str(error)) from None
 
     def number(self, name: str, default: float, most: float) -> float:
         """Return a number of the query, from 0 to `most`.

@@ -8,6 +8,7 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from aionode.gateway._http_answers import Asked, json_response
+from aionode.gateway._json import check_items
 
 __all__ = ["set_parameter", "show_parameters"]
 
@@ -44,6 +45,7 @@ async def set_parameter(asked: Asked) -> Response:
     if not parameter:
         raise HTTPException(404, f"{node}: name a parameter, as in /parameters{node}/rate")
     value = asked.json()
+    check_items(value, parameter)
     asked.session.decide("parameter", f"{node}:{parameter}", "")  # before anything is read
     present = (await asked.session.get_parameters(node, [parameter])).get(parameter)
     (result,) = await asked.session.set_parameters(node, {parameter: as_real(value, present)})

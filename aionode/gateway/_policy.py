@@ -238,7 +238,9 @@ class Limits(Part, frozen=True):
 
     Attributes:
         clients: The most connections at a time.
-        frame_bytes: The largest frame or request of a client, in bytes.
+        frame_bytes: The largest frame or request of a client, and the largest message of many
+            values that is made of one, in bytes.
+        frame_parts: The most objects and lists in the JSON of a frame or request.
         frames_per_sec: The most frames of a client that the gateway reads in a second.
         queued_bytes: The most bytes that wait for one client; beyond it, the oldest messages are
             dropped.
@@ -254,6 +256,7 @@ class Limits(Part, frozen=True):
 
     clients: int = 64
     frame_bytes: int = 1_000_000
+    frame_parts: int = 5_000
     frames_per_sec: float = 2_000.0
     queued_bytes: int = 64 << 20
     subscriptions: int = 256

@@ -46,6 +46,7 @@ class Robot:
 
     Attributes:
         turn: Held by who encodes a large message, or asks about the graph: one at a time.
+        making: Held by who makes a large message of what a client has sent, in a thread.
     """
 
     def __init__(
@@ -61,6 +62,7 @@ class Robot:
         self.audit = audit
         self.tasks = tasks
         self.turn = asyncio.Lock()
+        self.making = asyncio.Lock()
         self.ask = ask
         self.time_base = node.context.time_base
         self.clock = SteadyClock(time_base=self.time_base)

@@ -14,6 +14,7 @@ import msgspec
 
 from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError
+from aionode.gateway._json import decoded
 from aionode.gateway._rosapi_types import full_text, type_definitions
 from aionode.gateway._rosbridge_request import full_name, shown
 from aionode.gateway._rosbridge_values import stamp
@@ -307,10 +308,10 @@ def plain(value: Any) -> Any:
 @service("set_param", "name", "value")
 async def set_param(session: Session, args: Args) -> dict[str, Any]:
     try:
-        value = msgspec.json.decode(args["value"])
+        value = decoded(args["value"], session._limits.frame_parts, "value")
         node, parameter = parameter_name(args["name"])
         (result,) = await session.set_parameters(node, {parameter: value})
-    except (AionodeError, TimeoutError, msgspec.DecodeError, RecursionError) as error:
+    except (AionodeError, TimeoutError) as error:
         return failed(error)
     return {"successful": result.successful, "reason": result.reason}
 

@@ -67,6 +67,7 @@ class Client:
         self._link = link = Link(session)
         self._lanes = lanes
         self._fragments = FragmentStore(session._limits.frame_bytes)
+        self._most_parts = session._limits.frame_parts
         self._offers = offers = Offers(link)
         topics, calls = Topics(link), Calls(link, lanes)
         self.malformed = 0
@@ -112,13 +113,13 @@ class Client:
         Raises:
             MessageError: the frame is no op, or its fragments are none.
         """
-        op = op_of(frame)
+        op = op_of(frame, self._most_parts)
         if op["op"] != "fragment":
             return op
         whole = self._fragments.add(op)
         if whole is None:
             return None
-        op = op_of(whole)
+        op = op_of(whole, self._most_parts)
         if op["op"] == "fragment":
             raise MessageError("fragment.data", "has fragments in it")
         return op

@@ -12,7 +12,7 @@ import msgspec
 from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway._rosbridge_request import full_name, optional_text, text, type_text, values
-from aionode.gateway._rosbridge_values import from_json, json_of
+from aionode.gateway._rosbridge_values import json_of
 
 if TYPE_CHECKING:
     from aionode.action import ServerGoalHandle
@@ -137,7 +137,7 @@ class Offers:
                 told = op.get("values")
                 problem = told if isinstance(told, str) and told else "the client says: failed"
                 raise ServiceError(offer.name, problem)
-            return self._message(offer.type_class.Response, op)
+            return await self._message(offer.type_class.Response, op)
         finally:
             del offer.pending[message_id]
 
@@ -176,7 +176,8 @@ class Offers:
         args = msgspec.Raw(json_of(goal.request))
         self._link.send(sent | {"action_type": type_name, "args": args, "feedback": True})
         try:
-            return self._ended(offer, goal, await self._result(offer, goal, message_id, answer))
+            op = await self._result(offer, goal, message_id, answer)
+            return await self._ended(offer, goal, op)
         except (AionodeError, TimeoutError) as error:
             if goal.is_active:
                 goal.abort(error_text=str(error) or f"canceled, and no result in {CANCEL_SEC:g} s")
@@ -202,13 +203,13 @@ class Offers:
             async with asyncio.timeout(CANCEL_SEC):
                 return await answer
 
-    def _ended(self, offer: Offer, goal: ServerGoalHandle[Any, Any, Any], op: Op) -> Any:
+    async def _ended(self, offer: Offer, goal: ServerGoalHandle[Any, Any, Any], op: Op) -> Any:
         """Set the state that the client gives a goal; return its result."""
         if op.get("result") is False:
             told = op.get("values")
             goal.abort(error_text=told if isinstance(told, str) else "the client says: failed")
             return offer.type_class.Result()
-        result = self._message(offer.type_class.Result, op)
+        result = await self._message(offer.type_class.Result, op)
         status = op.get("status")
         if status == SUCCEEDED:
             goal.succeed()
@@ -224,7 +225,7 @@ class Offers:
         goal = offer.goals.get(text(op, "id"))
         if goal is None:
             raise MessageError("action_feedback.id", f"{op['id']} is no goal under way")
-        goal.publish_feedback(self._message(offer.type_class.Feedback, op))
+        goal.publish_feedback(await self._message(offer.type_class.Feedback, op))
 
     async def action_result(self, op: Op) -> None:
         """Take the client's result of a goal."""
@@ -232,8 +233,8 @@ class Offers:
 
     # Both
 
-    def _message(self, cls: Any, op: Op) -> Any:
-        return from_json(cls, values(op, "values"), self._session.now_ns())
+    async def _message(self, cls: Any, op: Op) -> Any:
+        return await self._session.message_of(cls, values(op, "values"))
 
     def _offer(self, offers: dict[str, Offer], kind: str, op: Op) -> Offer:
         """Return the service or action of the client that an op is about."""

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import reprlib
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
-import msgspec
-
 from aionode.clock import Duration
 from aionode.errors import MessageError
+from aionode.gateway._json import decoded
 from aionode.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -55,36 +53,18 @@ OVERHEAD: Final = 20
 """What a fragment counts beside its bytes: empty ones take memory as well."""
 
 
-def op_of(frame: str | bytes) -> Op:
+def op_of(frame: str | bytes, most_parts: int) -> Op:
     """Return the op in a frame, which is one object of JSON.
-
-    Python's json module also writes NaN and Infinity, which JSON has not.
 
     Raises:
         MessageError: the frame is something else.
     """
-    try:
-        decoded = msgspec.json.decode(frame)
-    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-        decoded = with_infinities(frame, error)
-    if not isinstance(decoded, dict):
+    op = decoded(frame, most_parts)
+    if not isinstance(op, dict):
         raise MessageError("frame", "not a JSON object, which each frame of rosbridge is")
-    if not isinstance(decoded.get("op"), str):
+    if not isinstance(op.get("op"), str):
         raise MessageError("frame", "no field 'op' of text, which each frame of rosbridge has")
-    return decoded
-
-
-def with_infinities(frame: str | bytes, error: Exception) -> object:
-    """Return the values of a frame as Python's json module writes them."""
-    sought: tuple[Any, ...] = ("NaN", "Infinity") if isinstance(frame, str) else (b"NaN", b"Inf")
-    try:
-        if any(word in frame for word in sought):
-            decoded = json.loads(frame)
-            json.dumps(decoded, ensure_ascii=False).encode()  # halves of surrogate pairs raise
-            return decoded
-    except (ValueError, RecursionError):
-        pass  # the error of the first attempt is told
-    raise MessageError("frame", f"invalid JSON: {error}") from None
+    return op
 
 
 def text(op: Op, name: str, default: str | None = None, most: int | None = LONGEST_NAME) -> str:

@@ -8,9 +8,10 @@ from collections.abc import Callable, Iterator, Mapping, Sized
 from contextlib import AbstractContextManager, contextmanager
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
 
-from aionode._concurrency import checkpoint
+from aionode._concurrency import checkpoint, run_in_thread
 from aionode.clock import S_TO_NS
-from aionode.errors import InterfaceNotFoundError, RefusedError
+from aionode.errors import InterfaceNotFoundError, MessageError, RefusedError
+from aionode.gateway._json import is_large
 from aionode.gateway._outbox import Outbox
 from aionode.gateway._rosbridge_values import from_json
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
@@ -256,6 +257,20 @@ class SessionBase:
         """Return the class of an action type; see `message_class`."""
         return await self._robot.find_type(type_name, "action")
 
+    async def message_of(
+        self, cls: Any, values: Message | Mapping[str, Any] | list[Any] | bytes
+    ) -> Any:
+        """Return a message of a class; see `as_message`.
+
+        A large one is made in a thread, one at a time, as that takes up to a second. It may not
+        take more room than a frame of a client: in JSON, a large message is soon written.
+        """
+        clock = self._robot.node.get_clock()
+        if isinstance(values, Message) or not is_large(values):
+            return as_message(cls, values, clock)
+        async with self._robot.making:
+            return await run_in_thread(large_message, cls, values, clock, self._limits.frame_bytes)
+
     def now_ns(self) -> int:
         """Return the time of the node's clock, which may be simulated, in nanoseconds."""
         return self._robot.node.get_clock().now().nanoseconds
@@ -332,3 +347,18 @@ def as_message(
 
         return cdr.decode(cls, values)
     return from_json(cls, values, clock.now().nanoseconds)
+
+
+def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
+    """Return a message; see `as_message`. It is called in a thread.
+
+    Raises:
+        MessageError: it takes more than `most_bytes`.
+    """
+    from aionode.wire import cdr  # few clients send large messages
+
+    message = as_message(cls, values, clock)
+    size = len(cdr.encode(message))
+    if size > most_bytes:
+        raise MessageError(cls.__ros_type__, f"takes {size} bytes, at most {most_bytes} fit")
+    return message

@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import AionodeError, MessageError, ServiceError
-from aionode.gateway._session_base import SessionBase, as_message
+from aionode.gateway._session_base import SessionBase
 from aionode.message import Message
 from aionode.parameter import Parameter
 
@@ -64,7 +64,7 @@ class SessionCalls(SessionBase):
         with self._one_call("call", service):
             self._decide_call(service, "")
             cls = await self.service_class(type_name or self.type_of(service, "service"))
-            request = as_message(cls.Request, values, self._robot.node.get_clock())
+            request = await self.message_of(cls.Request, values)
             verb, name = self._decide_call(service, cls.__ros_type__, request)
             decision = await self._allow(verb, name, cls.__ros_type__, request)
             self._check_size(verb, name, decision, request)
@@ -151,7 +151,7 @@ class SessionCalls(SessionBase):
         with self._one_call("goal", action):
             self.decide("goal", action, "")
             cls = await self.action_class(type_name or self.type_of(action, "action"))
-            goal = as_message(cls.Goal, values, self._robot.node.get_clock())
+            goal = await self.message_of(cls.Goal, values)
             decision = await self._allow("goal", action, cls.__ros_type__, goal)
             self._check_size("goal", action, decision, goal)
             make = partial(self._robot.node.create_action_client, cls, action)

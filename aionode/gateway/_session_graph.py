@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode.errors import AionodeError, MessageError, NodeNameNonExistentError, ServiceError
+from aionode.gateway._json import check_items
 from aionode.gateway._session_base import SessionBase
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.parameter import Parameter
@@ -230,6 +231,7 @@ def parameter_of(name: str, value: Any) -> Parameter:
     Raises:
         MessageError: parameters have no such value.
     """
+    check_items(value, name)
     try:
         return Parameter(name, value=value)
     except (TypeError, ValueError, OverflowError) as error:

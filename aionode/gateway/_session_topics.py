@@ -13,7 +13,7 @@ from aionode.gateway._command import check_age
 from aionode.gateway._large_json import prepare_json
 from aionode.gateway._preparing import Preparing, prepared
 from aionode.gateway._rosbridge_values import json_of
-from aionode.gateway._session_base import SessionBase, as_message
+from aionode.gateway._session_base import SessionBase
 from aionode.message import Message
 from aionode.qos import DurabilityPolicy, QoSProfile
 
@@ -222,7 +222,7 @@ class SessionTopics(SessionBase):
         if topic not in self._published:
             await self.advertise(topic, type_name)
         publisher = self._published[topic][0]
-        message = as_message(publisher.msg_type, values, self._robot.node.get_clock())
+        message = await self.message_of(publisher.msg_type, values)
         decision = await self._allow("publish", topic, message.__ros_type__, message)
         self._check_size("publish", topic, decision, message)
         try:

@@ -36,6 +36,9 @@ __all__ = [
 ]
 
 KINDS = ("msg", "srv", "action")
+LONGEST_NAME = 300
+"""Longer names are compared with none: that takes time with their length."""
+
 CLOSE = 0.85
 """How like a name has to be to be suggested, from 0 to 1."""
 
@@ -163,6 +166,8 @@ def imported_types(package: str, kind: str) -> dict[str, type[Any]]:
 def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
     """Return the error for a name that is not there, with names that are close."""
     packages = known_packages()
+    if len(name) > LONGEST_NAME:
+        return InterfaceNotFoundError(name)
     if len(parts) == 1:
         everything = interface_names()
         near = tuple(one for one in everything if one.endswith(f"/{name}"))

@@ -25,6 +25,9 @@ from aionode.message._validation import fit, given, listed
 
 __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
 
+LONGEST_FIELD = 100
+"""Of longer names no field is meant: to compare a name takes time with its length."""
+
 MessageT = TypeVar("MessageT", bound=Message)
 
 FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
@@ -203,7 +206,7 @@ def no_such_field(cls: type[Message], key: str, names: list[str]) -> str:
     """Return the error text for a field that does not exist."""
     if not names:
         return f"no such field; {type_name(cls)} has no fields"
-    close = difflib.get_close_matches(key, names, 1)
+    close = difflib.get_close_matches(key, names, 1) if len(key) <= LONGEST_FIELD else ()
     meant = f"; did you mean {close[0]!r}?" if close else ""
     return f"no such field{meant}; {type_name(cls)} has {', '.join(names)}"
 

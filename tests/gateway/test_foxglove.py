@@ -309,7 +309,7 @@ async def test_a_call_that_fails_says_why(node: Node) -> None:
 
     assert failure["callId"] == 7
     assert "cannot be switched off" in failure["message"]
-    assert "no JSON" in malformed["message"]
+    assert "invalid JSON" in malformed["message"]
     assert "no service 1000" in unknown["message"]
 
 

@@ -83,14 +83,14 @@ def test_any_bytes_are_a_frame_or_refused(data: bytes) -> None:
 def test_other_text_is_refused(text: str) -> None:
     """The error becomes a status for the client."""
     with pytest.raises(MessageError, match="frame"):
-        frames.op_of(text)
+        frames.op_of(text, 5000)
 
 
 def test_an_op_may_have_fields_that_are_new() -> None:
     """Newer clients send more."""
     text = '{"op":"subscribe","subscriptions":[{"id":1,"channelId":2,"new":3}],"newer":4}'
 
-    op = frames.op_of(text)
+    op = frames.op_of(text, 5000)
 
     assert isinstance(op, frames.Subscribe)
     assert [(wish.id, wish.channel_id) for wish in op.subscriptions] == [(1, 2)]

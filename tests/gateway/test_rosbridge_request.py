@@ -24,19 +24,19 @@ from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 def test_a_frame_that_is_no_op_is_an_error(frame: str | bytes) -> None:
     """One frame is one op: rosbridge searches for brackets instead, at a quadratic cost."""
     with pytest.raises(MessageError, match="frame"):
-        op_of(frame)
+        op_of(frame, 5000)
 
 
 @given(st.one_of(st.text(), st.binary()))
 def test_garbage_raises_nothing_but_a_message_error(frame: str | bytes) -> None:
     """Whatever comes, the client is told, and nothing else happens."""
     with suppress(MessageError):
-        op_of(frame)
+        op_of(frame, 5000)
 
 
 def test_infinities_are_read_as_python_writes_them() -> None:
     """A client that uses Python's json module sends them so."""
-    op = op_of(json.dumps({"op": "publish", "msg": [math.inf, math.nan]}))
+    op = op_of(json.dumps({"op": "publish", "msg": [math.inf, math.nan]}), 5000)
 
     assert op["msg"][0] == math.inf
     assert math.isnan(op["msg"][1])

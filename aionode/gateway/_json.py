@@ -1,0 +1,103 @@
+"""JSON of clients, and how much may be in it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Final
+
+import msgspec
+
+from aionode.errors import MessageError
+
+__all__ = ["check_items", "check_parts", "decoded", "is_large"]
+
+MOST_ITEMS: Final = 10_000
+"""How many items the value of a parameter may have."""
+
+LARGE_ITEMS: Final = 1_000
+"""Beyond so many values, what is made of them is made in a thread: each takes some microseconds."""
+
+LARGE_BYTES: Final = 64 << 10
+"""The same for a message in CDR, which is decoded faster."""
+
+
+def decoded(text: str | bytes | memoryview, most_parts: int, what: str = "frame") -> Any:
+    """Return the value of JSON.
+
+    Python's json module also writes NaN and Infinity, which JSON has not.
+
+    Args:
+        text: The JSON.
+        most_parts: How many objects and lists it may have: an empty object of two characters may
+            become a message of some kilobytes.
+        what: What it is, for errors.
+
+    Raises:
+        MessageError: it is no JSON, is nested too deeply, or has too many parts.
+    """
+    octets = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
+    check_parts(octets, most_parts, what)
+    try:
+        return msgspec.json.decode(octets)
+    except (msgspec.DecodeError, UnicodeError, RecursionError) as error:
+        return with_infinities(octets, what, error)
+
+
+def check_parts(octets: bytes, most: int, what: str = "frame") -> None:
+    """Refuse JSON with too many parts.
+
+    Raises:
+        MessageError: there are too many.
+    """
+    if brackets(octets) > most and (count := brackets(without_texts(octets))) > most:
+        raise MessageError(what, f"{count} objects and lists, at most {most} fit")
+
+
+def brackets(octets: bytes) -> int:
+    """Return how many brackets are opened."""
+    return octets.count(b"{") + octets.count(b"[")
+
+
+def without_texts(octets: bytes) -> bytes:
+    """Return JSON without the texts in it, each of which is between two quotation marks."""
+    plain = octets.replace(rb"\\", b"").replace(rb"\"", b"")
+    return b"".join(plain.split(b'"')[::2])
+
+
+def with_infinities(octets: bytes, what: str, error: Exception) -> object:
+    """Return the values of JSON as Python's json module writes them."""
+    try:
+        if b"NaN" in octets or b"Infinity" in octets:
+            values = json.loads(octets)
+            msgspec.json.encode(values)  # halves of surrogate pairs raise, and huge numbers
+            return values
+    except (ValueError, OverflowError, RecursionError):
+        pass  # the error of the first attempt is told
+    raise MessageError(what, f"invalid JSON: {error}") from None
+
+
+def check_items(value: object, what: str) -> None:
+    """Refuse a value of a parameter that has too many items: each takes some microseconds.
+
+    Raises:
+        MessageError: there are too many.
+    """
+    if isinstance(value, list) and len(value) > MOST_ITEMS:
+        raise MessageError(what[:200], f"{len(value)} items, at most {MOST_ITEMS} fit")
+
+
+def is_large(values: object) -> bool:
+    """Return whether it takes long to make a message of values, or of its bytes."""
+    if isinstance(values, bytes | bytearray | memoryview):
+        return len(values) > LARGE_BYTES
+    waiting, count = [values], 0
+    while waiting:
+        each = waiting.pop()
+        if not isinstance(each, dict | list):
+            continue
+        count += len(each)
+        if count > LARGE_ITEMS:
+            return True
+        inner = each.values() if isinstance(each, dict) else each
+        waiting.extend(item for item in inner if isinstance(item, dict | list))
+    return False
