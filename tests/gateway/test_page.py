@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -44,12 +44,21 @@ def driving(ttl_sec: float = 30.0) -> Policy:
 
 
 class Scene(NamedTuple):
-    """The page in a browser, and the robot behind it."""
+    """The page in a browser, and the robot behind it.
+
+    Attributes:
+        page: The page.
+        robot: The robot.
+        gateway: Its gateway.
+        commands: What the robot was told to drive.
+        network: Set while the network between browser and gateway carries something.
+    """
 
     page: Page
     robot: Robot
     gateway: Gateway
     commands: list[Twist]
+    network: asyncio.Event
 
     @property
     def speeds(self) -> list[float]:
@@ -59,19 +68,44 @@ class Scene(NamedTuple):
 
 @asynccontextmanager
 async def scene(
-    context: Context, policy: Policy = POLICY, fragment: str = ""
+    context: Context, policy: Policy = POLICY, fragment: str = "", *, is_cuttable: bool = False
 ) -> AsyncIterator[Scene]:
     """Run a robot, its gateway and a browser that has opened the page."""
     commands: list[Twist] = []
+    network = asyncio.Event()
+    network.set()
     async with (
         Robot(context) as robot,
         Node("wheels", context=context) as wheels,
         Gateway(robot, policy=policy, port=0) as gateway,
+        relay(gateway.port, network) as relayed,
         chromium() as browser,
     ):
         wheels.create_subscription(Twist, "/cmd_vel", commands.append, 100)
-        page = await browser.open(f"http://127.0.0.1:{gateway.port}/{fragment}")
-        yield Scene(page, robot, gateway, commands)
+        port = relayed if is_cuttable else gateway.port
+        page = await browser.open(f"http://127.0.0.1:{port}/{fragment}")
+        yield Scene(page, robot, gateway, commands, network)
+
+
+@asynccontextmanager
+async def relay(port: int, network: asyncio.Event) -> AsyncIterator[int]:
+    """Yield a port that leads to another one while an event is set, and is silent otherwise."""
+
+    async def copy(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with suppress(ConnectionError):
+            while data := await reader.read(65536):
+                await network.wait()
+                writer.write(data)
+                await writer.drain()
+        writer.close()
+
+    async def connect(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        back, forth = await asyncio.open_connection("127.0.0.1", port)
+        await asyncio.gather(copy(reader, forth), copy(back, writer))
+
+    server = await asyncio.start_server(connect, "127.0.0.1", 0)
+    async with server:
+        yield server.sockets[0].getsockname()[1]
 
 
 async def connected(page: Page) -> None:
@@ -96,7 +130,7 @@ async def until(node: Node, condition: Callable[[], bool]) -> None:
 
 async def test_the_page_shows_what_the_robot_does(context: Context) -> None:
     """Rates, values, plots, pictures and the log, from this gateway alone."""
-    async with scene(context) as (page, robot, _, _):
+    async with scene(context) as (page, robot, *_):
         await connected(page)
         await page.click("#topics tr[data-topic='/odom']")
         await page.until("document.querySelectorAll('#message td.number').length > 5")
@@ -117,7 +151,7 @@ async def test_the_page_shows_what_the_robot_does(context: Context) -> None:
 
 async def test_the_page_sets_parameters_and_calls_services(context: Context) -> None:
     """What the node refuses is shown with its reason."""
-    async with scene(context) as (page, robot, _, _):
+    async with scene(context) as (page, robot, *_):
         await connected(page)
         robot.x = 5.0
         await page.choose("#parameters select", "/robot")
@@ -141,7 +175,7 @@ async def test_the_page_sets_parameters_and_calls_services(context: Context) -> 
 
 async def test_letting_go_stops(context: Context) -> None:
     """The page sends while the pad is held, within the limits of the policy."""
-    async with scene(context, driving()) as (page, robot, _, commands):
+    async with scene(context, driving()) as (page, robot, _, commands, _):
         await connected(page)
         await page.write("#teleop .speed", "5")
         await hold(page)
@@ -155,7 +189,7 @@ async def test_letting_go_stops(context: Context) -> None:
 
 async def test_the_stop_button_ends_driving(context: Context) -> None:
     """Also while the pad is held; afterwards the pad has no effect until "drive" is ticked."""
-    async with scene(context, driving()) as (page, robot, _, commands):
+    async with scene(context, driving()) as (page, robot, _, commands, _):
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -172,7 +206,7 @@ async def test_the_stop_button_ends_driving(context: Context) -> None:
 
 async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
     """Nobody lets the pad go: the gateway ends the lease of a client that has left."""
-    async with scene(context, driving()) as (page, robot, gateway, commands):
+    async with scene(context, driving()) as (page, robot, gateway, commands, _):
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -182,9 +216,53 @@ async def test_driving_stops_when_the_tab_closes(context: Context) -> None:
         assert commands[-1] == Twist()
 
 
+async def test_hiding_the_tab_stops(context: Context) -> None:
+    """The page itself stops: a browser lets the scripts of hidden tabs run once a second."""
+    async with scene(context, driving()) as (page, robot, _, commands, _):
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        await page.hide()
+        await until(robot, lambda: not commands[-1].linear.x)
+
+        assert not await page.value("document.querySelector('#teleop .armed').checked")
+
+
+async def test_driving_stops_when_the_browser_freezes_the_tab(context: Context) -> None:
+    """Browsers do so to save power; the page hears of it, and its timers stand still."""
+    async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        await page.do("Page.setWebLifecycleState", state="frozen")
+        await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
+
+        assert commands[-1] == Twist()
+
+
+async def test_driving_stops_when_the_network_is_cut(context: Context) -> None:
+    """Neither end is told: the gateway sends the stop after the time to live.
+
+    What the page has sent meanwhile is refused when the network is back.
+    """
+    async with scene(context, driving(ttl_sec=0.3), is_cuttable=True) as whole:
+        page, robot, gateway, commands, network = whole
+        await connected(page)
+        await hold(page)
+        await until(robot, lambda: len(commands) >= 3)
+        network.clear()
+        await until(robot, lambda: not (commands[-1].linear.x or gateway.stats.holders))
+        count = len(commands)
+        await page.value("new Promise(done => setTimeout(done, 200))")
+        network.set()
+        await page.until("!document.querySelector('.pad').classList.contains('held')")
+
+        assert not any(command.linear.x for command in commands[count:])
+
+
 async def test_driving_stops_when_the_page_freezes(context: Context) -> None:
     """A script that never ends sends nothing: the gateway sends the stop after the time to live."""
-    async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands):
+    async with scene(context, driving(ttl_sec=0.3)) as (page, robot, gateway, commands, _):
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -198,7 +276,7 @@ async def test_a_key_drives_while_it_is_held(context: Context) -> None:
     """Also with commands that have a stamp, which the gateway sets by the robot's clock."""
     policy = Policy.default(allow_write=True)
     stamped: list[TwistStamped] = []
-    async with scene(context, policy) as (page, robot, _, _):
+    async with scene(context, policy) as (page, robot, *_):
         robot.create_subscription(TwistStamped, "/base/cmd_vel", stamped.append, 100)
         await connected(page)
         await page.write("#teleop .topic", "/base/cmd_vel")
@@ -224,7 +302,7 @@ async def test_pictures_have_their_colours(context: Context) -> None:
         "/mono16": from_numpy(grey.astype(np.uint16) << 8, "mono16"),
         "/png": compress(from_numpy(red, "rgb8"), "png"),
     }
-    async with scene(context) as (page, robot, _, _):
+    async with scene(context) as (page, robot, *_):
         outlets = {name: robot.create_publisher(type(pictures[name]), name, 1) for name in pictures}
 
         def show() -> None:
@@ -246,7 +324,7 @@ async def test_pictures_have_their_colours(context: Context) -> None:
 
 async def test_a_second_page_is_told_who_drives(context: Context) -> None:
     """Its pad is let go, as its commands have no effect."""
-    async with scene(context, driving()) as (page, robot, _, commands), chromium() as other:
+    async with scene(context, driving()) as (page, robot, _, commands, _), chromium() as other:
         await connected(page)
         await hold(page)
         await until(robot, lambda: len(commands) >= 3)
@@ -271,7 +349,7 @@ async def test_the_page_asks_for_a_token(context: Context) -> None:
         see = "/**"
         subscribe = "/**"
     """)
-    async with scene(context, policy, "#token=wrong") as (page, _, _, _):
+    async with scene(context, policy, "#token=wrong") as (page, *_):
         await page.until("!document.querySelector('#sign-in').hidden")
         await page.value("document.querySelector('#token').value = 'correct horse battery staple'")
         await page.click("#sign-in button")

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import asyncio
+import atexit
 import base64
+import functools
 import json
 import os
 import shutil
+import signal
+import subprocess
 import tempfile
 from contextlib import asynccontextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed
+
+from tests.support.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -127,6 +133,11 @@ class Page:
         answer = await self.do("Page.captureScreenshot", format="png", **clip)
         path.write_bytes(base64.b64decode(answer["data"]))
 
+    async def hide(self) -> None:
+        """Open another tab before this one, as a user does."""
+        await self._browser.open("about:blank")
+        await self.until("document.hidden")
+
     async def close(self) -> None:
         """Close the tab, as a user does."""
         await self._browser.do("Target.closeTarget", targetId=self._target)
@@ -139,6 +150,13 @@ class Browser:
         self._connection = connection
         self._answers: dict[int, asyncio.Future[Any]] = {}
         self._last_id = 0
+        self._context = ""
+
+    async def begin(self) -> Self:
+        """Begin without what other browsers know; it is forgotten with the connection."""
+        made = await self.do("Target.createBrowserContext", disposeOnDetach=True)
+        self._context = made["browserContextId"]
+        return self
 
     async def do(self, method: str, session: str | None = None, **parameters: Any) -> Any:
         """Call a method of the DevTools protocol, and return its result."""
@@ -163,7 +181,8 @@ class Browser:
 
     async def open(self, url: str, *, width: int = 1280, height: int = 900) -> Page:
         """Open a page in a new tab."""
-        target = (await self.do("Target.createTarget", url="about:blank"))["targetId"]
+        tab = {"url": "about:blank", "browserContextId": self._context}
+        target = (await self.do("Target.createTarget", **tab))["targetId"]
         attached = await self.do("Target.attachToTarget", targetId=target, flatten=True)
         page = Page(self, target, attached["sessionId"])
         await page.do(
@@ -177,45 +196,53 @@ class Browser:
         return page
 
 
-@asynccontextmanager
-async def chromium() -> AsyncIterator[Browser]:
-    """Run Chromium, with a profile of its own, until the block ends."""
-    assert CHROMIUM is not None
-    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        process = await asyncio.create_subprocess_exec(
-            CHROMIUM,
-            *OPTIONS,
-            f"--user-data-dir={profile}",
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.DEVNULL,
-            stderr=asyncio.subprocess.PIPE,
-            env=os.environ | {"HOME": profile},
+class Process:
+    """Chromium, which the tests of this process share: its start takes longer than most of them."""
+
+    def __init__(self) -> None:
+        assert CHROMIUM is not None
+        self._profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        self._address = Path(self._profile.name, "DevToolsActivePort")
+        self._process = subprocess.Popen(
+            [CHROMIUM, *OPTIONS, f"--user-data-dir={self._profile.name}"],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            env=os.environ | {"HOME": self._profile.name},
             start_new_session=True,
         )
-        assert process.stderr is not None
-        try:
-            address = ""
-            while not address.startswith("DevTools listening on "):
-                line = await process.stderr.readline()
-                assert line, "Chromium has ended"
-                address = line.decode().strip()
-            async with (
-                connect(address.split()[-1], max_size=None, proxy=None) as connection,
-                asyncio.TaskGroup() as tasks,
-            ):
-                browser = Browser(connection)
-                tasks.create_task(browser.read())
-                tasks.create_task(drain(process.stderr))
-                yield browser
-                await browser.do("Browser.close")
-                await process.wait()
-        finally:
-            with suppress(ProcessLookupError):
-                os.killpg(process.pid, 9)
-            await process.wait()
+        atexit.register(self.end)
+
+    async def address(self) -> str:
+        """Wait until it listens, and return where."""
+        async with asyncio.timeout(20):
+            await until(lambda: self._address.is_file() and "/" in self._address.read_text())
+        port, path = self._address.read_text().split()
+        return f"ws://127.0.0.1:{port}{path}"
+
+    def end(self) -> None:
+        """Kill it, with all its processes."""
+        with suppress(ProcessLookupError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        self._process.wait()
+        self._profile.cleanup()
 
 
-async def drain(stream: asyncio.StreamReader) -> None:
-    """Read what Chromium prints, so that its pipe never fills."""
-    while await stream.read(65536):
-        pass
+@functools.cache
+def process() -> Process:
+    """Return the running Chromium."""
+    return Process()
+
+
+@asynccontextmanager
+async def chromium() -> AsyncIterator[Browser]:
+    """Yield a browser without cookies, caches and tabs of others; its own end with the block."""
+    address = await process().address()
+    async with (
+        connect(address, max_size=None, proxy=None) as connection,
+        asyncio.TaskGroup() as tasks,
+    ):
+        browser = Browser(connection)
+        reading = tasks.create_task(browser.read())
+        yield await browser.begin()
+        reading.cancel()  # the tabs are closed with the connection
