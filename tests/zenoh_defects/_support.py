@@ -17,10 +17,11 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
-from typing import Any, Final
+from typing import Any
 
 import zenoh
 
+from aionode._socket_queue import queued_bytes
 from tests.support.peers import free_ports
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "frozen",
     "is_frozen",
     "is_matched",
+    "is_stuck",
     "listening",
     "opened",
     "process",
@@ -62,18 +64,14 @@ def session(settings: dict[str, Any]) -> Iterator[zenoh.Session]:
         yield one
 
 
-SMALL: Final = "#so_sndbuf=65536;so_rcvbuf=65536"
-"""Has sockets hold so little that a peer which reads nothing is noticed soon."""
-
-
 def listening(there: str) -> dict[str, Any]:
     """Return the settings of a session that listens."""
-    return {"listen/endpoints": [there + SMALL]}
+    return {"listen/endpoints": [there]}
 
 
 def dialling(there: str) -> dict[str, Any]:
     """Return the settings of a session that dials."""
-    return {"connect/endpoints": [there + SMALL]}
+    return {"connect/endpoints": [there]}
 
 
 PREAMBLE = """
@@ -156,6 +154,15 @@ def sockets() -> Iterator[tuple[int, int, socket.socket]]:
     for path in Path("/proc/self/fd").iterdir():
         with suppress(OSError), socket.socket(fileno=os.dup(int(path.name))) as one:
             yield one.getsockname()[1], one.getpeername()[1], one
+
+
+def is_stuck(port: int) -> bool:
+    """Return whether a connection to a port is full, and remains so for a while."""
+    for _ in range(4):
+        time.sleep(0.01)
+        if not any(queued_bytes(one) > 30_000 for _, there, one in sockets() if there == port):
+            return False
+    return True
 
 
 def until(condition: Callable[[], object], limit_s: float = 4.0) -> bool:

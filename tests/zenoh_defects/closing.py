@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import time
 from functools import partial
 
 import zenoh
@@ -14,6 +13,7 @@ from tests.zenoh_defects._support import (
     endpoint,
     frozen,
     is_matched,
+    is_stuck,
     opened,
     process,
     stands_still,
@@ -54,14 +54,15 @@ def test_close_waits_for_a_peer_that_does_not_answer() -> None:
 def test_close_waits_for_a_peer_that_takes_nothing() -> None:
     """What is in its socket has been put with DROP."""
     there = endpoint()
+    port = int(there.rpartition(":")[2])
     with process(READER, there) as running:
         one = opened(dialling(there))
         publisher = one.declare_publisher("a", congestion_control=zenoh.CongestionControl.DROP)
         assert until(partial(is_matched, publisher))
         with frozen(running):
-            for _ in range(50):  # Zenoh writes some of them meanwhile, until its socket is full
-                publisher.put(bytes(60_000))
-                time.sleep(0.01)
+            while not is_stuck(port):
+                for _ in range(100):
+                    publisher.put(bytes(60_000))
 
             assert stands_still(one.close, 2.0)
         running.kill()
