@@ -26,6 +26,7 @@ from tests.support.peers import free_ports
 
 __all__ = [
     "READER",
+    "WAIT",
     "dialling",
     "endpoint",
     "frozen",
@@ -41,6 +42,10 @@ __all__ = [
     "suppressed",
     "until",
 ]
+
+
+WAIT = "transport/link/tx/queue/congestion_control/block/wait_before_close"
+"""The setting for the time that a blocking send waits for a peer, in microseconds."""
 
 
 def endpoint() -> str:

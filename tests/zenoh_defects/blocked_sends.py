@@ -8,6 +8,7 @@ import zenoh
 
 from tests.zenoh_defects._support import (
     READER,
+    WAIT,
     dialling,
     endpoint,
     frozen,
@@ -17,9 +18,6 @@ from tests.zenoh_defects._support import (
     stands_still,
     until,
 )
-
-WAIT = "transport/link/tx/queue/congestion_control/block/wait_before_close"
-"""How long Zenoh waits, in microseconds."""
 
 
 def test_a_put_with_drop_waits_beside_one_with_block() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from zenoh import ext
 
 from tests.zenoh_defects._support import (
+    WAIT,
     endpoint,
     is_frozen,
     listening,
@@ -32,7 +33,7 @@ with session(dialling(sys.argv[1])) as one:
 def test_a_put_waits_for_a_reader_of_the_history_that_reads_nothing() -> None:
     """The answer is more than sockets and queues hold, and the reader freezes at its first part."""
     there = endpoint()
-    settings = listening(there) | {"timestamping/enabled": True}
+    settings = listening(there) | {"timestamping/enabled": True, WAIT: 60_000_000}
     with session(settings) as one, process(ASKS, there) as running:
         publisher = ext.declare_advanced_publisher(one, "a", cache=ext.CacheConfig(1000))
         for _ in range(400):

@@ -21,11 +21,10 @@ __all__ = [
     "translated",
 ]
 
-# Zenoh has a queue for each priority and peer. A thread that waits for room in one (congestion
-# control BLOCK, and for a moment DROP) locks it, and all other threads that put into it wait too.
-# So messages from the event loop have a queue of their own, in which no thread ever waits. Zenoh's
-# default, DATA, is left to Zenoh's own messages and to replies to ROS 2 nodes; tokens and other
-# declarations are CONTROL.
+# Zenoh has a queue for each priority and peer, which is locked while a thread waits for room in it
+# (`_defects.blocked_sends`). So messages from the event loop have a queue of their own, in which no
+# thread ever waits. Zenoh's default, DATA, is left to Zenoh's own messages and to replies to ROS 2
+# nodes; tokens and other declarations are CONTROL.
 
 LOOP_PRIORITY = zenoh.Priority.DATA_HIGH
 """Of messages from the event loop: always with congestion control DROP."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import zenoh
 from zenoh import ext
 
+from aionode.transport.zenoh._defects.heartbeats import miss_detection
 from aionode.wire import _attachment as attachment
 
 if TYPE_CHECKING:
@@ -58,13 +59,8 @@ def declare_keeping(
         allowed_destination=zenoh.Locality.REMOTE,
         cache=ext.CacheConfig(max_samples=depth),
         publisher_detection=True,
-        # Samples are numbered, so that readers ask again for what is missing between two. No
-        # heartbeat, which would tell of a missing last one too: undeclaring waits for its task with
-        # the GIL held, and for 10 s if that task's thread needs the GIL for a callback just then
-        # (zenoh-python 1.10).
-        sample_miss_detection=ext.MissDetectionConfig(heartbeat=None, sporadic_heartbeat=None)
-        if reliable and numbered
-        else None,
+        # Samples are numbered, so that readers ask again for what is missing between two.
+        sample_miss_detection=miss_detection() if reliable and numbered else None,
     )
 
 

@@ -5,9 +5,7 @@ peer reads nothing. The event loop sends them itself while the peer has shown si
 been sent so little that the queues on the way hold it. Otherwise one thread for each such peer
 sends them.
 
-That thread waits too before Zenoh would. When the lease of a peer ends while Zenoh waits for it,
-the thread of Zenoh that ends the connection waits as well, for ten seconds and with all that it has
-to do for others; if the peer returns meanwhile, its new connection may never work (zenoh 1.10).
+That thread waits for the peer before Zenoh would, for a reason of Zenoh (`_defects.blocked_sends`).
 """
 
 from __future__ import annotations
