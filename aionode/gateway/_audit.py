@@ -49,6 +49,7 @@ class Audit:
         path: The file, to which lines are appended; empty for none.
 
     Attributes:
+        topic: The full name of its topic.
         lost: How many lines were not written, because the disk was slow or there were too many.
     """
 
@@ -56,6 +57,7 @@ class Audit:
         self.lost = 0
         self._path = Path(path) if path else None
         self._publisher = node.create_publisher(String, "~/audit", 100)
+        self.topic = self._publisher.topic_name
         self._node = node
         self._lines: deque[str] = deque()
         self._filled = asyncio.Event()

@@ -96,10 +96,10 @@ class Commands:
         """
         topic = publisher.topic_name
         holder = self._holders.get(topic)
-        if holder is not None and holder.owner != owner:
-            if rule.priority <= holder.rule.priority:
+        if holder is not None and (holder.owner != owner or holder.rule != rule):
+            if holder.owner != owner and rule.priority <= holder.rule.priority:
                 raise held(topic, holder)
-            await self._end(holder)
+            await self._end(holder)  # of a client of less priority, or of a policy that has changed
             self.refuse_if_held(topic, owner)
             holder = self._holders.get(topic)
         if holder is None:

@@ -35,6 +35,9 @@ UNDEMANDING: Final = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_
 MOST_LATCHED: Final = 100
 """How many messages of each transient local publisher are kept for clients that come later."""
 
+MOST_LATCHED_BYTES: Final = 32 << 20
+"""How many bytes these messages have at most, though the last one is always kept."""
+
 
 class Received:
     """One message of a topic, shared by all clients: decoded once, encoded once for each kind.
@@ -202,7 +205,10 @@ class Feed:
         offered = self._offered.get(gid)
         if offered is not None and offered.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             depth = min(max(offered.depth, 1), MOST_LATCHED)
-            self._latched.setdefault(gid, deque(maxlen=depth)).append(received)
+            kept = self._latched.setdefault(gid, deque(maxlen=depth))
+            kept.append(received)
+            while len(kept) > 1 and sum(len(each.raw) for each in kept) > MOST_LATCHED_BYTES:
+                kept.popleft()
         for taker in tuple(self._takers.values()):
             taker(received)
 

@@ -39,7 +39,7 @@ from aionode.gateway._http_parameters import set_parameter, show_parameters
 from aionode.gateway._http_topics import answer_topic
 from aionode.gateway._identity import Identity
 from aionode.gateway._metrics import MEDIA_TYPE, gateway_metrics, node_metrics, prometheus
-from aionode.gateway._offers import may, offers
+from aionode.gateway._offers import offers
 from aionode.gateway._openapi import openapi
 from aionode.gateway._rosbridge_values import json_of
 from aionode.node import Node
@@ -161,7 +161,7 @@ class HttpApi:
         nodes = [node for node in self._gateway.node.context._nodes if isinstance(node, Node)]
 
         def sees(name: str, type_name: str) -> bool:
-            return may(asked.session, "see", name, type_name)
+            return asked.session.sees(name, type_name)
 
         families = [*gateway_metrics(self._gateway.stats, sees), *node_metrics(nodes, sees)]
         return Response(prometheus(families), headers=HEADERS, media_type=MEDIA_TYPE)

@@ -115,11 +115,11 @@ class Outbox:
         self._filled.set()
 
     def discard(self, key: Hashable) -> None:
-        """Forget the frames of a topic that the client has unsubscribed from."""
+        """Forget a topic that the client has unsubscribed from: its frames, and their count."""
         while self._queues.get(key):
             self._take(key)
-        self._queues.pop(key, None)
-        self._key_bytes.pop(key, None)
+        for by_key in (self._queues, self._key_bytes, self.dropped):
+            by_key.pop(key, None)
 
     def close(self) -> None:
         """End the iteration, and forget what waits."""

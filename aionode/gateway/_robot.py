@@ -125,19 +125,19 @@ class Rates:
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self._now_ns = now_ns
-        self._buckets: dict[tuple[str, int, str], Bucket] = {}
+        # With its rule, which therefore lives, so that no other one has its id.
+        self._buckets: dict[tuple[str, int, str], tuple[Rule, Bucket]] = {}
 
     def allows(self, identity: Identity, rule: Rule, name: str) -> bool:
         """Count one more, and return whether it is within the rate."""
         if rule.rate_hz == math.inf:
             return True
         key = (identity.name, id(rule), name)
-        bucket = self._buckets.get(key)
-        if bucket is None:
+        if key not in self._buckets:
             if len(self._buckets) >= MOST_RATES:
                 del self._buckets[next(iter(self._buckets))]  # the oldest, not those of others
-            bucket = self._buckets[key] = Bucket(rule.rate_hz, self._now_ns)
-        return bucket.wait_sec() <= 0.0
+            self._buckets[key] = (rule, Bucket(rule.rate_hz, self._now_ns))
+        return self._buckets[key][1].wait_sec() <= 0.0
 
 
 class Bucket:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import secrets
 import socket
 import ssl
@@ -126,6 +127,28 @@ class Server(uvicorn.Server):
             await server.wait_closed()
 
 
+class ServerLog:
+    """The log of uvicorn, without the mistakes of clients: these may make them at any rate.
+
+    Its errors are faults of the application, but for a text that is no UTF-8.
+    """
+
+    def __init__(self, logger: logging.Logger) -> None:
+        self._logger = logger
+
+    def __getattr__(self, name: str) -> Any:
+        """Return what else the log has."""
+        return getattr(self._logger, name)
+
+    def warning(self, *_: object) -> None:
+        """Say nothing of a request that is malformed."""
+
+    def exception(self, text: str) -> None:
+        """Write an error with its traceback."""
+        if not text.startswith("Invalid UTF-8"):
+            self._logger.error(text, exc_info=True)  # noqa: LOG014  # called by a handler
+
+
 class Flow(FlowControl):
     """The flow of a connection, which begins again with what waits."""
 
@@ -155,6 +178,7 @@ class HttpConnection(H11Protocol):
         """Begin the time within which a request has to arrive."""
         super().connection_made(transport)
         self.access_log = False  # it would have the paths of requests, and belongs to the program
+        self.logger = ServerLog(self.logger)  # type: ignore[assignment]  # does what is called of it
         self._portions = Portions(
             transport, super().data_received, lambda: not self.flow.read_paused
         )
@@ -274,6 +298,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self.conn.debug = False  # it would write the tokens of addresses and headers into the log
+        self.logger = ServerLog(self.logger)  # type: ignore[assignment]  # does what is called of it
         self._asked: dict[bytes, Callable[[], None]] = {}  # by the payloads of pings
         limits = self.config.policy().limits
         self._bucket = Bucket(limits.frames_per_sec, lambda: round(self.loop.time() * S_TO_NS))

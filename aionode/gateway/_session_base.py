@@ -313,6 +313,11 @@ class SessionBase:
         types = list(self._types_of(name, kind))
         return types if types and self._sees(name, types) else []
 
+    def sees(self, name: str, type_name: str) -> bool:
+        """Return whether the client sees a name; without a type, those of the topic count."""
+        types = [type_name] if type_name else list(self._types_of(name, "topic"))
+        return self._sees(name, types)
+
     def _types_of(self, name: str, kind: Kind) -> dict[str, None]:
         place, suffix = name, ""
         if kind == "action":

@@ -181,6 +181,8 @@ class SessionTopics(SessionBase):
         topic = self.topic_name(topic)
         if topic in self._published:
             return
+        if topic == self._robot.audit.topic:
+            raise self._refused("publish", topic, "the gateway alone writes it", "not_allowed")
         what, most = "topics that it publishes", self._limits.advertised
         with self._one_more("publish", topic, what, self._published, most):
             message_class = await self._type_to("publish", topic, type_name)

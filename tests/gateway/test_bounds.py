@@ -15,16 +15,19 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError, RefusedError
-from aionode.gateway import Policy, Session, _foxglove_client, _rosapi
+from aionode.gateway import Policy, Session, _feed, _foxglove_client, _rosapi
 from aionode.gateway._foxglove_client import Client
 from aionode.gateway._lanes import Lanes
+from aionode.gateway._outbox import Outbox
 from aionode.gateway._robot import Robot
 from aionode.gateway._rosbridge_client import MOST_MALFORMED, serve_frames
 from aionode.gateway._rosbridge_request import FragmentStore
 from aionode.gateway._session_base import MOST_QUESTIONS
 from aionode.gateway._sharing import MOST_UNUSED, Shared
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
+from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import settle
 from tests.support.gateway_bench import Bench
 from tests.support.rosbridge import RosbridgeClient
@@ -353,3 +356,41 @@ async def test_parameters_of_many_nodes_are_listed(bench: Bench) -> None:
         session = await stack.enter_async_context(bench.session())
         found = await _rosapi.answer(session, "get_param_names", {})
     assert {f"/{name}:use_sim_time" for name in names} <= set(found["names"])
+
+
+# What is kept
+
+
+def test_topics_that_a_client_has_left_are_forgotten() -> None:
+    """A client may subscribe with ever new ids: no count of any of them stays."""
+    outbox = Outbox()
+    for number in range(10):
+        for _ in range(3):
+            outbox.put(number, b"frame", depth=1)
+        outbox.discard(number)
+    assert not outbox.dropped
+
+
+async def test_messages_that_are_kept_for_late_clients_are_bounded_in_bytes(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A camera may ask to keep a hundred pictures; the last one is kept in any case."""
+    monkeypatch.setattr(_feed, "MOST_LATCHED_BYTES", 1000)
+    latched = QoSProfile(depth=50, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    publisher = bench.node.create_publisher(String, "/words", latched)
+    async with bench.session() as early, bench.session() as late:
+        await early.subscribe("/words", frame=lambda each: each.message.data, key="w", depth=50)
+        for size in (300, 300, 300, 300, 2000):
+            publisher.publish(String(data="x" * size))
+            await settle()
+            (feed,) = bench.robot.feeds
+            assert sum(len(each.raw) for kept in feed._latched.values() for each in kept) < 2100
+        await late.subscribe("/words", frame=lambda each: each.message.data, key="w", depth=50)
+        assert late.outbox._next() == "x" * 2000
+
+
+async def test_no_client_publishes_to_the_audit_log(bench: Bench) -> None:
+    """Though it may publish to everything else."""
+    async with bench.session() as session:
+        with pytest.raises(RefusedError, match="the gateway alone writes it"):
+            await session.publish("/gateway/audit", {"data": "{}"}, "std_msgs/String")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import NamedTuple
@@ -232,6 +233,31 @@ async def test_a_page_of_a_listed_origin_is_told_what_it_may_send(
     assert told.headers["vary"] == "origin"
     assert "access-control-allow-credentials" not in told.headers
     assert "access-control-allow-origin" not in own.headers
+
+
+async def test_a_malformed_request_is_no_line_in_the_log(
+    aionode_context: Context, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A client may send ten thousand a second; nor is a text that is no UTF-8, with a traceback."""
+    key = base64.b64encode(b"0" * 16).decode()
+    upgrade = "GET / HTTP/1.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nHost: 127.0.0.1\r\n"
+    upgrade += f"Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n\r\n"
+    no_text = b"\x81\x81\x00\x00\x00\x00\xff"  # one masked byte
+    other = b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: x\r\n\r\n"
+    async with sender_of(aionode_context) as sender:
+        for exchanges in (
+            ((b"garbage\r\n\r\n", b"400"),),
+            ((other, b"200"),),
+            ((upgrade.encode(), b"\r\n\r\n"), (no_text, b"\x03\xef")),  # 1007: invalid payload
+        ):
+            reader, writer = await asyncio.open_connection("127.0.0.1", sender.port)
+            try:
+                for data, answered in exchanges:
+                    writer.write(data)
+                    await asyncio.wait_for(reader.readuntil(answered), 10)
+            finally:
+                writer.close()
+    assert [each for each in caplog.records if each.levelno >= logging.WARNING] == []
 
 
 PROTOCOLS = [

@@ -278,3 +278,23 @@ async def test_a_page_of_another_origin_and_a_wrong_token_are_refused(
         answer.headers["cross-origin-resource-policy"] == "same-origin"
         for answer in answers.values()
     )
+
+
+async def test_what_is_hidden_by_its_type_is_not_counted_for_the_caller(
+    aionode_context: Context,
+) -> None:
+    """The metrics name the topics that any client hears; a rule may hide all of a type."""
+    policy = f"{EVERYTHING}[[refuse]]\nsee = '/**'\ntype = 'std_msgs/msg/String'\nwho = 'local'"
+    policy += "\n[[who]]\nname = 'other'\ntoken = 'secret'"
+    async with (
+        Robot(aionode_context),
+        Node("gateway", context=aionode_context) as node,
+        Gateway(node, Policy.parse(policy), port=0) as gateway,
+        gateway.session(Identity("other"), "test") as session,
+        http_client(gateway.port) as client,
+    ):
+        for topic in ("/status", "/cmd_vel"):
+            await session.subscribe(topic, frame=lambda _: None, key=topic)
+        text = (await client.get("/metrics")).text
+    assert 'aionode_gateway_received{topic="/cmd_vel"}' in text
+    assert "/status" not in text

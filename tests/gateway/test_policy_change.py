@@ -16,6 +16,7 @@ from aionode.gateway import Gateway, Policy, Session
 from aionode.gateway._foxglove_client import serve_frames
 from aionode.gateway._robot import Robot
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import settle
@@ -203,3 +204,19 @@ async def test_the_policy_of_now_counts_when_a_person_has_said_yes(bench: Bench)
         with pytest.raises(RefusedError, match="the policy does not allow guest"):
             await session.publish("/words", {"data": "a"}, "std_msgs/String")
     assert words.stats.received == 0
+
+
+async def test_commands_are_published_by_the_rule_of_now(bench: Bench) -> None:
+    """A lease that was open ends with its rule: the new one may say to stop much earlier."""
+    heard: list[float] = []
+    bench.node.create_subscription(Twist, "/cmd_vel", lambda each: heard.append(each.linear.x))
+    rule = "[[allow]]\npublish = '/cmd_vel'\nlease = {{ ttl_sec = {} }}"
+    bench.allow(rule.format(10.0))
+    async with bench.session() as session:
+        await session.publish("/cmd_vel", {"linear": {"x": 1.0}}, "geometry_msgs/Twist")
+        bench.allow(rule.format(0.2))
+        await session.publish("/cmd_vel", {"linear": {"x": 2.0}})
+        await settle()
+        assert heard == [1.0, 0.0, 2.0]
+        await bench.advance(0.3)
+        assert heard == [1.0, 0.0, 2.0, 0.0]
