@@ -105,13 +105,19 @@ def in_thread(work: Any) -> Iterator[None]:
         thread.join()
 
 
-@pytest.fixture
-def robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[Robot]:
+@pytest.fixture(scope="module")
+def environment() -> Iterator[None]:
+    """The variables of the robot, of which all runs in this process, which may be slow."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("aionode.cli._support.session.QUIET_S", 20.0)
+        for name, value in isolated_environment().items():
+            patch.setenv(name, value)
+        yield
+
+
+@pytest.fixture(scope="module")
+def robot(environment: None) -> Iterator[Robot]:
     """The robot beside its router, in which nodes come and go."""
-    # All of it runs in this process, which may be slow.
-    monkeypatch.setattr("aionode.cli._support.session.QUIET_S", 20.0)
-    for name, value in isolated_environment().items():
-        monkeypatch.setenv(name, value)
     with closing(ros_router()), closing(ros_session()) as session:
         robot = Robot(session)
         with in_thread(robot.let_guests_come_and_go):
