@@ -17,7 +17,7 @@ from aionode.qos import qos_profile_action_status_default
 if TYPE_CHECKING:
     from aionode.node import Node
 
-__all__ = ["Goal", "PlainClient", "Worker", "uuid_of"]
+__all__ = ["Goal", "PlainClient", "Worker", "endpoint_count", "uuid_of"]
 
 Goal = ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 Impl = Fibonacci.Impl
@@ -26,6 +26,20 @@ Impl = Fibonacci.Impl
 def uuid_of(number: int) -> UUID:
     """Return the id with this number."""
     return UUID(uuid=list(number.to_bytes(16, "big")))
+
+
+def endpoint_count(node: Node) -> int:
+    """Return how many endpoints and timers a node has, those of its actions included."""
+    return sum(
+        len([*entities])
+        for entities in (
+            node.publishers,
+            node.subscriptions,
+            node.services,
+            node.clients,
+            node.timers,
+        )
+    )
 
 
 class Worker:

@@ -297,7 +297,7 @@ async def test_a_goal_that_is_cancelled_before_the_server_decides_is_never_execu
     await answered.get()
     assert not ends.client._cancel_requests
     assert ends.worker.begun.empty()
-    assert not ends.server._goals
+    assert "active=0 kept=0 " in repr(ends.server)
 
 
 async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_executed(

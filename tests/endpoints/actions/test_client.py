@@ -36,7 +36,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import local_context, settle
-from tests.support.actions import Goal, PlainClient, Worker, uuid_of
+from tests.support.actions import Goal, PlainClient, Worker, endpoint_count, uuid_of
 from tests.support.peers import isolated_environment
 from tests.support.spies import returns_of
 
@@ -186,8 +186,8 @@ async def test_a_hundred_goals_at_once_get_their_own_feedback_and_results(ends: 
     outcomes = await asyncio.gather(*(go(order) for order in range(100)))
 
     assert outcomes == [([order] * 3, order) for order in range(100)]
-    assert ends.client._goals == {}
-    assert len(ends.server._goals) == 100  # the results, for 10 s
+    assert "goals=0>" in repr(ends.client)
+    assert "active=0 kept=100 " in repr(ends.server)  # the results, for 10 s
 
 
 # Feedback
@@ -302,7 +302,7 @@ async def test_a_rejected_goal_raises(ends: Ends) -> None:
         await ends.client.send_goal(Fibonacci.Goal())
     with pytest.raises(GoalRejectedError):
         await ends.client.call(Fibonacci.Goal())
-    assert ends.client._goals == {}
+    assert "goals=0>" in repr(ends.client)
 
 
 async def test_a_server_logs_rejected_goals_once_a_second(
@@ -407,7 +407,8 @@ async def test_a_failing_goal_callback_raises_a_service_error(ends: Ends) -> Non
 
     with pytest.raises(ServiceError, match="LookupError: no map"):
         await client.send_goal(Fibonacci.Goal())
-    assert (client._goals, server._goals) == ({}, {})
+    assert "goals=0>" in repr(client)
+    assert "active=0 kept=0 " in repr(server)
 
 
 @pytest.mark.parametrize(
@@ -420,7 +421,7 @@ async def test_a_wrong_goal_is_refused_where_it_is_sent(
     """Nothing is sent."""
     with pytest.raises(error):
         await ends.client.send_goal(wrong)
-    assert ends.client._goals == {}
+    assert "goals=0>" in repr(ends.client)
 
 
 # Cancelling
@@ -637,7 +638,7 @@ async def test_a_destroyed_server_loses_its_goals_at_once(ends: Ends) -> None:
     for waiting in (sent.result(), calling, iterating):
         with pytest.raises(GoalLostError, match="the server went away before it ended"):
             await waiting
-    assert ends.client._goals == {}
+    assert "goals=0>" in repr(ends.client)
 
 
 async def test_a_stopping_node_loses_its_goals_at_once(ends: Ends) -> None:
@@ -692,7 +693,7 @@ async def test_a_destroyed_client_ends_its_waits_and_what_they_wait_for(ends: En
     other: Client = ends.asking.create_action_client(Fibonacci, "unserved")
     waiting.append(beside(other.wait_for_server()))
     await checkpoint()  # lets them begin
-    before = len(ends.asking._entities)
+    before = endpoint_count(ends.asking)
 
     ends.client.destroy()
     ends.client.destroy()
@@ -703,7 +704,7 @@ async def test_a_destroyed_client_ends_its_waits_and_what_they_wait_for(ends: En
             await each
     await goal._outcome()
     await called._outcome()
-    await ends.asking.graph.until(lambda: len(ends.asking._entities) == before - 12)
+    await ends.asking.graph.until(lambda: endpoint_count(ends.asking) == before - 10)
     assert ends.requests == [goal, called]
     with pytest.raises(EntityDestroyedError):
         await ends.client.send_goal(Fibonacci.Goal())
@@ -786,12 +787,12 @@ async def test_texts_say_what_they_are_about(ends: Ends) -> None:
 
 async def test_a_client_that_cannot_be_made_leaves_nothing(ends: Ends) -> None:
     """Its parts are made one after the other, and the last may be refused."""
-    before = len(ends.asking._entities)
+    before = endpoint_count(ends.asking)
 
     with pytest.raises(TypeError):
         ActionClient(ends.asking, Fibonacci, "other", status_sub_qos_profile="no profile")  # type: ignore[arg-type]  # the mistake
 
-    assert len(ends.asking._entities) == before
+    assert endpoint_count(ends.asking) == before
 
 
 async def halves(ends: Ends, *names: str) -> tuple[Client, dict[str, Any]]:

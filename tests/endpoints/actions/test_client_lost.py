@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AsyncExitStack, suppress
 from typing import Any
 
@@ -17,6 +17,7 @@ from aionode.action import (
     GoalStatus,
     ServerGoalHandle,
 )
+from aionode.clock._time_base import Alarm
 from aionode.context import Context
 from aionode.endpoints.actions._client_watch import ClientWatch
 from aionode.errors import GoalCanceledError, ServiceError, ServiceUnavailableError
@@ -32,6 +33,33 @@ Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 Serve = Callable[..., ActionServer[Any, Any, Any]]
 
 LOST_SEC = 3.0
+
+
+class CountingClock(ManualClock):
+    """Counts how often it calls anybody."""
+
+    wakes = 0
+
+    def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
+        """Call `callback` at a time, and count that."""
+
+        def wake() -> None:
+            self.wakes += 1
+            callback()
+
+        return super().call_at(steady_ns, wake)
+
+    async def wakes_in(self, seconds: float) -> int:
+        """Advance by some seconds, and return how often it called anybody meanwhile."""
+        before = self.wakes
+        await self.advance(seconds)
+        return self.wakes - before
+
+
+@pytest.fixture
+def manual_clock() -> CountingClock:
+    """The clock of all nodes."""
+    return CountingClock()
 
 
 @pytest.fixture
@@ -94,7 +122,7 @@ async def test_a_goal_is_canceled_when_its_client_falls_silent(
     assert worker.cancelled == [goal]
     expect(goal, GoalStatus.CANCELED)
     assert asked == []
-    (record,) = caplog.records
+    (record,) = (each for each in caplog.records if "is lost" in each.getMessage())
     assert record.getMessage() == (
         "action server /fibonacci: its client /owner is lost: no sign of it for 3 s; cancelling "
         f"its goal {goal.text}"
@@ -226,8 +254,9 @@ async def test_only_the_goals_of_the_lost_client_end(
     await other.sign(3)
     await manual_clock.advance(1.0)
 
-    statuses = [goal.status for goal in server._goals.values()]
-    assert statuses == [GoalStatus.CANCELED, GoalStatus.CANCELED, GoalStatus.EXECUTING]
+    statuses = [(await client.result(number)).status for number in (1, 2)]
+    assert statuses == [GoalStatus.CANCELED, GoalStatus.CANCELED]
+    assert "active=1 kept=2 " in repr(server)
     assert len(caplog.records) == 1
     assert "cancelling its goals 0" in caplog.text
 
@@ -273,11 +302,11 @@ async def test_a_client_without_signs_is_lost_when_it_leaves_the_graph(
     assert "its client /owner is lost: it is not in the graph; cancelling" in caplog.text
 
 
-def over_dds(gid: bytes, name: str) -> EndpointInfo:
-    """Return a client whose gid in the graph is not the one that its requests have."""
+def client_of(name: str, gid: bytes, *, over_rcl: bool = False) -> EndpointInfo:
+    """Return a client of the service that takes goals, as the graph has it."""
     return EndpointInfo(
         EndpointKind.CLIENT,
-        NodeInfo(name, 0, name, "/", over_rcl=True),
+        NodeInfo(name, 0, name, "/", over_rcl=over_rcl),
         0,
         "/fibonacci/_action/send_goal",
         "",
@@ -287,17 +316,43 @@ def over_dds(gid: bytes, name: str) -> EndpointInfo:
     )
 
 
-async def test_a_client_over_dds_may_be_found_after_its_goal(manual_clock: ManualClock) -> None:
-    """A goal is often quicker than the graph; its client has not gone, and must be missed later."""
-    graph, lost = Graph(), list[list[bytes]]()
+Lost = list[list[bytes]]
+"""The goals whose client was lost, together."""
+
+
+@pytest.fixture
+def lost() -> Lost:
+    """The goals whose clients `watch` has missed."""
+    return []
+
+
+@pytest.fixture
+def graph() -> Graph:
+    """The graph of `watch`."""
+    return Graph()
+
+
+@pytest.fixture
+def watch(graph: Graph, lost: Lost, manual_clock: ManualClock) -> Iterator[ClientWatch]:
+    """What watches the clients of goals, without a server."""
     watch = ClientWatch(
         "/fibonacci/_action/send_goal",
         graph,
         manual_clock,
-        3_000_000_000,
+        int(LOST_SEC * 1e9),
         lambda goal_ids, _text: lost.append(goal_ids),
     )
-    first, second = over_dds(b"1" * 16, "first"), over_dds(b"2" * 16, "second")
+    yield watch
+    watch.stop()
+
+
+async def test_a_client_over_dds_may_be_found_after_its_goal(
+    watch: ClientWatch, graph: Graph, lost: Lost, manual_clock: ManualClock
+) -> None:
+    """A goal is often quicker than the graph; its client has not gone, and must be missed later."""
+    # Their gids in the graph are not those that their requests have.
+    first = client_of("first", b"1" * 16, over_rcl=True)
+    second = client_of("second", b"2" * 16, over_rcl=True)
     watch.add(b"goal", b"x" * 16)
 
     graph.add_endpoint(first)
@@ -310,7 +365,6 @@ async def test_a_client_over_dds_may_be_found_after_its_goal(manual_clock: Manua
     graph.remove_endpoint(second)
     await settle()
     assert lost == [[b"goal"]]
-    watch.stop()
 
 
 async def test_another_client_may_leave(
@@ -330,7 +384,11 @@ async def test_another_client_may_leave(
 
 
 async def test_a_client_that_goes_before_its_goal_is_decided_on_loses_it(
-    serve: Serve, client: PlainClient, owner: Node, worker: Worker
+    serve: Serve,
+    client: PlainClient,
+    owner: Node,
+    worker: Worker,
+    manual_clock: CountingClock,
 ) -> None:
     """It must not begin to drive for nobody."""
     may_decide = asyncio.Event()
@@ -339,7 +397,7 @@ async def test_a_client_that_goes_before_its_goal_is_decided_on_loses_it(
         await may_decide.wait()
         return GoalResponse.ACCEPT
 
-    server = serve(goal_callback=decide)
+    serve(goal_callback=decide)
     request = asyncio.ensure_future(client.send())  # noqa: TID251  # owned by the test
     await settle()
 
@@ -349,13 +407,16 @@ async def test_a_client_that_goes_before_its_goal_is_decided_on_loses_it(
     await settle()
 
     assert worker.begun.empty()
-    assert (server._goals, server._client_watch._goals) == ({}, {})
+    assert await manual_clock.wakes_in(3600) == 0  # nothing is watched
     request.cancel()
 
 
 @pytest.mark.parametrize("answer", [GoalResponse.REJECT, ValueError("no")])
-async def test_nothing_is_kept_of_goals_that_are_not_accepted(
-    serve: Serve, client: PlainClient, answer: GoalResponse | ValueError
+async def test_no_goal_is_watched_that_is_not_accepted(
+    serve: Serve,
+    client: PlainClient,
+    manual_clock: CountingClock,
+    answer: GoalResponse | ValueError,
 ) -> None:
     """Whether they are rejected, or their callback fails."""
 
@@ -364,44 +425,37 @@ async def test_nothing_is_kept_of_goals_that_are_not_accepted(
             raise answer
         return answer
 
-    server = serve(goal_callback=decide)
+    serve(goal_callback=decide)
     with suppress(ServiceError):
         await client.send()
 
-    assert (server._client_watch._goals, server._client_watch._alarm) == ({}, None)
+    assert await manual_clock.wakes_in(3600) == 0
 
 
 async def test_a_client_that_is_found_later_than_its_goal_is_not_lost(
-    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+    watch: ClientWatch, graph: Graph, lost: Lost, manual_clock: ManualClock
 ) -> None:
     """Its place in the graph may come by another way than its request."""
-    watch = serve()._client_watch
-    await client.send()
-    goal = await worker.begun.get()
-    (info,) = watch._graph.endpoints(EndpointKind.CLIENT, name=watch._service)
-    watch._graph.remove_endpoint(info)
-    watch.add(goal._key.goal_id, info.gid)  # as if it came now
+    client = client_of("owner", b"1" * 16)
+    watch.add(b"goal", client.gid)
 
     await manual_clock.advance(LOST_SEC - 0.001)
-    watch._graph.add_endpoint(info)
+    graph.add_endpoint(client)
     await manual_clock.advance(3600)
 
-    expect(goal, GoalStatus.EXECUTING)
+    assert lost == []
 
 
 async def test_a_client_that_is_never_found_is_lost(
-    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+    watch: ClientWatch, lost: Lost, manual_clock: ManualClock
 ) -> None:
     """It has gone while its goal was queued."""
-    watch = serve()._client_watch
-    await client.send()
-    goal = await worker.begun.get()
-    watch.add(goal._key.goal_id, bytes(range(16)))  # as if it came from another one
+    watch.add(b"goal", b"1" * 16)
 
     await manual_clock.advance(LOST_SEC - 0.001)
-    expect(goal, GoalStatus.EXECUTING)
+    assert lost == []
     await manual_clock.advance(0.001)
-    expect(goal, GoalStatus.CANCELED)
+    assert lost == [[b"goal"]]
 
 
 # A server that stood still
@@ -474,13 +528,12 @@ async def test_a_server_that_is_always_late_finds_a_lost_client_all_the_same(
 # What it costs
 
 
-async def test_nothing_is_kept_of_goals_that_have_ended_or_never_were(
-    serve: Serve, client: PlainClient, worker: Worker, manual_clock: ManualClock
+async def test_no_goal_is_watched_that_has_ended_or_never_was(
+    serve: Serve, client: PlainClient, worker: Worker, manual_clock: CountingClock
 ) -> None:
-    """And nothing wakes a server without goals."""
+    """Nothing wakes a server without goals."""
     worker.may_end.set()
-    server = serve(result_timeout=0)
-    waiting = len(manual_clock._timer_heap)
+    serve(result_timeout=0)
     for number in range(100):
         await client.send(number)
         await client.sign(number)
@@ -488,9 +541,7 @@ async def test_nothing_is_kept_of_goals_that_have_ended_or_never_were(
     await settle()
     await manual_clock.advance(0.001)
 
-    watch = server._client_watch
-    assert (watch._goals, watch._alarm) == ({}, None)
-    assert len(manual_clock._timer_heap) == waiting
+    assert await manual_clock.wakes_in(3600) == 0
 
 
 @pytest.mark.parametrize(
@@ -520,7 +571,7 @@ async def asking(owner: Node, serve: Serve) -> Client:
 
 
 async def test_a_client_gives_three_signs_in_the_time(
-    asking: Client, worker: Worker, manual_clock: ManualClock
+    asking: Client, worker: Worker, manual_clock: CountingClock
 ) -> None:
     """As long as it has a goal; then nothing wakes it."""
     goal = await asking.send_goal(Fibonacci.Goal())
@@ -533,8 +584,8 @@ async def test_a_client_gives_three_signs_in_the_time(
 
     worker.may_end.set()
     await goal.result()
-    await settle()
-    assert (asking._signs._goals, asking._signs._alarm) == ({}, None)
+    await manual_clock.advance(60.0)  # the server forgets the result
+    assert await manual_clock.wakes_in(60.0) == 0
 
 
 async def test_a_server_that_wants_no_signs_gets_none(
@@ -548,7 +599,6 @@ async def test_a_server_that_wants_no_signs_gets_none(
     await manual_clock.advance(60.0)
 
     assert client._get_result.stats.calls == 1
-    assert (client._signs._goals, client._signs._alarm) == ({}, None)
 
 
 async def test_a_service_that_is_found_later_than_its_goal_gets_signs(

@@ -13,7 +13,7 @@ from aionode.endpoints.actions._goal_store import GoalStore, StatusPace
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import settle
-from tests.support.actions import PlainClient, Worker, uuid_of
+from tests.support.actions import PlainClient, Worker
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -106,7 +106,7 @@ async def test_goals_beyond_the_limit_are_rejected(node: Node) -> None:
     answers = await asyncio.gather(*(client.send(number) for number in range(1, 101)))
 
     assert [answer.accepted for answer in answers] == [True] * 3 + [False] * 97
-    assert len(server._goals) == 3
+    assert "active=3 kept=0 " in repr(server)
 
 
 async def test_the_limit_is_that_of_goals_which_are_active(node: Node) -> None:
@@ -192,8 +192,9 @@ async def test_of_too_many_results_the_oldest_is_forgotten(node: Node) -> None:
         await client.send(number)
         await client.result(number)
 
-    assert [*server._goals] == [bytes(uuid_of(number).uuid) for number in (2, 3)]
-    assert (await client.result(1)).status == GoalStatus.UNKNOWN
+    statuses = [(await client.result(number)).status for number in (1, 2, 3)]
+    assert statuses == [GoalStatus.UNKNOWN, GoalStatus.SUCCEEDED, GoalStatus.SUCCEEDED]
+    assert "active=0 kept=2 " in repr(server)
 
 
 async def test_a_result_is_forgotten_ten_seconds_after_its_own_end(
@@ -209,9 +210,11 @@ async def test_a_result_is_forgotten_ten_seconds_after_its_own_end(
         await manual_clock.advance(4)
 
     await manual_clock.advance(2)
-    assert [*server._goals] == [bytes(uuid_of(2).uuid)]
+    assert (await client.result(1)).status == GoalStatus.UNKNOWN
+    assert (await client.result(2)).status == GoalStatus.SUCCEEDED
     await manual_clock.advance(4)
-    assert [*server._goals] == []
+    assert (await client.result(2)).status == GoalStatus.UNKNOWN
+    assert "active=0 kept=0 " in repr(server)
 
 
 async def test_without_a_timeout_a_callback_that_returns_late_leaves_nothing(node: Node) -> None:
@@ -229,7 +232,7 @@ async def test_without_a_timeout_a_callback_that_returns_late_leaves_nothing(nod
     may_return.set()
     await settle()
 
-    assert len(server._goals) == 0
+    assert "active=0 kept=0 " in repr(server)
 
 
 @pytest.mark.parametrize(

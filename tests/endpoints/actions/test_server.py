@@ -24,7 +24,7 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.qos import HistoryPolicy, QoSProfile
 from aionode.testing import ManualClock, local_context, settle
-from tests.support.actions import Goal, PlainClient, Worker
+from tests.support.actions import Goal, PlainClient, Worker, endpoint_count
 
 Serve = Callable[..., ActionServer[Any, Any, Any]]
 
@@ -107,7 +107,7 @@ async def test_a_rejected_goal_is_not_kept(serve: Serve, client: PlainClient) ->
 
     await client.send()
 
-    assert server._goals == {}
+    assert "active=0 kept=0 " in repr(server)
     assert (await client.result()).status == GoalStatus.UNKNOWN
 
 
@@ -807,7 +807,7 @@ async def test_a_result_is_kept_for_the_timeout_and_no_longer(
     assert (await client.result()).status == GoalStatus.SUCCEEDED
     await manual_clock.advance(0.001)
     assert (await client.result()).status == GoalStatus.UNKNOWN
-    assert (server._goals, server._goals._alarm) == ({}, None)
+    assert "active=0 kept=0 " in repr(server)
 
 
 async def test_results_are_kept_ten_seconds_by_default(
@@ -820,9 +820,9 @@ async def test_results_are_kept_ten_seconds_by_default(
     await settle()
 
     await manual_clock.advance(9)
-    assert len(server._goals) == 100
+    assert "active=0 kept=100 " in repr(server)
     await manual_clock.advance(1)
-    assert len(server._goals) == 0
+    assert "active=0 kept=0 " in repr(server)
 
 
 async def test_without_a_timeout_only_earlier_requests_get_a_result(
@@ -838,7 +838,7 @@ async def test_without_a_timeout_only_earlier_requests_get_a_result(
 
     assert (await early).status == GoalStatus.SUCCEEDED
     assert (await client.result()).status == GoalStatus.UNKNOWN
-    assert server._goals == {}
+    assert "active=0 kept=0 " in repr(server)
 
 
 @pytest.mark.parametrize("wrong", [-1, float("inf"), float("nan")])
@@ -973,7 +973,7 @@ async def test_a_destroyed_server_leaves_nothing_behind(
     node: Node, serve: Serve, worker: Worker, client: PlainClient
 ) -> None:
     """Its clients are told at once, its callbacks are cancelled, its tables are empty."""
-    before = len(node._entities)
+    before = endpoint_count(node)
     server = serve()
     await client.send()
     goal = await worker.begun.get()
@@ -988,7 +988,8 @@ async def test_a_destroyed_server_leaves_nothing_behind(
     await settle()
     assert worker.cancelled == [goal]
     assert goal.status is GoalStatus.ABORTED
-    assert (server._goals, server._goals._alarm, len(node._entities)) == ({}, None, before)
+    assert "active=0 kept=0 " in repr(server)
+    assert endpoint_count(node) == before
 
 
 async def test_a_stopping_node_aborts_its_goals() -> None:
@@ -1061,7 +1062,7 @@ async def test_something_else_than_an_action_is_refused(node: Node, wrong: Any) 
 
 async def test_callbacks_are_looked_at_when_the_server_is_made(node: Node, serve: Serve) -> None:
     """A mistake shows where it was made, and nothing of the server is left."""
-    before = len(node._entities)
+    before = endpoint_count(node)
 
     with pytest.raises(CallbackSignatureError, match=r"must take \(goal_handle\)"):
         serve(lambda: None)
@@ -1070,7 +1071,7 @@ async def test_callbacks_are_looked_at_when_the_server_is_made(node: Node, serve
     with pytest.raises(TypeError):
         serve(cancel_callback=3)
 
-    assert len(node._entities) == before
+    assert endpoint_count(node) == before
 
 
 async def test_a_destroyed_node_refuses_a_server(node: Node) -> None:
@@ -1083,12 +1084,12 @@ async def test_a_destroyed_node_refuses_a_server(node: Node) -> None:
 
 async def test_a_server_that_cannot_be_made_leaves_nothing(node: Node) -> None:
     """Its parts are made one after the other, and one of them may be refused."""
-    before = len(node._entities)
+    before = endpoint_count(node)
 
     with pytest.raises(TypeError):
         ActionServer(node, Fibonacci, "other", yes, result_service_qos_profile="no profile")  # type: ignore[arg-type]  # the mistake
 
-    assert len(node._entities) == before
+    assert endpoint_count(node) == before
 
 
 async def test_a_goal_is_aborted_whose_node_stops_before_its_callback_began(
