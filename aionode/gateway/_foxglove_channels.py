@@ -12,6 +12,7 @@ from aionode.gateway import _foxglove_frames as frames
 
 if TYPE_CHECKING:
     from aionode.gateway._feed import Received
+    from aionode.gateway._outbox import Frame
     from aionode.gateway._session import Session
     from aionode.gateway._session_topics import Subscribed
 
@@ -160,7 +161,7 @@ class Channels:
         if subscription_id in self._subscriptions:
             raise MessageError("subscribe", f"the id {subscription_id} is in use")
 
-        def frame(received: Received) -> bytes:
+        def frame(received: Received) -> Frame:
             return frames.message_frame(subscription_id, self._time_ns(received), received.raw)
 
         subscribed = await self._session.subscribe(

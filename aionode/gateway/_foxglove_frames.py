@@ -14,6 +14,7 @@ import msgspec
 
 from aionode.errors import MessageError
 from aionode.gateway._json import check_items, check_parts
+from aionode.gateway._outbox import LongFrame, binary_frame
 from aionode.parameter import Parameter, ParameterType
 
 if TYPE_CHECKING:
@@ -257,9 +258,11 @@ def text_at(frame: bytes, start: int, length: int) -> str:
 # Binary frames of the server
 
 
-def message_frame(subscription_id: int, time_ns: int, data: bytes | memoryview) -> bytes:
+def message_frame(
+    subscription_id: int, time_ns: int, data: bytes | memoryview
+) -> bytes | LongFrame:
     """Return the frame of a message."""
-    return b"".join((struct.pack("<BIQ", 1, subscription_id, time_ns), data))
+    return binary_frame(struct.pack("<BIQ", 1, subscription_id, time_ns), data)
 
 
 def time_frame(time_ns: int) -> bytes:

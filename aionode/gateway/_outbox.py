@@ -7,31 +7,50 @@ from collections import defaultdict, deque
 from collections.abc import AsyncIterator, Callable, Hashable, Sequence
 from typing import Final, TypeAlias
 
-__all__ = ["Frame", "LongText", "Outbox"]
+__all__ = ["Frame", "LongFrame", "Outbox", "binary_frame"]
 
 
-class LongText:
-    """A frame of long text, as the pieces of its UTF-8: putting them together takes time.
+class LongFrame:
+    """A long frame in pieces: putting them together would take time, and memory once more.
 
     Attributes:
-        pieces: What it consists of.
+        pieces: What it consists of; text in UTF-8.
+        is_text: Whether it is text.
     """
 
-    __slots__ = ("_size", "pieces")
+    __slots__ = ("_size", "is_text", "pieces")
 
-    def __init__(self, pieces: Sequence[bytes]) -> None:
+    def __init__(self, pieces: Sequence[bytes], *, is_text: bool) -> None:
         self.pieces = tuple(pieces)
+        self.is_text = is_text
         self._size = sum(map(len, self.pieces))
 
     def __len__(self) -> int:
         return self._size
 
+    def __bytes__(self) -> bytes:
+        return b"".join(self.pieces)
+
     def __str__(self) -> str:
-        return b"".join(self.pieces).decode()
+        return bytes(self).decode()
 
 
-Frame: TypeAlias = bytes | str | LongText
+Frame: TypeAlias = bytes | str | LongFrame
 """A WebSocket frame, or a chunk of an HTTP response."""
+
+LONG_BYTES: Final = 256 << 10
+"""From which size on a frame is kept in pieces where it is made of some."""
+
+
+def binary_frame(head: bytes, data: bytes | memoryview) -> bytes | LongFrame:
+    """Return a frame of a head and data; bytes are not copied if they are long.
+
+    A view is copied: its memory may belong to others, who wait for it.
+    """
+    if type(data) is bytes and len(data) > LONG_BYTES:
+        return LongFrame((head, data), is_text=False)
+    return b"".join((head, data))
+
 
 MOST_ANSWERS: Final = 1000
 """How many answers may wait: a client that reads none of them is disconnected."""

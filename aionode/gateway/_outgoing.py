@@ -7,7 +7,7 @@ import struct
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.gateway._outbox import LongText
+from aionode.gateway._outbox import LongFrame
 
 if TYPE_CHECKING:
     from aionode.gateway._outbox import Frame
@@ -49,8 +49,8 @@ class Framing:
 
 def framed(frame: Frame) -> tuple[bytes, ...]:
     """Return a WebSocket frame with its head, which is a part of its own before a large payload."""
-    if isinstance(frame, LongText):
-        return (head(TEXT, len(frame)), *frame.pieces)
+    if isinstance(frame, LongFrame):
+        return (head(TEXT if frame.is_text else BINARY, len(frame)), *frame.pieces)
     first, payload = (TEXT, frame.encode()) if isinstance(frame, str) else (BINARY, frame)
     before = head(first, len(payload))
     return (before, payload) if len(payload) > SLICE else (before + payload,)

@@ -14,7 +14,7 @@ import msgspec
 
 from aionode._concurrency import run_in_thread
 from aionode.gateway._large_json import base64_in_turns
-from aionode.gateway._outbox import LongText
+from aionode.gateway._outbox import LongFrame, binary_frame
 from aionode.gateway._rosbridge_values import cbor_values, json_of
 from aionode.message import Message
 
@@ -48,9 +48,9 @@ def json_frame(topic: str, message: Message | bytes) -> str:
     return b"".join((json_head(topic), values, b"}")).decode()
 
 
-def long_json_frame(topic: str, pieces: Sequence[bytes]) -> LongText:
+def long_json_frame(topic: str, pieces: Sequence[bytes]) -> LongFrame:
     """Return a message of a topic as JSON, from the pieces of its JSON."""
-    return LongText((json_head(topic), *pieces, b"}"))
+    return LongFrame((json_head(topic), *pieces, b"}"), is_text=True)
 
 
 def json_head(topic: str) -> bytes:
@@ -63,19 +63,19 @@ def cbor_frame(topic: str, message: Message) -> bytes:
     return cbor2.dumps({"op": "publish", "topic": topic, "msg": cbor_values(message)})
 
 
-def cbor_raw_frame(topic: str, data: bytes | memoryview, time_ns: int) -> bytes:
+def cbor_raw_frame(topic: str, data: bytes | memoryview, time_ns: int) -> bytes | LongFrame:
     """Return an encoded message of a topic in a frame of CBOR, without decoding it.
 
     Args:
         topic: The name of the topic.
-        data: The message in CDR with its header; copied once.
+        data: The message in CDR with its header.
         time_ns: When it was received, in nanoseconds.
     """
     secs, nsecs = divmod(time_ns, 10**9)
     msg = {"secs": secs, "nsecs": nsecs, "bytes": b""}
     head = cbor2.dumps({"op": "publish", "topic": topic, "msg": msg})
     # The bytes are the last value of the frame: all but the empty string is its head.
-    return b"".join((head[:-1], struct.pack(">BI", LONG, len(data)), data))
+    return binary_frame(head[:-1] + struct.pack(">BI", LONG, len(data)), data)
 
 
 def png_frame(text: str) -> str:
@@ -83,11 +83,11 @@ def png_frame(text: str) -> str:
     return op_frame({"op": "png", "data": base64.b64encode(png_of(text)).decode()})
 
 
-async def png_frame_in_turns(text: str) -> LongText:
+async def png_frame_in_turns(text: str) -> LongFrame:
     """Return what `png_frame` does, of long text, while the event loop turns."""
     picture = await run_in_thread(png_of, text)
     parts = await base64_in_turns(memoryview(picture))
-    return LongText((b'{"op":"png","data":"', *parts, b'"}'))
+    return LongFrame((b'{"op":"png","data":"', *parts, b'"}'), is_text=True)
 
 
 def png_of(text: str) -> bytes:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway._large_json import pieces_of
+from aionode.gateway._outbox import LongFrame
 from aionode.gateway._rosbridge_frames import (
     Fragmented,
     cbor_frame,
@@ -251,7 +252,7 @@ class Topics:
 
     def _fragments(self, frame: Frame, wish: Wish) -> Frame:
         """Return a frame that leaves in fragments, if it is text."""
-        if isinstance(frame, bytes):
+        if isinstance(frame, bytes) or (isinstance(frame, LongFrame) and not frame.is_text):
             return frame
         self._fragmented += 1
         return Fragmented.of(str(frame), max(int(wish.fragment_size), 1), str(self._fragmented))

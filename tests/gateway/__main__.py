@@ -13,6 +13,7 @@ import os
 import re
 import signal
 import sys
+import traceback
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
@@ -49,6 +50,15 @@ def line_of(row: Row) -> str:
     return f"| {row.what} | {held} | {row.figures} |"
 
 
+def run(name: str, case: Case) -> Row:
+    """Return what came of a case; one that fails holds up no other."""
+    try:
+        return asyncio.run(case())  # type: ignore[arg-type]  # a coroutine
+    except Exception as error:  # noqa: BLE001  # it is told
+        traceback.print_exc()
+        return Row(name, [f"failed: {error!r}"], "")
+
+
 def main() -> int:
     """Run the cases, and return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -63,7 +73,7 @@ def main() -> int:
     rows: list[Row] = []
     for name, case in cases(options.seconds, options.times).items():
         if re.search(options.only, name):
-            rows.append(asyncio.run(case()))  # type: ignore[arg-type]  # a coroutine
+            rows.append(run(name, case))
             print(line_of(rows[-1]), flush=True)  # noqa: T201  # a program prints
     if options.write is not None:
         page = options.write.read_text(encoding="utf-8")

@@ -2,7 +2,19 @@
 
 from __future__ import annotations
 
-from aionode.gateway._outbox import Frame, Outbox
+from aionode.gateway._outbox import LONG_BYTES, Frame, LongFrame, Outbox, binary_frame
+
+
+def test_long_bytes_are_not_copied_but_views_are() -> None:
+    """The memory of a view may belong to others, who wait for it."""
+    data = bytes(LONG_BYTES + 1)
+
+    frame = binary_frame(b"head", data)
+    copied = binary_frame(b"head", memoryview(data))
+
+    assert isinstance(frame, LongFrame)
+    assert frame.pieces[1] is data
+    assert bytes(frame) == copied == b"head" + data
 
 
 async def test_no_frame_overtakes_the_one_that_is_being_written() -> None:

@@ -10,7 +10,7 @@ from websockets.frames import Frame as WebSocketFrame
 from websockets.frames import Opcode
 
 from aionode._concurrency import checkpoint
-from aionode.gateway._outbox import LongText
+from aionode.gateway._outbox import LongFrame
 from aionode.gateway._outgoing import MOST_CONTROL_BYTES, SLICE, SLICES_IN_A_TURN, Framing, Outgoing
 
 LARGE = bytes(range(256)) * 16 * 1024  # 4 MiB
@@ -132,13 +132,15 @@ async def test_nothing_is_written_within_the_transports_own_call(connection: Con
     assert len(connection.sent) == before
 
 
-async def test_long_text_leaves_in_its_pieces(connection: Connection) -> None:
+@pytest.mark.parametrize("is_text", [False, True])
+async def test_a_long_frame_leaves_in_its_pieces(connection: Connection, is_text: bool) -> None:
     """Nothing puts them together before."""
     pieces = [b"a" * 10, b"b" * (SLICE + 1), b"c" * 10]
-    connection.outgoing.send(Framing().parts(LongText(pieces)))
+    connection.outgoing.send(Framing().parts(LongFrame(pieces, is_text=is_text)))
     await connection.writable.wait()
 
-    assert connection.sent == whole(str(LongText(pieces)))
+    together = b"".join(pieces)
+    assert connection.sent == whole(together.decode() if is_text else together)
     assert pieces[0] in connection.transport.written
 
 

@@ -13,7 +13,7 @@ import msgspec
 
 from aionode.gateway._audit import Audit
 from aionode.gateway._identity import Identity
-from aionode.gateway._outbox import Frame
+from aionode.gateway._outbox import Frame, LongFrame
 from aionode.gateway._policy import Policy
 from aionode.gateway._robot import Robot
 from aionode.gateway._rosbridge_client import serve_frames
@@ -62,7 +62,8 @@ class RosbridgeClient:
         frame = await self.frame()
         if isinstance(frame, Fragmented):
             return [json.loads(part) for part in frame.parts()]
-        return cbor2.loads(frame) if isinstance(frame, bytes) else json.loads(str(frame))
+        is_text = frame.is_text if isinstance(frame, LongFrame) else isinstance(frame, str)
+        return json.loads(str(frame)) if is_text else cbor2.loads(bytes(frame))  # type: ignore[arg-type]  # no str
 
     async def call(self, name: str, /, **args: Any) -> Any:
         """Return the response of a service."""
