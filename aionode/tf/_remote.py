@@ -246,14 +246,24 @@ class BufferClient:
                 "The LookupTransform goal sent to the BufferServer did not come back in the "
                 "specified time. Something is likely wrong with the server."
             ) from None
-        code, text = result.error.error, result.error.error_string
-        if code != TF2Error.NO_ERROR:
-            raise next((kind for kind, known in CODES if known == code), TransformException)(text)
-        return result.transform
+        transform: TransformStamped = transform_in(result)
+        return transform
 
     def destroy(self) -> None:
         """Destroy the action client."""
         self.action_client.destroy()
+
+
+def transform_in(result: Any) -> Any:
+    """Return the transform of a server's answer, whose class may be of either family.
+
+    Raises:
+        TransformException: the answer is an error; the class is that of the error.
+    """
+    code, text = result.error.error, result.error.error_string
+    if code != TF2Error.NO_ERROR:
+        raise next((kind for kind, known in CODES if known == code), TransformException)(text)
+    return result.transform
 
 
 def time_msg(time: Any) -> TimeMsg:

@@ -121,15 +121,15 @@ def test_the_points_of_a_cloud_move_and_other_fields_stay() -> None:
         do_transform(PointCloud2(), QUARTER)
 
 
-class Marker(Message, typename="my_msgs/msg/Marker"):
-    """A type of the user."""
-
-    header: Header = DEFAULT
-    x: float64 = 0.0
-
-
 async def test_a_buffer_transforms_what_is_known_or_registered(node: Node) -> None:
     """It waits for the transform first."""
+
+    class Marker(Message, typename="my_msgs/msg/Marker"):
+        """A type of the user: a class for each run, as the process keeps what is registered."""
+
+        header: Header = DEFAULT
+        x: float64 = 0.0
+
     buffer = Buffer(node)
     buffer.set_transform_static(QUARTER, "test")
     point = geometry.PointStamped(header=HEADER, point=POINT)

@@ -10,15 +10,9 @@ from aionode.rclpy._tf2_ros.buffer_interface import NOW, BufferInterface
 from aionode.rclpy.action.client import ActionClient
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
-from aionode.tf import (
-    ConnectivityException,
-    ExtrapolationException,
-    InvalidArgumentException,
-    LookupException,
-    TimeoutException,
-    TransformException,
-)
+from aionode.tf import TimeoutException, TransformException
 from aionode.tf._buffer_core import time_ns_of
+from aionode.tf._remote import transform_in
 
 __all__ = ["BufferClient"]
 
@@ -143,21 +137,6 @@ def outcome(future: Any, limit_s: float, text: str) -> Any:
     if not done.wait(limit_s):
         raise TimeoutException(text)
     return future.result()
-
-
-def transform_in(result: Any) -> Any:
-    """Return the transform of an answer, or raise its error."""
-    error = result.error
-    if error.error == error.NO_ERROR:
-        return result.transform
-    kinds: dict[int, type[TransformException]] = {
-        error.LOOKUP_ERROR: LookupException,
-        error.CONNECTIVITY_ERROR: ConnectivityException,
-        error.EXTRAPOLATION_ERROR: ExtrapolationException,
-        error.INVALID_ARGUMENT_ERROR: InvalidArgumentException,
-        error.TIMEOUT_ERROR: TimeoutException,
-    }
-    raise kinds.get(error.error, TransformException)(error.error_string)
 
 
 def stamp(time: Any) -> Any:
