@@ -42,7 +42,7 @@ MOST_LEVELS: Final = 20
 
 
 class Audit:
-    """Writes what clients do to a file, and to the topic ``~/audit`` of the gateway's node.
+    """Writes the actions of clients to a file, and to the topic ``~/audit`` of the gateway's node.
 
     Args:
         node: The gateway's node.
@@ -67,7 +67,7 @@ class Audit:
         self._refused = 0
 
     def use_file(self, path: str) -> None:
-        """Append to another file from now on, also what waits; empty for none."""
+        """Append to another file from now on, with the lines that wait; empty for none."""
         self._path = Path(path) if path else None
 
     def note(
@@ -169,7 +169,7 @@ def append(path: Path, text: str) -> None:
 
 
 def printable(line: str) -> str:
-    """Return a line of JSON in which what is not printable is escaped.
+    """Return a line of JSON whose characters are printable: the others are escaped.
 
     JSON itself leaves characters as they are that move the cursor of a terminal, or turn the order
     of the others around.
@@ -180,7 +180,7 @@ def printable(line: str) -> str:
 
 
 def shortened(arguments: Any) -> str:
-    """Return the beginning of what a client has sent; the rest of it costs nothing."""
+    """Return the beginning of a client's arguments; the rest of them costs nothing."""
     text = ""
     for part in parts_of(arguments):
         text += part

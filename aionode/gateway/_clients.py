@@ -1,4 +1,4 @@
-"""The clients of a gateway: their sessions, the policy that they are under, and what they did."""
+"""The clients of a gateway: their sessions, their policy, and counts of their actions."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WARN_SEC: Final = 10.0
 
 
 class GatewayStats(msgspec.Struct, frozen=True):
-    """What a gateway has done.
+    """Counts of a gateway's work.
 
     Attributes:
         sessions: How many clients there are, by the way in.
@@ -63,7 +63,7 @@ class Clients:
 
     @property
     def robot(self) -> Robot:
-        """What the sessions share.
+        """The robot, as the sessions share it.
 
         Raises:
             RuntimeError: the gateway was not entered.
@@ -86,7 +86,7 @@ class Clients:
         Args:
             identity: Who the client is.
             kind: The way in: ``rosbridge``, ``foxglove``, ``http``.
-            credentials: What it has shown, to be judged again when the policy changes.
+            credentials: Its token, address and so on, to be judged again when the policy changes.
 
         Raises:
             RefusedError: there are too many clients.
@@ -117,7 +117,7 @@ class Clients:
 
     @property
     def stats(self) -> GatewayStats:
-        """What it has done."""
+        """Counts of its work."""
         sessions: dict[str, int] = {}
         dropped: dict[str, int] = {}
         sent, refused = 0, self._refused
@@ -148,7 +148,7 @@ class Clients:
             log.warning(f"gateway: {error}", throttle_duration_sec=WARN_SEC)
 
     def use_policy(self, policy: Policy) -> None:
-        """Have another policy count from now on; what it does not allow any more is ended."""
+        """Have another policy count from now on; rights that it does not give end."""
         log = self.node.get_logger()
         if policy.tls != self._policy.tls:
             log.warning("gateway: [tls] of the policy has changed; start the gateway again for it")

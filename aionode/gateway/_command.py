@@ -21,7 +21,7 @@ __all__ = ["Commands", "Holder", "Owner", "check_age"]
 
 
 class Owner(Protocol):
-    """What commands a topic: a session, or what stands for several sessions of one client."""
+    """The owner of commands: a session, or something that several requests of one client share."""
 
     def doubt(self) -> None:
         """Take that the client was silent for the time to live."""
@@ -31,7 +31,7 @@ class Holder:
     """A client that commands a topic, from its first command until its lease ends.
 
     Attributes:
-        owner: The session of the client, or what stands for several of its sessions.
+        owner: The session of the client, or something that its requests share.
         identity: Who it is.
         rule: How it publishes.
     """
@@ -175,7 +175,7 @@ def check_age(
         rule: How commands are published.
         now_ns: The time of the node's clock, in nanoseconds.
         arrived_ns: When the frame arrived, in nanoseconds of the steady clock.
-        time_base: What shows the steady clock.
+        time_base: Shows the steady clock.
 
     Raises:
         RefusedError: the command is older than the rule allows; its code is ``too_old``.

@@ -59,7 +59,7 @@ STATUS: Final = {
 
 
 class Door:
-    """Identifies the client of each request, and refuses what pages of other origins ask for.
+    """Identifies the client of each request, and refuses requests of pages of other origins.
 
     In the scope it leaves ``aionode.credentials``.
     """

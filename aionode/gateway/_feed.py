@@ -179,7 +179,7 @@ class Feed:
     def _subscribe(self) -> None:
         if self._subscription is not None:
             self._subscription.destroy()
-        # What a publisher offers that appears is no mistake: the feed subscribes anew for it.
+        # Another QoS of a publisher that appears is no mistake: the feed subscribes anew for it.
         ignore = None if self._wanted is not None else ignore_incompatible_qos
         self._subscription = self._node.create_subscription(
             self.message_class,

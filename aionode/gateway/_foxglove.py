@@ -1,4 +1,4 @@
-"""Foxglove over WebSocket: what the Foxglove app and PlotJuggler speak."""
+"""Foxglove over WebSocket: the protocol of the Foxglove app and of PlotJuggler."""
 
 from __future__ import annotations
 
@@ -24,6 +24,6 @@ async def serve(websocket: WebSocket, session: Session, player: Player | None = 
     Args:
         websocket: The WebSocket of the client.
         session: The session of the client.
-        player: What the client's timeline controls.
+        player: A bag's player, which the client's timeline controls.
     """
     await exchange(websocket, session, partial(serve_frames, player=player), SUBPROTOCOL)

@@ -35,7 +35,7 @@ class Named(NamedTuple):
 
 
 class Channels:
-    """What one client is told of, and what it subscribes to.
+    """The channels and services that one client is told of, and its subscriptions.
 
     A channel is announced with its definition, and subscribed to when the client asks for it.
 
@@ -55,7 +55,7 @@ class Channels:
         self._unknown: set[str] = set()
         self._news: dict[tuple[str, str], list[dict[str, Any]]] = {}
 
-    # What there is
+    # News for the client
 
     async def announce(self) -> None:
         """Tell the client of topics and services that are new or gone."""
@@ -122,7 +122,7 @@ class Channels:
         self._tell("advertiseServices", "services", service)
 
     def _tell(self, op: str, field: str, item: dict[str, Any]) -> None:
-        """Send what is new at the end of this turn of the loop, in one frame.
+        """Send a new channel or service with the others of this turn of the loop, in one frame.
 
         A frame for each would be more than may wait for the client, in a large system.
         """
@@ -146,7 +146,7 @@ class Channels:
             raise MessageError("call", f"there is no service {service_id} any more")
         return named
 
-    # What the client wants of it
+    # Subscriptions of the client
 
     async def subscribe(self, subscription_id: int, channel_id: int) -> None:
         """Send the messages of a channel to the client, from now on.
@@ -174,7 +174,7 @@ class Channels:
         self._subscriptions[subscription_id] = (channel_id, subscribed)
 
     def tell_ended(self, ended: list[Subscribed]) -> None:
-        """Tell the client what the policy, which has changed, does not allow any more."""
+        """Tell the client which subscriptions the policy, which has changed, has ended."""
         for subscription_id, (_, subscribed) in list(self._subscriptions.items()):
             if subscribed in ended:
                 del self._subscriptions[subscription_id]

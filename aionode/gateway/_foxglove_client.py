@@ -1,4 +1,4 @@
-"""Foxglove's protocol, ``foxglove.sdk.v1``: what one client asks for, through its session."""
+"""Foxglove's protocol, ``foxglove.sdk.v1``, for one client and its session."""
 
 from __future__ import annotations
 
@@ -58,12 +58,12 @@ async def serve_frames(
 ) -> None:
     """Speak with one client until its frames end.
 
-    Cancelling ends what the client has asked for.
+    Cancelling ends all that the client has begun.
 
     Args:
         session: The session of the client; its outbox is sent by the caller.
         incoming: The frames of the client.
-        player: What Foxglove's timeline controls, through the services of its node.
+        player: A bag's player, which Foxglove's timeline controls through the services of its node.
     """
     async with asyncio.TaskGroup() as tasks:
         lanes = Lanes(tasks)
@@ -87,7 +87,7 @@ class Client:
 
     Attributes:
         malformed: How many of its frames were no ops.
-        playback: What it controls.
+        playback: The player that it controls.
     """
 
     def __init__(self, session: Session, lanes: Lanes, player: Player | None) -> None:
@@ -103,7 +103,7 @@ class Client:
         session.on_policy = self._note_policy
 
     def greet(self) -> None:
-        """Say what this server can do."""
+        """Send the name and the capabilities of this server."""
         info = {
             "name": "aionode",
             "capabilities": [*CAPABILITIES, *self.playback.capabilities],
@@ -139,7 +139,7 @@ class Client:
         self._news.set()
 
     async def take(self, frame: bytes | str) -> None:
-        """Begin what a frame asks for; what fails, the client is told as a status."""
+        """Handle a frame; the client is told of failures by a status."""
         try:
             most = self._session._limits.frame_parts
             asked = frames.op_of(frame, most) if isinstance(frame, str) else frames.binary_of(frame)
@@ -154,7 +154,7 @@ class Client:
             self._refuse(error)
 
     async def _begin(self, asked: frames.Asked) -> None:
-        """Do what a frame asks for, after what it has to wait for."""
+        """Begin the op of a frame, behind the ops that it has to wait for."""
         match asked:
             case frames.Advertise():
                 for channel in asked.channels:
@@ -194,7 +194,7 @@ class Client:
         self._session.outbox.send(frames.op_frame("status", status))
 
     async def _do(self, op: frames.Op) -> None:
-        """Do what the client asks for of channels, parameters or the graph."""
+        """Do an op about channels, parameters or the graph."""
         match op:
             case frames.Subscribe():
                 for wish in op.subscriptions:
@@ -216,7 +216,7 @@ class Client:
             case frames.UnsubscribeConnectionGraph():
                 self._graph = None
 
-    # What the client publishes, and calls
+    # Messages and calls of the client
 
     async def _advertise(self, channel: frames.ClientChannel) -> None:
         if channel.encoding not in ENCODINGS:
@@ -271,7 +271,7 @@ class Client:
 
 
 def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
-    """Return what a session publishes or calls with: CDR as it is, JSON as values.
+    """Return the values of a message or request: CDR as it is, JSON decoded.
 
     Raises:
         MessageError: the bytes are no JSON.
@@ -285,7 +285,7 @@ class Connections:
     """The connection graph, as one client has it.
 
     Args:
-        session: Its session, which leaves out what the policy hides.
+        session: Its session, which leaves out names that the policy hides.
     """
 
     def __init__(self, session: Session) -> None:
@@ -293,7 +293,7 @@ class Connections:
         self._known: list[dict[str, list[str]]] = [{}, {}, {}]
 
     def tell(self) -> None:
-        """Send what has changed since the last time, if anything has."""
+        """Send the changes since the last time, if there are any."""
         now = self._connections()
         changed = [
             {name: nodes for name, nodes in new.items() if old.get(name) != nodes}

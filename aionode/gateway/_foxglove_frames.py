@@ -59,7 +59,7 @@ Id = Annotated[int, msgspec.Meta(ge=0, lt=1 << 32)]
 
 
 class Op(msgspec.Struct, frozen=True, rename="camel", tag_field="op"):
-    """What a client asks for in JSON; fields that it does not know are ignored."""
+    """An op of a client in JSON; fields that are unknown here are ignored."""
 
 
 class Wish(msgspec.Struct, frozen=True, rename="camel"):
@@ -199,7 +199,7 @@ class ServiceCall(NamedTuple):
 
 
 class PlaybackRequest(NamedTuple):
-    """What a player should do; without `seek_ns`, go on where it is."""
+    """A wish for the player; without `seek_ns`, it goes on where it is."""
 
     paused: bool
     rate: float
@@ -208,7 +208,7 @@ class PlaybackRequest(NamedTuple):
 
 
 Asked: TypeAlias = Op | ClientMessage | ServiceCall | PlaybackRequest
-"""What a frame of a client asks for."""
+"""A frame of a client, decoded."""
 
 MESSAGE: Final = struct.Struct("<BI")
 CALL: Final = struct.Struct("<BIII")
@@ -216,7 +216,7 @@ PLAYBACK: Final = struct.Struct("<BBfBQI")
 
 
 def binary_of(frame: bytes) -> ClientMessage | ServiceCall | PlaybackRequest:
-    """Return what a binary frame of a client says.
+    """Return a binary frame of a client, decoded.
 
     Raises:
         MessageError: the frame has another form.
@@ -266,7 +266,7 @@ def message_frame(
 
 
 def time_frame(time_ns: int) -> bytes:
-    """Return the frame that says what time it is."""
+    """Return the frame that tells the time."""
     return struct.pack("<BQ", 2, time_ns)
 
 
@@ -283,7 +283,7 @@ PLAYING, PAUSED, ENDED = 0, 1, 3
 def playback_frame(
     status: int, time_ns: int, rate: float, *, did_seek: bool, request_id: str = ""
 ) -> bytes:
-    """Return the frame that says what a player does."""
+    """Return the frame that tells the state of a player."""
     answered = request_id.encode()
     return struct.pack("<BBQfBI", 5, status, time_ns, rate, did_seek, len(answered)) + answered
 
@@ -314,7 +314,7 @@ def parameter_of(name: str, given: FoxgloveParameter, now: ParameterType) -> Par
 
     Args:
         name: Its name at its node.
-        given: What the client says.
+        given: The parameter as the client has sent it.
         now: Its type now: JSON tells no float from an integer, and says nothing of empty arrays.
 
     Raises:

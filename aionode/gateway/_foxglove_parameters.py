@@ -113,7 +113,7 @@ class Parameters:
             self._events = None
 
     def forget(self, ended: list[Subscribed]) -> None:
-        """Forget what the client follows if the policy has ended it; the client may ask again."""
+        """Forget the parameters that the client follows, if the policy has ended that."""
         if self._events in ended:
             self._events, self._follows_all = None, False
             self._followed.clear()

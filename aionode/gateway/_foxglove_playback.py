@@ -24,7 +24,7 @@ PERIOD_SEC: Final = 0.05
 
 
 class Playback:
-    """What one client is told of a player, and asks from it.
+    """The player, as one client sees and controls it.
 
     It controls the player through the services of the player's node, so that the policy decides
     about each of them.
@@ -42,7 +42,7 @@ class Playback:
 
     @property
     def capabilities(self) -> list[str]:
-        """What the client may be told that this server can do."""
+        """The capabilities of this server that a player adds."""
         return [] if self._player is None else ["playbackControl"]
 
     @property
@@ -62,7 +62,7 @@ class Playback:
         return self._clock.now().nanoseconds if self._clock.ros_time_is_active else received.time_ns
 
     async def watch(self) -> None:
-        """Tell the client of the time, and of what the player does."""
+        """Tell the client the time, and the state of the player."""
         if self._player is None:
             await self._watch_clock()
             return
@@ -84,11 +84,11 @@ class Playback:
                 )
 
     async def control(self, begin: Begin, request: frames.PlaybackRequest) -> None:
-        """Let the player do what the client wants, and tell the client what it does then.
+        """Control the player as the client wants, and tell the client its state then.
 
         Args:
             begin: Begins work that ends with the client.
-            request: What the client wants.
+            request: The client's wish.
 
         Raises:
             MessageError: there is no player, or it has no such time.
@@ -132,7 +132,7 @@ class Playback:
 
 
 def status_of(player: Player) -> int:
-    """Return what a player does, in the numbers of the protocol."""
+    """Return the state of a player, in the numbers of the protocol."""
     if player.paused:
         return frames.PAUSED
     return frames.PLAYING if player.playing else frames.ENDED

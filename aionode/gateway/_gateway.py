@@ -226,7 +226,7 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
     """Return a `receive` of WebSockets that takes no more frames than a rate allows.
 
     A client that sends faster is not read meanwhile, and so has to wait. One whose frames are
-    refused has to wait longer: what comes to nothing must cost the robot next to nothing.
+    refused has to wait longer: requests in vain must cost the robot next to nothing.
     """
     clock = robot.clock
     bucket = Bucket(rate_hz, robot.time_base.steady_ns)
@@ -256,8 +256,8 @@ async def until(
 
     Args:
         event: Cancels it.
-        work: What is run.
-        others: What runs beside it, until it ends.
+        work: A coroutine, which is run.
+        others: Coroutines that run beside it, until it ends.
     """
     error: Exception | None = None
 

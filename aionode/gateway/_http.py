@@ -95,7 +95,7 @@ class Endpoint:
         self._handler = handler
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Answer one request; what it began ends with its connection."""
+        """Answer one request, which ends with its connection."""
         request = Request(scope, receive)
         try:
             body = await body_of(request, self._gateway.policy.limits.handshake_sec)
@@ -123,10 +123,10 @@ def end_with(session: Session, ended: list[Subscribed]) -> None:
 
 
 class Caller(msgspec.Struct, frozen=True):
-    """Who holds the topics that requests command, as the session of each ends with the request.
+    """The holder of topics that requests command, as the session of each ends with the request.
 
     Attributes:
-        identity: Who has sent the requests.
+        identity: The client that has sent the requests.
     """
 
     identity: Identity
@@ -151,13 +151,13 @@ class HttpApi:
         self._gateway = gateway
 
     async def openapi(self, asked: Asked) -> Response:
-        """Return the document of what the caller may do."""
+        """Return the document of the requests that the caller may send."""
         version = importlib.metadata.version("aionode")
         title = f"aionode gateway {self._gateway.node.get_fully_qualified_name()}"
         return json_response(openapi(title, version, await offers(asked.session)))
 
     async def metrics(self, asked: Asked) -> Response:
-        """Return what is counted, for Prometheus."""
+        """Return the counts of nodes and of the gateway, for Prometheus."""
         nodes = [node for node in self._gateway.node.context._nodes if isinstance(node, Node)]
 
         def sees(name: str, type_name: str) -> bool:
@@ -201,7 +201,7 @@ async def list_nodes(asked: Asked) -> Response:
 
 
 async def show_node(asked: Asked) -> Response:
-    """Return what a node publishes, subscribes to, serves and calls."""
+    """Return the publishers, subscriptions, services and clients of a node."""
     return json_response(asked.session.node_details(asked.name))
 
 

@@ -52,8 +52,8 @@ MOST_SEC: Final = 3600.0
 """The longest wait that a request may ask for, in seconds."""
 
 ALIVE_SEC: Final = 2.0
-"""The time between two signs of life in a stream, in seconds: proxies and firewalls cut what is
-silent, and the network reports a client that is gone only to those who send.
+"""The time between two signs of life in a stream, in seconds: proxies and firewalls cut silent
+connections, and the network reports a client that is gone only to a server that sends.
 """
 
 CLIENT_GONE: Final = 499
@@ -159,7 +159,7 @@ async def body_of(request: Request, timeout_sec: float) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What a caller asks for.
+    """A request over HTTP.
 
     Attributes:
         session: The session of the request.
@@ -263,8 +263,8 @@ class Stream(Response):
         session: The session.
         chunks: The chunks.
         media_type: Of the whole.
-        first: What is sent before them.
-        alive: What is sent as a sign of life; nothing if empty.
+        first: Is sent before them.
+        alive: Is sent as a sign of life; empty for none.
     """
 
     def __init__(

@@ -37,7 +37,7 @@ WAIT_SEC: Final = 5.0
 """How long a request waits for a message unless it says otherwise, in seconds."""
 
 SUFFIXES: Final = {".jpeg": "image/jpeg", ".jpg": "image/jpeg", ".mjpeg": PICTURES}
-"""What the ends of a path ask for, as an ``<img>`` of a page cannot: names have no dots."""
+"""The media type for each end of a path, as an ``<img>`` of a page can name no other way."""
 
 
 async def answer_topic(asked: Asked) -> Response:
@@ -103,7 +103,7 @@ def make_event(received: Received) -> bytes:
 
 
 async def frames(outbox: Outbox) -> AsyncGenerator[Frame, None]:
-    """Yield what leaves an outbox."""
+    """Yield the frames that leave an outbox."""
     async for frame in outbox:
         yield frame
 
@@ -111,7 +111,7 @@ async def frames(outbox: Outbox) -> AsyncGenerator[Frame, None]:
 class Newest:
     """The newest message of a topic that was not taken yet: the others are left out.
 
-    Unlike what waits in an outbox, it is encoded only when its client is ready for it.
+    Unlike a frame in an outbox, it is encoded only when its client is ready for it.
     """
 
     def __init__(self, topic: str) -> None:

@@ -1,4 +1,4 @@
-"""Who a client is: what its first request says, and whether a page of another origin sent it."""
+"""The identity of a client by its first request, and whether a page of another origin sent that."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ SAME_SITES: Final = frozenset({"", "none", "same-origin"})
 
 
 class Identity(msgspec.Struct, frozen=True):
-    """Who a client is, by the policy.
+    """The identity of a client, by the policy.
 
     Attributes:
         name: For the audit log, and for others who ask who commands a topic.
@@ -42,7 +42,7 @@ class Identity(msgspec.Struct, frozen=True):
 
 
 class Credentials(msgspec.Struct, frozen=True):
-    """What a client shows of itself with its first request.
+    """The evidence of a client's identity, in its first request.
 
     Attributes:
         address: Where it connects from.
@@ -76,7 +76,7 @@ class Credentials(msgspec.Struct, frozen=True):
 
 
 def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
-    """Return what the ASGI scope of a request says.
+    """Return the credentials in the ASGI scope of a request.
 
     Args:
         scope: The scope, of HTTP or of a WebSocket.
@@ -125,7 +125,7 @@ def take_token(scope: Mapping[str, Any]) -> str:
 def check_browser(
     credentials: Credentials, hosts: Iterable[str] = (), origins: Iterable[str] = ()
 ) -> None:
-    """Refuse what a page of another origin has a browser ask for.
+    """Refuse a request that a page of another origin has made.
 
     A page on the Internet can have the browser of its reader connect to a port of the reader's own
     machine or network, and even under the page's own name, if its name server says so (DNS
@@ -133,7 +133,7 @@ def check_browser(
     policy lists.
 
     Args:
-        credentials: What the request says.
+        credentials: Those of the request.
         hosts: The names of this machine, by the policy.
         origins: The origins of pages that may connect, by the policy.
 

@@ -19,7 +19,7 @@ IMAGE_TYPES: Final = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 """The messages that are also answered as pictures."""
 
 BOUNDARY: Final = "picture"
-"""What separates the pictures of a stream (multipart/x-mixed-replace, also called MJPEG)."""
+"""The line between the pictures of a stream (multipart/x-mixed-replace, also called MJPEG)."""
 
 BEGINNINGS: Final = {
     b"\xff\xd8\xff": "image/jpeg",

@@ -1,4 +1,4 @@
-"""The work of one client: what belongs together in order, and the rest side by side."""
+"""The work of one client: each lane in order, and the lanes side by side."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Lanes:
         self._running: set[asyncio.Task[None]] = set()
 
     async def put(self, lane: Hashable, work: Callable[[], Awaitable[None]]) -> None:
-        """Run `work` after what was put into the same lane before.
+        """Run `work` after the earlier work of the same lane.
 
         Raises:
             MessageError: too much waits in the lane, or there are too many lanes.
@@ -71,7 +71,7 @@ class Lanes:
         return task
 
     def cancel(self) -> None:
-        """Cancel what is running: the client has gone."""
+        """Cancel all work: the client has gone."""
         for task in self._running:
             task.cancel()
 

@@ -1,4 +1,4 @@
-"""What nodes, endpoints and the gateway count, in the text format of Prometheus."""
+"""The counts of nodes, endpoints and the gateway, in the text format of Prometheus."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class Family(msgspec.Struct):
     Attributes:
         name: Its name; those of counters end in ``_total``.
         kind: What it is.
-        text: What it says, for people.
+        text: Its meaning, for people.
         samples: The end of the name (for summaries), the labels and the value of each sample.
     """
 
@@ -87,10 +87,10 @@ def escaped(text: str) -> str:
 
 
 def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> list[Family]:
-    """Return what a gateway counts, as far as the caller sees the names.
+    """Return the counts of a gateway, as far as the caller sees the names.
 
     Args:
-        stats: What it counts.
+        stats: Its counts.
         sees: Returns whether the caller sees a topic of this name; its type is not told.
     """
     sessions = Family("aionode_gateway_sessions", "gauge", "Clients now, by the way in.")
@@ -129,7 +129,7 @@ COUNTERS: Final = {
     "lost": "Messages that are missing in the sequence numbers of publishers.",
     "errors": "Callbacks that have raised, and calls that have failed.",
 }
-"""What entities count, by the attributes of their stats."""
+"""The counts of entities, by the attributes of their stats."""
 
 DURATIONS: Final = {
     "queue_wait": "Time from the arrival to the start of the callback.",
@@ -140,7 +140,7 @@ DURATIONS: Final = {
 
 
 def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> list[Family]:
-    """Return what the entities of nodes count, as far as the caller sees their names.
+    """Return the counts of the entities of nodes, as far as the caller sees their names.
 
     Args:
         nodes: The nodes.

@@ -1,4 +1,4 @@
-"""What a caller may use: the graph, as the policy lets one session see and use it."""
+"""The graph, as the policy lets one caller see and use it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VERBS: Final[dict[Kind, tuple[Verb, ...]]] = {
     "service": ("call",),
     "action": ("goal",),
 }
-"""What a caller may do over HTTP, by what the name is of."""
+"""The verbs of HTTP for topics, services and actions."""
 
 
 def may(session: Session, verb: Verb, name: str, type_name: str) -> bool:
@@ -32,7 +32,7 @@ def may(session: Session, verb: Verb, name: str, type_name: str) -> bool:
 
 
 async def offers(session: Session) -> list[Offer]:
-    """Return what the caller may use, with the classes of their types."""
+    """Return the names that the caller may use, with the classes of their types."""
     graph: dict[Kind, dict[str, list[str]]] = {
         "topic": session.topics(),
         "service": session.services(),
@@ -56,7 +56,7 @@ async def offers(session: Session) -> list[Offer]:
 
 
 async def classes_of(session: Session, types: set[tuple[Kind, str]]) -> dict[str, Any]:
-    """Return the classes of types, given with what has them; those that nobody knows are left out.
+    """Return the classes of types by their names; those that nobody knows are left out.
 
     The nodes are asked at once, for a few seconds in all.
     """

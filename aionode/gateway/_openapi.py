@@ -1,4 +1,4 @@
-"""The OpenAPI 3.1 document of what one caller may do over HTTP.
+"""The OpenAPI 3.1 document of the requests that one caller may send.
 
 It has a path for each topic, service, action and node that the policy lets the caller use, with the
 schemas of their messages, so that a generated client has a typed method for each of them.
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Kind", "Offer", "openapi"]
 
 Kind: TypeAlias = Literal["topic", "service", "action", "node"]
-"""What a caller may use."""
+"""A kind of thing that a caller may use."""
 
 Schema = dict[str, Any]
 
@@ -97,7 +97,7 @@ def openapi(title: str, version: str, offers: Iterable[Offer]) -> dict[str, Any]
     Args:
         title: The name of the robot or of its gateway.
         version: The version of the program that answers.
-        offers: What the caller may use.
+        offers: The names that the caller may use.
     """
     schemas: dict[str, Schema] = {"Error": dict(ERROR), "Value": dict(VALUE)}
     paths: dict[str, Schema] = {

@@ -1,4 +1,4 @@
-"""What waits for one client: a bounded queue for each topic, so that a slow client slows nobody."""
+"""The frames that wait for one client: a bounded queue for each topic, which slows nobody else."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class Outbox:
             by_key.pop(key, None)
 
     def close(self) -> None:
-        """End the iteration, and forget what waits."""
+        """End the iteration, and forget all frames."""
         self._closed = True
         self._answers.clear()
         self._queues.clear()
@@ -151,7 +151,7 @@ class Outbox:
         self._filled.set()
 
     async def __aiter__(self) -> AsyncIterator[Frame]:
-        """Yield what leaves, until the outbox is closed. For the one task that writes."""
+        """Yield the frames until the outbox is closed. For the one task that writes."""
         while not self._closed:
             frame = self._next()
             if frame is None:

@@ -1,4 +1,4 @@
-"""What the sessions of a gateway share: the node, the policy, and the endpoints in use."""
+"""The robot, as the sessions of a gateway share it: node, policy, and endpoints in use."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ LONGEST_TYPE: Final = 255
 
 
 class Robot:
-    """What a gateway's sessions touch of the robot.
+    """The robot, as the sessions of a gateway share it.
 
     Args:
         node: The node of the gateway.

@@ -1,4 +1,4 @@
-"""Rosbridge over WebSocket: what roslibjs, roslibpy and their like speak."""
+"""Rosbridge over WebSocket: the protocol of roslibjs, roslibpy and their like."""
 
 from __future__ import annotations
 

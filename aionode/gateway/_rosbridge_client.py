@@ -96,7 +96,7 @@ class Client:
         }
 
     async def take(self, frame: str | bytes) -> None:
-        """Begin what a frame asks for."""
+        """Begin the op in a frame."""
         try:
             op = self._op_of(frame)
         except MessageError as error:
@@ -125,7 +125,7 @@ class Client:
         return op
 
     async def close(self) -> None:
-        """End what the client has begun."""
+        """End all that the client has begun."""
         self._lanes.cancel()
         await self._offers.close()
 

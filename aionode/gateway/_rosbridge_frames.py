@@ -54,7 +54,7 @@ def long_json_frame(topic: str, pieces: Sequence[bytes]) -> LongFrame:
 
 
 def json_head(topic: str) -> bytes:
-    """Return what is before the message in a frame of JSON."""
+    """Return the part of a frame of JSON that stands before the message."""
     return msgspec.json.encode({"op": "publish", "topic": topic})[:-1] + b',"msg":'
 
 
@@ -134,7 +134,7 @@ class Fragmented(str):
         return made
 
     def parts(self) -> Iterator[str]:
-        """Yield what leaves."""
+        """Yield the fragments."""
         return fragments(self, self.size, self.message_id)
 
 

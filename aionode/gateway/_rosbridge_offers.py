@@ -46,7 +46,7 @@ class Offer:
     Attributes:
         name: Its name, as the client has it.
         type_class: Its class.
-        served: What the session serves for it.
+        served: The service or action of the session.
         is_closed: Whether it has ended; a request that comes then fails.
         count: How many requests there were.
         pending: The requests that the client has not answered, by id.
@@ -92,7 +92,7 @@ class Offer:
 
 
 class Offers:
-    """What one client serves.
+    """The services and actions of one client.
 
     Args:
         link: The way to the client.
@@ -126,7 +126,7 @@ class Offers:
 
         Raises:
             ServiceError: the client says that it failed, or goes.
-            MessageError: what it answered is not such a response.
+            MessageError: its answer is no such response.
         """
         message_id, answer = offer.ask("service_request")
         call = {"op": "call_service", "id": message_id, "service": offer.name}
@@ -262,7 +262,7 @@ class Offers:
 
 
 async def withdraw(offers: dict[str, Offer], name: str) -> bool:
-    """End what a client serves under a name; return whether there was such an offer."""
+    """End the service or action of a name; return whether there was one."""
     offer = offers.pop(name, None)
     if offer is not None:
         await offer.close()

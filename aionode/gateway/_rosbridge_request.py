@@ -1,4 +1,4 @@
-"""The fields of an op of rosbridge, checked: what clients send is not believed."""
+"""The fields of an op of rosbridge, checked: no client is believed."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ LONGEST_NAME: Final = 1000
 MOST_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
-"""What a fragment counts beside its bytes: empty ones take memory as well."""
+"""How many bytes a fragment counts beside its own: empty ones take memory as well."""
 
 
 def op_of(frame: str | bytes, most_parts: int) -> Op:
@@ -73,7 +73,7 @@ def text(op: Op, name: str, default: str | None = None, most: int | None = LONGE
     Args:
         op: The op.
         name: The name of the field.
-        default: What a missing field is; None if it has to be there.
+        default: The value of a missing field; None if it has to be there.
         most: The longest text, in characters.
 
     Raises:

@@ -80,7 +80,7 @@ class Wish:
 
 
 def wish_of(op: Op) -> Wish:
-    """Return what an op ``subscribe`` asks for.
+    """Return the wish in an op ``subscribe``.
 
     Raises:
         MessageError: a field is invalid.
@@ -100,7 +100,7 @@ def wish_of(op: Op) -> Wish:
 
 
 def combined(wishes: list[Wish]) -> Wish:
-    """Return what fits all ids of one client: the fastest, the longest queue, the newest QoS."""
+    """Return one wish for all ids of one client: the fastest, the longest queue, the newest QoS."""
     return Wish(
         next((wish.type_name for wish in wishes if wish.type_name is not None), None),
         min(wish.period_sec for wish in wishes),
@@ -146,7 +146,7 @@ class Topics:
         ids.add(message_id)
 
     async def unadvertise(self, op: Op) -> None:
-        """Take back what was advertised with one id, or with all."""
+        """Take back the topic advertised with one id, or with all."""
         topic, message_id = self._session.topic_name(text(op, "topic")), optional_text(op, "id")
         ids = self._advertised.get(topic)
         if ids is None or (message_id is not None and message_id not in ids):
@@ -236,14 +236,14 @@ class Topics:
                 self._link.status("error", f"subscribe: the policy has ended {topic}")
 
     def _frames(self, topic: str, wish: Wish) -> Callable[[Received], Frame | None]:
-        """Return what makes the frame of a message, once for all clients that want the same."""
+        """Return a function that makes the frame of a message, once for equal wishes."""
         kind = ("rosbridge", wish.compression, topic)
         make = partial(frame_of, wish.compression, topic)
 
         def frame(received: Received) -> Frame | None:
             try:
                 made = received.once(kind, make)
-            except AionodeError as error:  # a peer sent what is no message of the type
+            except AionodeError as error:  # a peer sent bytes that are no message of the type
                 self._link.status("error", f"subscribe: {error}")
                 return None
             return self._fragments(made, wish) if wish.fragment_size else made
@@ -269,7 +269,7 @@ def frame_of(compression: str, topic: str, received: Received) -> Frame:
 
 
 def prepare_of(compression: str, topic: str) -> Prepare | None:
-    """Return what encodes large messages; None if that takes next to no time."""
+    """Return a function that encodes large messages; None if that takes next to no time."""
     prepared = {"none": prepare_text, "png": prepare_png}.get(compression)
     return None if prepared is None else partial(prepared, topic)
 

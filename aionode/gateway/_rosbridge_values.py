@@ -156,7 +156,7 @@ def stamp(time_ns: int) -> dict[str, int]:
 
 
 def reworded(cls: type[Message], values: object, now_ns: int, path: str) -> object:
-    """Return what a client sent for a message in the forms that `from_builtins` accepts.
+    """Return a client's values for a message in the forms that `from_builtins` accepts.
 
     Unknown fields and wrong values are left as they are, for the errors of `from_builtins`.
     """
@@ -186,7 +186,7 @@ def by_position(names: list[str], values: list[object], path: str) -> dict[str, 
 
 
 def reworded_value(type_: FieldType, value: object, now_ns: int, path: str) -> object:
-    """Return what a client sent for one field."""
+    """Return a client's value for one field."""
     if type_.nested is not None:
         if type_.container == "single":
             return reworded(type_.nested, value, now_ns, path)

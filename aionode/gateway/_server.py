@@ -73,7 +73,7 @@ class Server(uvicorn.Server):
         yield
 
     async def startup(self, sockets: Any = None) -> None:
-        """Listen, and tell who waits for it.
+        """Listen, and tell the tasks that wait for it.
 
         uvicorn would give a client a minute for the handshake of TLS, before it counts as one.
         """
@@ -137,7 +137,7 @@ class ServerLog:
         self._logger = logger
 
     def __getattr__(self, name: str) -> Any:
-        """Return what else the log has."""
+        """Return another member of the log."""
         return getattr(self._logger, name)
 
     def warning(self, *_: object) -> None:
@@ -346,7 +346,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
             message["answered"]()
 
     async def send(self, message: Any) -> None:
-        """Send what the application does; a client that it has refused is no fault of it.
+        """Send a message of the application; a client that it has refused is no fault of it.
 
         uvicorn would write an error into the log for each of them.
         """

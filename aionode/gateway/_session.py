@@ -1,4 +1,4 @@
-"""What one client does with the robot: each way in makes a session, which asks the policy first."""
+"""The session of one client: each way in makes one, and it asks the policy first."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ __all__ = ["Session"]
 
 
 class Session(SessionTopics, SessionCalls, SessionGraph):
-    """What one client does with the robot, and what it has to give back when it leaves.
+    """All that one client does with the robot, and gives back when it leaves.
 
     An async context manager. Its end closes the subscriptions, ends the leases of commands, which
     sends their stops, cancels the goals, and ends the services that the client offers.
 
-    All methods raise RefusedError for what the policy does not allow, before the robot is touched.
+    All methods raise RefusedError, before they touch the robot, if the policy refuses.
 
     Attributes:
         identity: Who the client is.
         kind: The way in, for the audit log: ``rosbridge``, ``foxglove``, ``http``.
-        credentials: What the client has shown; None if the program made the session itself.
-        outbox: What waits for it.
+        credentials: Its evidence of its identity; None if the program made the session itself.
+        outbox: The frames that wait for it.
         ended: Set when the policy does not know the client any more.
         is_doubtful: Whether it was silent for too long, so that commands may be from before that.
         owner: Who holds the topics that the client commands: the session, which ends the leases
@@ -69,7 +69,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
                 served.close()
             self.outbox.close()
 
-    # What the client offers
+    # Services and actions of the client
 
     async def serve(
         self, service: str, type_name: str, answer: Callable[[Any], Awaitable[Any]]
@@ -129,7 +129,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             return self._keep(name, cls.__ros_type__, made)
 
     def _keep(self, name: str, type_name: str, served: Served) -> Served:
-        """Keep what the client offers until it leaves; an older one of the same name ends."""
+        """Keep a service or action until the client leaves; an older one of the same name ends."""
         older = self._served.pop(name, None)
         if older is not None:
             older.close()
@@ -144,7 +144,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
     # A policy that has changed
 
     def check_again(self) -> None:
-        """End what the policy, which was read again, does not allow any more.
+        """End all that the policy, which was read again, does not allow any more.
 
         A subscription ends by itself, and the client is told. For a call, a goal, a publisher, or a
         service that it offers, the client is disconnected, which ends them as they end with any

@@ -1,4 +1,4 @@
-"""A session and the policy: what every part of a session asks before it touches the robot."""
+"""A session and the policy, which every part of a session asks before it touches the robot."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ MOST_QUESTIONS: Final = 256
 
 
 Kind: TypeAlias = Literal["topic", "service", "action"]
-"""What a name is of."""
+"""A kind of name."""
 
 
 class Connection(Protocol):
-    """What a session knows of the connection of its client."""
+    """The connection of a client, as its session uses it."""
 
     def silent_sec(self) -> float:
         """Return how long nothing has arrived, in seconds."""
@@ -50,7 +50,7 @@ class Connection(Protocol):
 
 
 class SessionBase:
-    """What a session is made of, and how it asks the policy; see `Session`."""
+    """The base of a session, which asks the policy; see `Session`."""
 
     def __init__(
         self, robot: Robot, identity: Identity, kind: str, credentials: Credentials | None = None
@@ -74,7 +74,7 @@ class SessionBase:
     # The policy
 
     def decide(self, verb: Verb, name: str, type_name: str, message: Any = None) -> Decision:
-        """Return what the policy allows; see `Policy.decide`.
+        """Return the decision of the policy; see `Policy.decide`.
 
         Raises:
             RefusedError: it does not; the refusal is in the audit log.
@@ -96,7 +96,7 @@ class SessionBase:
         return RefusedError(f"{verb} {name}", reason, code)
 
     async def _allow(self, verb: Verb, name: str, type_name: str, message: Any) -> Decision:
-        """Return what the policy allows, within its rate, and after a person has said yes.
+        """Return the decision of the policy, within its rate, and after a person has said yes.
 
         Raises:
             RefusedError: it is not allowed.

@@ -78,7 +78,7 @@ class SessionCalls(SessionBase):
                 return response
 
     def _decide_call(self, service: str, type_name: str, request: Any = None) -> tuple[Verb, str]:
-        """Return about what the policy is asked for a call, which may be a goal or a parameter.
+        """Return the verb and the name that a call counts as: it may be part of a goal.
 
         Raises:
             RefusedError: the policy does not allow it.
@@ -171,10 +171,10 @@ class SessionCalls(SessionBase):
     def _attempt(
         self, verb: Verb, name: str, cls: Any, message: Any, make: Callable[[], Any]
     ) -> Iterator[Attempt]:
-        """Send a call or goal within the block; write down what became of it.
+        """Send a call or goal within the block, and write down its result.
 
         Args:
-            verb: What it is.
+            verb: ``call`` or ``goal``.
             name: The service or action.
             cls: Its type.
             message: The request or goal.
@@ -203,9 +203,9 @@ class Attempt:
 
     Attributes:
         client: Sends it.
-        asked: About what the policy was asked, and is again when it changes: the verb, the name,
-            and the type.
-        result: What became of it, for the audit log.
+        asked: The verb, the name and the type for the policy, which is asked again when it
+            changes.
+        result: Its result, for the audit log.
     """
 
     def __init__(self, client: Any, asked: tuple[Verb, str, str]) -> None:

@@ -1,4 +1,4 @@
-"""What a client sees of the graph, and the parameters of nodes."""
+"""The graph as a client sees it, and the parameters of nodes."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ MOST_ASKED: Final = 8
 
 
 class NodeDetails(msgspec.Struct, frozen=True):
-    """What one node does, each as names with their types.
+    """The endpoints of one node, each as names with their types.
 
     Attributes:
         name: Its full name.
@@ -55,7 +55,7 @@ class NodeDetails(msgspec.Struct, frozen=True):
 class SessionGraph(SessionBase):
     """The part of `Session` that shows the graph, and reads and sets parameters."""
 
-    # The graph, without what the policy hides
+    # The graph, without names that the policy hides
 
     def topics(self, *, hidden: bool = False) -> dict[str, list[str]]:
         """Return the topics that the client may see, with the names of their types."""
@@ -76,7 +76,7 @@ class SessionGraph(SessionBase):
         return [name for name in sorted(found) if self._sees(name, [])]
 
     def node_details(self, node: str) -> NodeDetails:
-        """Return what a node does.
+        """Return the endpoints of a node.
 
         Raises:
             NodeNameNonExistentError: there is no such node, or the client may not see it.

@@ -1,4 +1,4 @@
-"""The topics of a client: what it receives, and what it publishes."""
+"""The topics of a client: its subscriptions and its publishers."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ __all__ = ["SessionTopics", "Subscribed"]
 PUBLISHED: Final = QoSProfile(
     depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL, lifespan=Duration(seconds=1)
 )
-"""For publishers of clients, which publish at once: who subscribes within a second gets it."""
+"""For publishers of clients, which publish at once: a subscription within a second gets it."""
 
 COMMANDS: Final = QoSProfile(depth=10)
 """For commands: an old one must not reach a subscription that comes late."""
@@ -96,7 +96,7 @@ class Subscribed:
             self._session.outbox.put(self._key, frame, self._depth)
 
     def close(self) -> None:
-        """Unsubscribe; what waits for the client is dropped."""
+        """Unsubscribe; frames that wait for the client are dropped."""
         if self._leave is not None:
             self._leave()
             self._leave = None
@@ -142,7 +142,7 @@ class SessionTopics(SessionBase):
         Args:
             topic: The name of the topic.
             type_name: The name of its type; by default that which the graph shows.
-            frame: Returns what the client gets for a message, or None for nothing.
+            frame: Returns the client's frame for a message, or None for none.
             key: Which queue of the outbox it waits in.
             depth: How many frames may wait there.
             qos: The profile; by default the strongest that all publishers offer.
@@ -236,7 +236,7 @@ class SessionTopics(SessionBase):
     async def _send(
         self, publisher: Any, decision: Decision, message: Message, arrived_ns: int
     ) -> None:
-        """Publish what the policy allows, by lease if it says so.
+        """Publish a message within the limits of the policy, by lease if it says so.
 
         Raises:
             RefusedError: another client commands the topic; the command is too old.
@@ -266,7 +266,7 @@ class SessionTopics(SessionBase):
         return received.once("json", lambda each: json_of(each.message))
 
     async def _type_to(self, verb: Verb, topic: str, type_name: str | None) -> Any:
-        """Return the class of a topic's messages, if the policy may allow what a client wants.
+        """Return the class of a topic's messages, if the policy may allow a verb.
 
         Only then is a type looked up, imported, or asked from a node.
 
@@ -289,7 +289,7 @@ class SessionTopics(SessionBase):
         return self.steady_ns() if self._frame_ns is None else self._frame_ns
 
     def _note_published(self, topic: str, message: Message) -> None:
-        """Write down what is published: once a second for each topic, with a count."""
+        """Write down the publishing: once a second for each topic, with a count."""
         self._counts[topic] += 1
         now_ns = self._robot.time_base.steady_ns()
         if now_ns - self._noted_ns.get(topic, -S_TO_NS) >= S_TO_NS:

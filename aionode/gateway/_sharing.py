@@ -20,10 +20,10 @@ MOST_UNUSED: Final = 100
 
 
 class Shared:
-    """Endpoints by what they are made of.
+    """Endpoints by their keys: name, type and profile.
 
     Args:
-        time_base: What counts the time for which an unused one stays.
+        time_base: Counts the time for which an unused one stays.
         linger_ns: That time, in nanoseconds.
     """
 
@@ -42,7 +42,7 @@ class Shared:
         """Return an endpoint, and a function that gives it back.
 
         Args:
-            key: What it is made of: two that ask for the same get the same one.
+            key: Its name, type and profile: two that ask for the same get the same one.
             make: Makes it.
         """
         entity = self._entities.get(key)

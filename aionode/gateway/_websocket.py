@@ -31,9 +31,9 @@ async def exchange(
 
     Args:
         websocket: The WebSocket, which is accepted here.
-        session: The session of the client; its outbox is what the client gets.
+        session: The session of the client; its outbox has the frames for the client.
         serve: Takes the frames of the client, until they end, or it has had enough of them.
-        subprotocol: What the protocol is called.
+        subprotocol: The name of the protocol.
     """
     await websocket.accept(subprotocol)
     async with asyncio.TaskGroup() as tasks:
@@ -54,7 +54,7 @@ async def exchange(
 
 
 async def write(websocket: WebSocket, outbox: Outbox) -> None:
-    """Send what leaves the outbox; if that is closed, the client is disconnected."""
+    """Send the frames of the outbox; if that is closed, the client is disconnected."""
     try:
         async for frame in outbox:
             if isinstance(frame, Fragmented):
