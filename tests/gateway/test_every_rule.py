@@ -465,7 +465,9 @@ async def table_of(context: Context, way: str) -> AsyncIterator[Table]:
         pilot = Identity("pilot", frozenset({"users"}))
         session = await stack.enter_async_context(gateway.session(pilot, "program"))
         clients = {
-            who: await stack.enter_async_context(way_in(way, gateway.port, who))
+            who: await stack.enter_async_context(
+                way_in(way, gateway.port, {"Authorization": f"Bearer {who}"})
+            )
             for who in ("staff", "guest", "seer")
         }
         table = Table(way, robot, gateway, session, clients)

@@ -395,19 +395,32 @@ WAYS: Final = ("rosbridge", "http", "events", "foxglove")
 
 
 @asynccontextmanager
-async def way_in(way: str, port: int, token: str) -> AsyncIterator[Way]:
-    """Connect a client by one of `WAYS`."""
-    headers = {"Authorization": f"Bearer {token}"}
+async def way_in(
+    way: str, port: int, headers: dict[str, str], host: str = "127.0.0.1"
+) -> AsyncIterator[Way]:
+    """Connect a client by one of `WAYS`.
+
+    Args:
+        way: The way in.
+        port: The port of the gateway, on this host.
+        headers: What the client shows of itself.
+        host: By which name it knows the gateway.
+
+    Raises:
+        InvalidStatus: a WebSocket is refused.
+    """
     if way in {"http", "events"}:
         async with http_client(port) as requests:
-            requests.headers.update(headers)
+            requests.headers.update({**headers, "Host": host})
             yield Http(requests) if way == "http" else Events(requests)
         return
     kind: type[Rosbridge | Foxglove] = Foxglove if way == "foxglove" else Rosbridge
     protocols = [Subprotocol("foxglove.sdk.v1")] if way == "foxglove" else None
     async with (
         connect(
-            f"ws://127.0.0.1:{port}/",
+            f"ws://{host}:{port}/",
+            host="127.0.0.1",
+            port=port,
             additional_headers=headers,
             subprotocols=protocols,
             proxy=None,
