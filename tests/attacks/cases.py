@@ -52,6 +52,7 @@ def all_attacks() -> list[Attack]:
     rules = AccessControl()
     return [
         Attack("none: what the table compares with", "nobody", "wait", pair()),
+        *attacks_on_gateway(),
         Attack("random bytes to their ports", "outsider", "send_garbage", pair(), short=True),
         Attack(
             "connections to their ports that say nothing", "outsider", "keep_connections", pair()
@@ -181,6 +182,21 @@ def all_attacks() -> list[Attack]:
             pair(),
             bare=True,
         ),
+    ]
+
+
+def attacks_on_gateway() -> list[Attack]:
+    """Return what clients do to a gateway in the process of the first node."""
+    tries = {
+        "guess_tokens": ("tries tokens as fast as they are judged, at a gateway", "outsider"),
+        "keep_waiting": ("500 connections to a gateway that send a byte at a time", "outsider"),
+        "send_tiny_parts": ("pings, empty frames, parts and chunks to a gateway", "client"),
+        "send_bombs": ("JSON of 1 MB that is made to cost, to a gateway", "client"),
+        "read_nothing": ("20 clients of a gateway that ask for much and read nothing", "client"),
+    }
+    return [
+        Attack(name, who, program, pair(gateway=True), 8.0)
+        for program, (name, who) in tries.items()
     ]
 
 

