@@ -38,15 +38,15 @@ def test_a_router_answers_nobody_any_more() -> None:
             number = 0
             while not stopped.is_set():
                 number += 1
-                some = [three.declare_subscriber(f"k/{number}/{each}") for each in range(20)]
-                for each in some:
+                keys = [f"k/{threading.get_ident()}/{number}/{each}" for each in range(20)]
+                for each in [three.declare_subscriber(key) for key in keys]:
                     each.undeclare()
 
         def ask() -> None:
             while not stopped.wait(0.001):
                 one.get("@/*/router/**", lambda _: None, timeout=1)
 
-        threads = [threading.Thread(target=each, daemon=True) for each in (declare, ask)]
+        threads = [threading.Thread(target=each, daemon=True) for each in (declare, ask) * 2]
         for thread in threads:
             thread.start()
         is_locked = until(lambda: not answers(two), 3.0)
