@@ -85,7 +85,7 @@ async def test_limits_that_are_not_allowed_are_named_and_left_out(
     system: System, output: io.StringIO, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The program runs all the same."""
-    monkeypatch.setattr("aionode.system.scarcity.own_cgroup", lambda: None)
+    monkeypatch.setattr("aionode.system._limits.own_cgroup", lambda: None)
     async with system:
         system.process("greedy", FOREVER, memory_bytes=1_000_000_000, cpu_cores=0.5)
         await system.ready()
@@ -97,7 +97,7 @@ def test_limits_are_written_into_a_cgroup_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Beside that of the supervisor, which may have no cgroups with limits below it."""
-    monkeypatch.setattr("aionode.system.scarcity.own_cgroup", lambda: tmp_path)
+    monkeypatch.setattr("aionode.system._limits.own_cgroup", lambda: tmp_path)
     (tmp_path / "cgroup.controllers").write_text("cpuset cpu io memory\n")
     (tmp_path / "cgroup.subtree_control").write_text("cpu\n")
     folder = Limits(1_000_000, 0.5).enter("greedy", SystemLog(io.StringIO()))
