@@ -18,7 +18,7 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.routing import Route
 
-from aionode.errors import AionodeError
+from aionode.errors import AionodeError, RefusedError
 from aionode.fastapi import until_disconnected
 from aionode.gateway._http_answers import (
     ALIVE,
@@ -97,12 +97,14 @@ class Endpoint:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer one request, which ends with its connection."""
         request = Request(scope, receive)
+        has_session = False
         try:
             body = await body_of(request, self._gateway.policy.limits.handshake_sec)
             async with (
                 self._gateway.session_of(scope, "http") as session,
                 until_disconnected(request),
             ):
+                has_session = True
                 session.owner = Caller(session.identity)
                 session.on_policy = partial(end_with, session)
                 async with until_ended(session):
@@ -113,6 +115,8 @@ class Endpoint:
         except (AionodeError, HTTPException, TimeoutError) as error:
             if isinstance(error, HTTPException) and error.status_code == CLIENT_GONE:
                 return  # there is nobody to answer
+            if isinstance(error, RefusedError) and not has_session:
+                self._gateway.note_refusal(scope["aionode.credentials"], error)
             await error_response(error)(scope, receive, send)
 
 

@@ -60,7 +60,7 @@ LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
 COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
 
-MOST_REMEMBERED: Final = 4096
+MOST_REMEMBERED: Final = 16_384
 """How many decisions, and how many patterns of names, are kept."""
 
 MOST_CHARACTERS: Final = 1000

@@ -396,9 +396,10 @@ async def test_a_client_that_reads_no_answers_is_disconnected() -> None:
         await until(lambda: gateway._sessions)
         asking = json.dumps({"op": "call_service", "service": "/rosapi/topics_and_raw_types"})
         with contextlib.suppress(*CLOSED):
-            while gateway._sessions:
+            while gateway._sessions and not writer.is_closing():
                 writer.write(frame(asking.encode()) * 20)
                 await asyncio.sleep(0)  # noqa: TID251  # the gateway has its turn
+        await until(lambda: not gateway._sessions)
         writer.transport.abort()
 
 

@@ -150,7 +150,8 @@ async def test_a_request_that_arrives_slowly_is_judged_by_the_policy_of_now(
         writer.write(b"1")
         answer = await reader.readline()
         writer.close()
-    assert b" 401 " in answer
+        assert b" 401 " in answer
+        assert gateway.stats.refused == 1  # which is also a line of the audit log
 
 
 async def test_a_client_that_calls_is_disconnected(bench: Bench) -> None:
