@@ -17,6 +17,7 @@ from asyncio.subprocess import PIPE
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager
 from pathlib import Path
+from statistics import median
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -160,7 +161,7 @@ async def measure_bare(case: Case, clients: int, frame: bytes | str) -> Cost:
 
 
 async def main(clients: int, repeats: int, only: str) -> None:
-    """Measure both in turns, and print the best of each."""
+    """Measure both in turns; print the medians of each, and of the ratios of neighbours."""
     print(f"{clients} clients; processor time of the server for one message to all of them")
     print(
         f"{'frame':30} {'bare':>10} {'gateway':>10} {'ratio':>6} {'messages/s of a core':>21} lost"
@@ -171,10 +172,11 @@ async def main(clients: int, repeats: int, only: str) -> None:
         for _ in range(repeats):
             bare.append(await measure_bare(case, clients, frame))
             ours.append(await measure_gateway(case, clients))
-        least, most = min(bare).seconds, min(ours).seconds
+        least, most = (median(each.seconds for each in costs) for costs in (bare, ours))
+        ratio = median(b.seconds / a.seconds for a, b in zip(bare, ours, strict=True))
         missing = max(each.missing for each in (*bare, *ours))
         print(
-            f"{case.name:30} {least * 1e6:7.0f} µs {most * 1e6:7.0f} µs {most / least:5.2f}x "
+            f"{case.name:30} {least * 1e6:7.0f} µs {most * 1e6:7.0f} µs {ratio:5.2f}x "
             f"{1 / most:10.0f} of {1 / least:<7.0f} {missing:7.1%}",
             flush=True,
         )
