@@ -150,7 +150,7 @@ async def names_of(node: Node, node_name: str) -> list[str]:
 
 node_argument = name_argument("node")
 parameter_argument = click.argument("parameter_name", shell_complete=complete_of_node(names_of))
-node_options = (hidden_option("--include-hidden-nodes", what="nodes"),)
+node_options = (hidden_option("--include-hidden-nodes", what="nodes"), timeout_option)
 """The options that all commands have."""
 
 
