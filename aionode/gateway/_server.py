@@ -16,6 +16,7 @@ from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+from websockets.exceptions import InvalidState
 
 from aionode._socket_queue import queued_bytes
 from aionode.clock import S_TO_NS
@@ -312,6 +313,13 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
 
     def _is_ready(self) -> bool:
         return self.queue.empty() or self.close_sent
+
+    def shutdown(self) -> None:
+        """Close the WebSocket, also one whose client closes it at this moment."""
+        try:
+            super().shutdown()
+        except InvalidState:  # the close was received, and what waits for the client is not sent
+            self.transport.close()
 
     def pause_writing(self) -> None:
         """Send nothing until the client has read what was sent."""

@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.protocol import State
 from websockets.typing import Origin
 
 from aionode.context import Context
@@ -508,3 +509,23 @@ async def test_a_policy_that_lets_nobody_in_is_in_the_log(
     """A file with rules alone replaces the rules that hold without a file."""
     async with serving(Policy.parse("[[allow]]\nsubscribe = '/**'")):
         assert "[[who]]" in caplog.text
+
+
+async def test_the_gateway_ends_while_a_client_that_reads_nothing_closes() -> None:
+    """What waits for the client holds up its own end, and no other's."""
+    async with asyncio.TaskGroup() as tasks:
+        async with serving() as gateway:
+            publisher = gateway.node.create_publisher(String, "/words", 1)
+            client = await connect(address(gateway), proxy=None, max_size=None)
+            await client.send(json.dumps({"op": "subscribe", "topic": "/words"}))
+            await until(lambda: gateway.node.count_subscribers("/words"))
+            client.transport.pause_reading()
+            (session,) = gateway._sessions
+            connection: Any = session.connection
+            for _ in range(20):
+                publisher.publish(String(data="x" * 500_000))
+                await settle()
+            tasks.create_task(client.close())
+            await until(lambda: not gateway.stats.sessions)
+            assert connection.conn.state is State.CLOSING
+        client.transport.abort()
