@@ -89,8 +89,10 @@ async def still_served(client: ClientConnection) -> None:
         pass
 
 
-@pytest.mark.parametrize("as_bytes", [False, True], ids=["text", "bytes"])
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize(
+    ("name", "as_bytes"),
+    [*((name, False) for name in REFUSED), ("lists", True), ("deep lists", True)],
+)
 async def test_a_bomb_for_rosbridge_is_answered(
     gateway: Gateway, name: str, *, as_bytes: bool
 ) -> None:
