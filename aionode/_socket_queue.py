@@ -1,4 +1,4 @@
-"""What waits in a socket."""
+"""Counts the bytes that wait in a socket."""
 
 from __future__ import annotations
 

@@ -38,7 +38,7 @@ LIMIT_NS: Final = 200_000_000
 """Longest time that sending takes, in nanoseconds."""
 
 STEP_NS: Final = 50_000_000
-"""How long a publisher or transport may take for a step that a signal has interrupted, in
+"""Longest time for a publisher or transport to finish a step that a signal has interrupted, in
 nanoseconds."""
 
 AGAIN_SEC: Final = 0.001

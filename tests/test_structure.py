@@ -84,6 +84,15 @@ def test_a_module_can_be_read_in_one_sitting() -> None:
     assert {module: length for module, length in lengths.items() if length > MAX_LINES} == {}
 
 
+def test_texts_name_the_thing_first() -> None:
+    """A reader who looks for a thing does not find it behind "what" or "how many"."""
+    free_relative = re.compile(r'\n *(?:"""|# )(?:What|Who|How (?:many|much|long|often)) ')
+
+    modules = [path.name for path in MODULES if free_relative.search("\n" + path.read_text())]
+
+    assert not modules
+
+
 def test_no_imports_form_a_cycle() -> None:
     """Modules in a cycle can only be understood together, also where only types are imported."""
     found = [sorted(cycle) for cycle in cycles(graph(types=True))]

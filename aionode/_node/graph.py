@@ -68,7 +68,7 @@ class TopicEndpointInfo:
 
 
 class GraphAnswers(Protocol):
-    """What `GraphQueries` asks: names are those that a program has given."""
+    """The questions of `GraphQueries`: names are those that a program has given."""
 
     def nodes(self) -> Iterable[NodeInfo]:
         """Return all nodes."""

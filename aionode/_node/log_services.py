@@ -1,4 +1,4 @@
-"""What nodes of both APIs tell of their log, and do when others set its levels."""
+"""The log of nodes of both APIs: its messages on a topic, and its levels, set by others."""
 
 from __future__ import annotations
 

@@ -67,7 +67,7 @@ MOST_PARTS: Final = 512
 """Pieces that one `writev` takes: systems have a limit, which is 1024 on Linux."""
 
 MOST_AT_ONCE: Final = 256 << 10
-"""How many bytes one call writes. Many kernels let nothing else run on that processor meanwhile,
+"""Bytes that one call writes. Many kernels let nothing else run on that processor meanwhile,
 and the event loop may wait for it: 6 MB were seen to take 15 ms and longer."""
 
 

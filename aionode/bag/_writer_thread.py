@@ -38,7 +38,7 @@ TURN_BYTES: Final = 32 << 10
 """A row counts as one more for each so many bytes: large ones take long."""
 
 MOST_ROWS: Final = 1_000_000
-"""How many rows may wait, or are kept for a snapshot: small messages take more than their bytes."""
+"""Rows that may wait, or are kept for a snapshot: small messages take more than their bytes."""
 
 LEAST_WAITING: Final = 16 << 20
 """Bytes that may wait for the thread in snapshot mode, however few are kept."""

@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 __all__ = ["Audit"]
 
 MOST_WAITING: Final = 1000
-"""How many lines may wait for the disk; further ones are counted, and not written."""
+"""Lines that may wait for the disk; further ones are counted, and not written."""
 
 MOST_TEXT: Final = 500
 """The longest text of the arguments of one line, in characters."""
 
 REFUSALS_PER_SEC: Final = 20
-"""How many refusals of one client are written a second: to ask in vain must not fill the disk."""
+"""Refusals of one client that are written in a second: to ask in vain must not fill the disk."""
 
 MOST_REFUSALS: Final = 200
-"""How many refusals of all clients are written a second."""
+"""Refusals of all clients that are written in a second."""
 
 MOST_LEVELS: Final = 20
 """How deeply nested arguments are written."""

@@ -74,7 +74,7 @@ class Clients:
 
     @property
     def policy(self) -> Policy:
-        """Who may do what, as the file says now."""
+        """The rules that hold now."""
         return self._policy
 
     @asynccontextmanager

@@ -27,7 +27,7 @@ PUBLIC: Final = ("/page/",)
 """
 
 MOST_WRONG: Final = 10
-"""How many wrong tokens may come from one place at once."""
+"""Wrong tokens that may come from one place at once."""
 
 WRONG_NS: Final = S_TO_NS
 """After how many nanoseconds one of them is forgotten."""

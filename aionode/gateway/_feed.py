@@ -33,10 +33,10 @@ UNDEMANDING: Final = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_
 """While there is no publisher: whatever the first one offers, it fits."""
 
 MOST_LATCHED: Final = 100
-"""How many messages of each transient local publisher are kept for clients that come later."""
+"""Messages of each transient local publisher that are kept for clients that come later."""
 
 MOST_LATCHED_BYTES: Final = 32 << 20
-"""How many bytes these messages have at most, though the last one is always kept."""
+"""Most bytes of these messages, though the last one is always kept."""
 
 
 class Received:
@@ -144,7 +144,7 @@ class Feed:
 
     @property
     def dropped(self) -> int:
-        """How many messages the subscription has dropped, and lost on their way."""
+        """The number of messages dropped by the subscription, or lost on their way."""
         if self._subscription is None:
             return 0
         return self._subscription.stats.dropped + self._subscription.stats.lost

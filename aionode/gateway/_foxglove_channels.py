@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 __all__ = ["Channels"]
 
 DEPTH: Final = 100
-"""How many messages of a channel may wait for the client; the outbox limits their bytes."""
+"""Messages of a channel that may wait for the client; the outbox limits their bytes."""
 
 MOST_QUESTIONS: Final = 8
-"""How many types are asked from other nodes at a time."""
+"""Types that are asked from other nodes at a time."""
 
 WARNING: Final = 1
 

@@ -38,16 +38,16 @@ CAPABILITIES: Final = (
 )
 ENCODINGS: Final = ("cdr", "json")
 CALL_SEC: Final = 30.0
-"""How long a service may take: the protocol has no time limit."""
+"""Longest time for a service: the protocol has no time limit."""
 
 SETTLING_SEC: Final = 0.1
-"""How long a change of the graph waits for further ones: a robot that starts has hundreds."""
+"""Time for which a change of the graph waits for further ones: a robot that starts has hundreds."""
 
 MOST_MALFORMED: Final = 100
-"""How many frames that are no ops a client may send before it is disconnected."""
+"""Frames that are no ops that a client may send before it is disconnected."""
 
 MOST_CHANNELS: Final = 1000
-"""How many channels a client may advertise, of all topics together."""
+"""Channels that a client may advertise, of all topics together."""
 
 ERROR: Final = 2
 """The level of a status, of which 0 is an information and 1 a warning."""

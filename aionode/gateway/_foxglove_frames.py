@@ -137,7 +137,7 @@ class UnsubscribeParameterUpdates(Op, frozen=True, tag="unsubscribeParameterUpda
 
 
 class SubscribeConnectionGraph(Op, frozen=True, tag="subscribeConnectionGraph"):
-    """Which nodes publish, subscribe and serve."""
+    """The nodes that publish, subscribe and serve."""
 
 
 class UnsubscribeConnectionGraph(Op, frozen=True, tag="unsubscribeConnectionGraph"):

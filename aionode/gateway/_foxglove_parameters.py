@@ -21,7 +21,7 @@ EVENTS: Final = "/parameter_events"
 EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
 
 MOST_FOLLOWED: Final = 10_000
-"""How many parameters a client follows at most."""
+"""Most parameters that a client follows."""
 
 MOST_CHARACTERS: Final = 1000
 """The longest name of a parameter that a client follows, in characters."""

@@ -20,7 +20,7 @@ __all__ = ["Playback"]
 Begin: TypeAlias = Callable[..., None]
 
 PERIOD_SEC: Final = 0.05
-"""How often the time is told while a player plays."""
+"""Time between two messages of the time while a player plays."""
 
 
 class Playback:

@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 __all__ = ["Gateway"]
 
 REFUSALS_PER_SEC: Final = 50.0
-"""How many frames a second are read of a client whose frames are refused."""
+"""Frames that are read in a second of a client whose frames are refused."""
 
 RELOAD_SEC: Final = 1.0
-"""How often the policy file is looked at, in seconds."""
+"""Time between two looks at the policy file, in seconds."""
 
 
 class Gateway(Clients):

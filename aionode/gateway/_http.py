@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 __all__ = ["answer_http_error", "routes"]
 
 CALL_SEC: Final = 5.0
-"""How long a request waits for a response unless it says otherwise, in seconds."""
+"""Time for which a request waits for a response unless it says otherwise, in seconds."""
 
 Handler = Callable[[Asked], Awaitable[Response]]
 

@@ -34,7 +34,7 @@ __all__ = ["answer_topic"]
 PICTURES: Final = "multipart/x-mixed-replace"
 
 WAIT_SEC: Final = 5.0
-"""How long a request waits for a message unless it says otherwise, in seconds."""
+"""Time for which a request waits for a message unless it says otherwise, in seconds."""
 
 SUFFIXES: Final = {".jpeg": "image/jpeg", ".jpg": "image/jpeg", ".mjpeg": PICTURES}
 """The media type for each end of a path, as an ``<img>`` of a page can name no other way."""

@@ -12,7 +12,7 @@ from aionode.errors import MessageError
 __all__ = ["check_items", "check_parts", "decoded", "is_large"]
 
 MOST_ITEMS: Final = 10_000
-"""How many items the value of a parameter may have."""
+"""Items that the value of a parameter may have."""
 
 LARGE_ITEMS: Final = 1_000
 """Beyond so many values, what is made of them is made in a thread: each takes some microseconds."""

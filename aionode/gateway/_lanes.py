@@ -13,10 +13,10 @@ from aionode.errors import MessageError
 __all__ = ["Lanes"]
 
 MOST_WAITING: Final = 100
-"""How many ops of one lane may wait."""
+"""Ops of one lane that may wait."""
 
 MOST_TASKS: Final = 1000
-"""How many calls, goals and lanes of one client may run; the policy limits the first two, too."""
+"""Calls, goals and lanes of one client that may run; the policy limits the first two, too."""
 
 
 class Lanes:

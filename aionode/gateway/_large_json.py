@@ -24,14 +24,14 @@ OCTETS: Final = frozenset({"uint8", "char"})
 """Kinds of numbers whose arrays are base64 text in JSON."""
 
 HOLE: Final = b"\0"
-"""What JSON has nowhere: it writes control characters as escapes."""
+"""A character that JSON has nowhere: control characters are escaped."""
 
 SLICE_BYTES: Final = 192 << 10
-"""How many bytes are written between two turns of the loop, which take a quarter of a millisecond;
+"""Bytes that are written between two turns of the loop, in a quarter of a millisecond;
 divisible by three, as the pieces of base64 text are joined."""
 
 SLICE_ITEMS: Final = 4096
-"""How many numbers or messages of an array are written between two turns."""
+"""Numbers or messages of an array that are written between two turns."""
 
 
 async def prepare_json(received: Received) -> None:

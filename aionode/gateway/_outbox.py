@@ -53,7 +53,7 @@ def binary_frame(head: bytes, data: bytes | memoryview) -> bytes | LongFrame:
 
 
 MOST_ANSWERS: Final = 1000
-"""How many answers may wait: a client that reads none of them is disconnected."""
+"""Answers that may wait: a client that reads none of them is disconnected."""
 
 
 class Outbox:
@@ -92,7 +92,7 @@ class Outbox:
 
     @property
     def waiting_bytes(self) -> int:
-        """How many bytes of topics wait."""
+        """The bytes of topics that wait."""
         return self._bytes
 
     def put(self, key: Hashable, frame: Frame, depth: int = 10) -> None:

@@ -19,13 +19,13 @@ BINARY: Final = 0x82
 """The first byte of a frame that is a whole message, of either kind (RFC 6455)."""
 
 SLICE: Final = 256 << 10
-"""How much of a large frame is given to the transport at once, in bytes."""
+"""Bytes of a large frame that are given to the transport at once."""
 
 SLICES_IN_A_TURN: Final = 4
-"""How many slices leave before the event loop turns: they take about half a millisecond."""
+"""Slices that leave before the event loop turns: they take about half a millisecond."""
 
 MOST_CONTROL_BYTES: Final = 1 << 20
-"""How many bytes may wait when a pong is added: its client asks for many and reads none."""
+"""Bytes that may wait when a pong is added: a client may ask for many and read none."""
 
 
 class Framing:
@@ -141,7 +141,7 @@ class Outgoing(asyncio.Transport):
             self._turn.cancel()
             self._turn = None
 
-    # What uvicorn calls of a transport
+    # Methods of a transport that uvicorn calls
 
     def write(self, data: Any) -> None:
         """Send what is no message of the application, after the frame that is leaving."""

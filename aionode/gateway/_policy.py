@@ -1,4 +1,4 @@
-"""Who may do what with the robot: rules, as a person reviews them in a file.
+"""The rights of clients on the robot: rules, as a person reviews them in a file.
 
 A rule says which clients it is about, what these clients may do with which names, and within which
 limits. The policy refuses a request that no rule allows, and a ``[[refuse]]`` has precedence over
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["Decision", "FieldLimit", "LeaseRule", "Limits", "Policy", "Rule", "Tls", "Verb", "Who"]
 
 Verb: TypeAlias = Literal["see", "subscribe", "publish", "call", "goal", "parameter", "advertise"]
-"""What a client does with a name; ``parameter`` sets one, and to read one is to ``see`` it."""
+"""The uses of a name by a client; ``parameter`` sets one, and to read one is to ``see`` it."""
 
 Names: TypeAlias = str | list[str]
 
@@ -61,7 +61,7 @@ COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
 
 MOST_REMEMBERED: Final = 16_384
-"""How many decisions, and how many patterns of names, are kept."""
+"""Decisions, and patterns of names, that are kept."""
 
 MOST_CHARACTERS: Final = 1000
 """The longest name that is looked for in rules, in characters."""
@@ -281,7 +281,7 @@ class Tls(Part, frozen=True):
 
 
 class Decision(msgspec.Struct, frozen=True):
-    """What the policy says about a request of a client.
+    """The decision of the policy about a request of a client.
 
     Attributes:
         allowed: Whether the request is allowed.
@@ -309,7 +309,7 @@ class Decision(msgspec.Struct, frozen=True):
 
 
 class Policy(Part, frozen=True):
-    """Who may do what with the robot: the content of a policy file, or `default`.
+    """The rights of clients on the robot: the content of a policy file, or `default`.
 
     Attributes:
         who: The clients that the policy knows.

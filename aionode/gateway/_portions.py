@@ -1,4 +1,4 @@
-"""What a connection has received, handed to its parser in parts."""
+"""Hands the received bytes of a connection to its parser in parts."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from typing import Final
 __all__ = ["Portions"]
 
 PART: Final = 1024
-"""How many bytes a parser gets at a time: some 170 frames or chunks of one byte."""
+"""Bytes that a parser gets at a time: some 170 frames or chunks of one byte."""
 
 TURN_SEC: Final = 0.002
-"""How long parts are handed on before timers, I/O and callbacks of the robot have their turn."""
+"""Time for which parts are handed on before timers, I/O and callbacks of the robot run."""
 
 
 class Portions:

@@ -23,14 +23,14 @@ Prepare: TypeAlias = Callable[["Received"], Awaitable[None]]
 """Encodes a message while the event loop turns; what it makes is kept in the message."""
 
 LARGE_BYTES: Final = 128 << 10
-"""What is no longer is encoded at once, which takes half a millisecond."""
+"""Bytes of a message up to which it is encoded at once, in half a millisecond."""
 
 MOST_BYTES: Final = 32 << 20
-"""How much may wait for one subscription to be encoded; beyond it the oldest is dropped."""
+"""Messages of one subscription that may wait to be encoded; beyond it the oldest is dropped."""
 
 
 class Preparing:
-    """What one subscription of a client has to wait for, in order.
+    """The messages of one subscription of a client that wait to be encoded, in order.
 
     One message of the gateway is encoded at a time, so that the loop turns after each slice of it.
 

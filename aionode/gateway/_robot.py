@@ -117,7 +117,7 @@ class Robot:
 
 
 class Rates:
-    """How often clients have done what a rule limits: a bucket for each client, rule and name.
+    """The rates of uses that rules limit: a bucket for each client, rule and name.
 
     Args:
         now_ns: The steady clock, in nanoseconds.

@@ -30,7 +30,7 @@ __all__ = ["Calls"]
 Op = dict[str, Any]
 
 TIMEOUT_SEC: Final = 5.0
-"""How long a call waits for which the client gives no ``timeout``."""
+"""Time for which a call waits if the client gives no ``timeout``."""
 
 
 @dataclass

@@ -28,7 +28,7 @@ Op = dict[str, Any]
 Handler = Callable[..., Awaitable[None]]
 
 MOST_MALFORMED: Final = 100
-"""How many frames that are no ops a client may send before it is disconnected."""
+"""Frames that are no ops that a client may send before it is disconnected."""
 
 
 async def serve_frames(session: Session, frames: AsyncIterable[str | bytes]) -> None:

@@ -27,16 +27,16 @@ SUCCEEDED: Final = 4
 CANCELED: Final = 5  # as in action_msgs/msg/GoalStatus
 
 MOST_PENDING: Final = 100
-"""How many requests, or goals, a client may leave unanswered for each of its services."""
+"""Requests, or goals, that a client may leave unanswered for each of its services."""
 
 CANCEL_SEC: Final = 5.0
-"""How long a goal that is canceled waits for the result of the client."""
+"""Time for which a goal that is canceled waits for the result of the client."""
 
 
 GONE: Final = "the client that served it has gone, or serves it no more"
 
 TURNS: Final = 10
-"""How many turns of the loop an error takes at most, from the client to whoever called."""
+"""Most turns of the loop that an error takes from the client to the caller."""
 
 
 @dataclass

@@ -50,7 +50,7 @@ LONGEST_NAME: Final = 1000
 MOST_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
-"""How many bytes a fragment counts beside its own: empty ones take memory as well."""
+"""Bytes that a fragment counts beside its own: empty ones take memory as well."""
 
 
 def op_of(frame: str | bytes, most_parts: int) -> Op:

@@ -46,15 +46,15 @@ COMPRESSIONS: Final = ("none", "png", "cbor", "cbor-raw")
 """From the weakest: one subscription of a client has the strongest that any of its ids asks for."""
 
 DEFAULT_DEPTH: Final = 100
-"""How many messages wait for a client that names no ``queue_length``, per topic."""
+"""Messages of each topic that wait for a client that names no ``queue_length``."""
 
 PUBLISHER_DEPTH: Final = 100
 
 MOST_IDS: Final = 64
-"""How many ids a client may use for one topic."""
+"""Ids that a client may use for one topic."""
 
 LATCH_SEC: Final = 1.0
-"""How long a message is kept for subscriptions that appear after it, unless it is latched: a client
+"""Time for which a message waits for subscriptions that appear after it, unless latched: a client
 that advertises and publishes at once reaches the subscriptions that are just being matched."""
 
 

@@ -36,23 +36,23 @@ DATE_SEC: Final = 1.0
 CLOSING_SEC: Final = 1.0
 
 GOODBYE_SEC: Final = 5.0
-"""How long a client may take to read the end of a WebSocket, in seconds."""
+"""Longest time for a client to read the end of a WebSocket, in seconds."""
 
 ANSWERED: Final = "aionode.answered"
 """The type of a message of ASGI for the answer to a ping, which the application does not see."""
 
 MOST_ASKED: Final = 16
-"""How many pings at once may wait for their answers."""
+"""Pings that may wait for their answers at once."""
 
 MOST_PARTS: Final = 10_000
-"""How many parts a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
+"""Parts that a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
 
 ENDED_SEC: Final = 0.02
-"""What each frame costs, in seconds, that a client sends after the end of its WebSocket."""
+"""Pause for each frame that a client sends after the end of its WebSocket, in seconds."""
 
 SPARE: Final = 16
-"""How many more connections there may be than clients: those for pages, and those that are told
-that there are too many."""
+"""Connections beyond the number of clients: those for pages, and those that are told that there are
+too many."""
 
 
 class Server(uvicorn.Server):

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["SessionBase", "as_message"]
 
 MOST_QUESTIONS: Final = 256
-"""How many questions about the graph may wait, for each client."""
+"""Questions about the graph that may wait, for each client."""
 
 
 Kind: TypeAlias = Literal["topic", "service", "action"]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["SessionCalls"]
 
 SERVER_SEC: Final = 1.0
-"""How long a call or goal waits for its server, in seconds."""
+"""Time for which a call or goal waits for its server, in seconds."""
 
 ACTION_PARTS: Final = ("/_action/send_goal", "/_action/get_result", "/_action/cancel_goal")
 SETTERS: Final = ("/set_parameters", "/set_parameters_atomically")

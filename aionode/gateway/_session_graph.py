@@ -23,13 +23,13 @@ if TYPE_CHECKING:
 __all__ = ["NodeDetails", "SessionGraph"]
 
 SERVER_SEC: Final = 1.0
-"""How long a question waits for the parameter services of a node, in seconds."""
+"""Time for which a question waits for the parameter services of a node, in seconds."""
 
 ANSWER_SEC: Final = 5.0
-"""How long questions about parameters wait for an answer, in seconds."""
+"""Time for which questions about parameters wait for an answer, in seconds."""
 
 MOST_ASKED: Final = 8
-"""How many nodes are asked for their parameters at a time."""
+"""Nodes that are asked for their parameters at a time."""
 
 
 class NodeDetails(msgspec.Struct, frozen=True):

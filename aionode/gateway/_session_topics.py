@@ -72,7 +72,7 @@ class Subscribed:
 
     @property
     def dropped(self) -> int:
-        """How many messages were dropped, as encoding them or the client was too slow."""
+        """The number of messages that were dropped, as encoding them or the client was too slow."""
         unprepared = 0 if self._preparing is None else self._preparing.dropped
         return unprepared + self._session.outbox.dropped.get(self._key, 0)
 

@@ -16,7 +16,7 @@ LINGER_NS: Final = 10 * S_TO_NS
 """For how long an endpoint stays without a user: a page that is loaded again finds it."""
 
 MOST_UNUSED: Final = 100
-"""How many endpoints stay without a user: clients may use one name after the other."""
+"""Endpoints that stay without a user: clients may use one name after the other."""
 
 
 class Shared:

@@ -49,8 +49,8 @@ MOST_LOGGERS = 1_000
 """While there are so many loggers in the process, other nodes cannot have more of them made."""
 
 LONGEST_NAME = 256
-"""How many characters the name of a logger has that another node has made: each of its parts makes
-one as well."""
+"""Most characters in the name of a logger that another node makes: each of its parts makes a logger
+as well."""
 
 machine = MachineTime()
 caller = sys._getframe  # inspect takes longer for it than the rest of a log call

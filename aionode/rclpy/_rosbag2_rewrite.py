@@ -15,7 +15,7 @@ __all__ = ["Reindexer", "bag_rewrite"]
 
 
 class Place(Protocol):
-    """What of `StorageOptions` is used: the place of a bag."""
+    """The part of `StorageOptions` that is used: the place of a bag."""
 
     uri: str
 

@@ -32,13 +32,13 @@ __all__ = [
 ]
 
 MEETING_PORTS: Final = (17449, 17450, 17451)
-"""Where processes of one machine meet: below the ephemeral ports, and not a ROS router's."""
+"""Ports where processes of one machine meet: below the ephemeral ports, and not a ROS router's."""
 
 SPARE_PORTS: Final = (17452, 17453, 17454)
-"""Where they meet if other programs have taken all of those."""
+"""Ports where they meet if other programs have taken all of those."""
 
 ROUTER_PORT: Final = 7447
-"""Where `rmw_zenohd` and `aionode router` listen."""
+"""The port of `rmw_zenohd` and `aionode router`."""
 
 LOCALHOST_ONLY_VARIABLE: Final = "ROS_LOCALHOST_ONLY"
 """Set to 1 by users of ROS 2 Humble; later distributions call it deprecated and honour it."""

@@ -58,7 +58,7 @@ class IoThread:
     def __init__(self, context: Context) -> None:
         self.context = context
         self._work: deque[Callable[[], object]] = deque()
-        # How often the loop has looked at the work, and after which look it was last woken. Equal:
+        # Looks of the loop at the work, and the look after which it was last woken. Equal numbers:
         # it will look again. The loop looks once it runs.
         self._looks = 0
         self._woken_after = 0

@@ -47,7 +47,7 @@ LIMIT: Final = 20_000
 
 
 GONE: Final = 1_000
-"""How many contexts that have gone are remembered: their endpoints have tokens of their own, which
+"""Contexts that have gone and are remembered: their endpoints have tokens of their own, which
 may still be there, and they may come back."""
 
 LONGEST_ID: Final = 32
@@ -165,7 +165,7 @@ class Acknowledgements:
         self.present: set[str] = set()
         self.writers: dict[tuple[str, bytes], StatefulWriter] = {}
         self.readers: dict[tuple[str, bytes], StatefulReader] = {}
-        # What is subscribed to, by the whole key.
+        # The subscriptions, by the whole key.
         self._listening: dict[str, Listening] = {}
         self._participant = participant
         self._note_malformed = note_malformed

@@ -36,7 +36,7 @@ ANSWER_S: Final = 60.0
 before."""
 
 EXPECTED_NS: Final = 2_000_000_000
-"""How long nodes of this domain are expected, in which other domains are not told of."""
+"""Time for which nodes of this domain are expected; meanwhile other domains are not told of."""
 
 NAMED: Final = 5
 """Number of other domains that are named in the log."""
@@ -45,7 +45,7 @@ MAX_FOREIGN: Final = 100
 """Number of other domains that are remembered, and of tokens of each."""
 
 FILL_S: Final = 5.0
-"""How long it takes at most until what was left out has the place of what has gone."""
+"""Longest time until tokens that were left out take the place of tokens that have gone."""
 
 SHOWN: Final = 200
 """Number of characters of an unknown text that are shown."""

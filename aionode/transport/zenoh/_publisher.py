@@ -62,8 +62,8 @@ __all__ = ["ZenohWriter"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LATE = 1_000
-"""How many messages of a KEEP_LAST publisher, or as many as its depth, wait for Zenoh while that
-answers a late reader, or in a crowd; else they do not wait."""
+"""Messages of a KEEP_LAST publisher, or its depth if that is more, that wait for Zenoh while Zenoh
+answers a late reader, or in a crowd; else none wait."""
 
 MORE_DEPTH = "A greater depth keeps more of them, KEEP_ALL and `await drain()` all"
 DRAIN = "`await drain()` before the end waits for readers that still take them"

@@ -131,7 +131,7 @@ class RouterMatching:
         self._state = state
         self._network = network
         self._routers: dict[str, RouterSession] = {}
-        # What is called when an answer for a key may have changed; ordered sets.
+        # Functions to call when an answer for a key may have changed; ordered sets.
         self._asked: dict[str, dict[Callable[[], None], None]] = {}
         self._changes = state.queue(self._take_change)
         self._declared = state.queue(self._take_declared)

@@ -90,10 +90,10 @@ ANSWER: Final = struct.Struct("=4x36s12x16xI")
 """``struct inet_diag_msg``: its `ADDRESSES`, and the inode at its end."""
 
 ACKED: Final = slice(120, 128)
-"""Where ``struct tcp_info`` says how many bytes the peer's system has acknowledged."""
+"""Place in ``struct tcp_info`` of the number of bytes that the peer's system has acknowledged."""
 
 RECEIVED: Final = slice(128, 136)
-"""Where it says how many bytes were received."""
+"""Place in ``struct tcp_info`` of the number of bytes that were received."""
 
 NO_LINGER: Final = struct.pack("ii", 0, 0)
 """SO_LINGER for connections that are closed at once, while the system goes on sending."""
@@ -106,7 +106,7 @@ Descriptor = tuple[int, int]
 
 lock = threading.Lock()  # held to read and change `found`
 found: dict[Pair, Descriptor] = {}
-"""Where connections were found before, so that most searches read neither list."""
+"""Descriptors of connections found before, so that most searches read neither list."""
 
 
 class Pair(NamedTuple):

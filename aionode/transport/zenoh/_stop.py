@@ -29,8 +29,8 @@ __all__ = ["ZenohStop"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 REPEAT_NS: Final = 200_000_000
-"""How long it is put again, with the same number, for readers that do not acknowledge: Zenoh drops
-what does not fit into its queue, and tells nobody.
+"""Time for which a stop is put again, with the same number, for readers that do not
+acknowledge: Zenoh drops messages that do not fit into its queue, and tells nobody.
 """
 
 
@@ -155,7 +155,7 @@ class ZenohStop(StopSender):
         self.repeat()
         writer = self._writer
         if writer._transient and writer._publisher is not None:
-            # What was put so is not kept for late readers, who would get the last command.
+            # Such a stop is not kept for late readers, who would get the last command.
             keep = partial(writer._send_patiently, writer._publisher, self._payload, self._extra)
             writer._patient_sender.submit_past_loop(keep)
         if writer._history is not None:

@@ -47,8 +47,8 @@ MAX_GAPS: Final = 1_000
 """Number of gaps that a reader notes ahead of the next message; it asks again for more."""
 
 BELIEVED: Final = WINDOW_BYTES // OVERHEAD_BYTES
-"""How many messages beyond those that have come a HEARTBEAT or GAP is believed: a full window of
-empty ones."""
+"""A HEARTBEAT or GAP is believed for so many messages beyond those that have arrived: a full window
+of empty ones."""
 
 ANEW_AFTER: Final = 16
 ANEW_NS: Final = 1_000_000_000
@@ -149,7 +149,7 @@ class WriterProxy:
         self._waiting: deque[int] = deque()
         self._unacked_bytes = 0
         self._nacked_ns = 0
-        # How far messages have come, and the last one that was given on. `note_in_order` leaves
+        # The last message that has arrived, and the last that was given on. `note_in_order` leaves
         # both to `_catch_up`, which sees by `_seen` that it has moved `next`.
         self._reached = first - 1
         self._taken = taken

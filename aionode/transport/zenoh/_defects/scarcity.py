@@ -1,4 +1,4 @@
-"""Where a session cannot have what it needs of the system, Zenoh panics, or aborts the process.
+"""Zenoh panics, or aborts the process, if the system lacks what a session needs.
 
 Zenoh:
     It does so in a thread of its own if it gets no descriptor or no thread while it opens a
