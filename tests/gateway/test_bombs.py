@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 import struct
 import zlib
 from collections.abc import AsyncIterator
@@ -33,11 +34,14 @@ POSES = "geometry_msgs/PoseArray"
 NUMBERS = "std_msgs/UInt8MultiArray"
 NAMES = "sensor_msgs/JointState"
 
+DEEP = "recursion|needs a"
+"""Python 3.13 reads so deep a value, which then is no message."""
+
 REFUSED = {
     "lists": (POSES, "[" + "[]," * (SIZE // 3) + "[]]", "objects and lists"),
     "lists beside a NaN": (POSES, "[NaN," + "[]," * (SIZE // 3) + "[]]", "objects and lists"),
-    "deep lists": (POSES, "[" * 4_000 + "]" * 4_000, "recursion"),
-    "deep objects": (POSES, '{"poses":' * 2_000 + "1" + "}" * 2_000, "recursion"),
+    "deep lists": (POSES, "[" * 4_000 + "]" * 4_000, DEEP),
+    "deep objects": (POSES, '{"poses":' * 2_000 + "1" + "}" * 2_000, DEEP),
     "empty objects": (POSES, '{"poses":[' + "{}," * (SIZE // 3) + "{}]}", "objects and lists"),
     "messages that grow": (MARKERS, '{"markers":[' + "{}," * 4_990 + "{}]}", "at most"),
     "a huge number": (POSES, '{"poses":' + "1" * SIZE + "}", "out of range"),
@@ -52,7 +56,7 @@ REFUSED = {
     "base64 of a wrong length": (NUMBERS, '{"data":"' + "A" * (SIZE - 1) + '"}', "base64"),
     "a huge name": (NAMES, '{"' + "x" * SIZE + '":1}', "no such field"),
 }
-"""By what they are: the type, the values in JSON, and words of the answer."""
+"""By what they are: the type, the values in JSON, and a pattern of the answer."""
 
 TAKEN = {
     "bytes as numbers": (NUMBERS, '{"data":[' + "1," * (SIZE // 2) + "1]}"),
@@ -103,7 +107,7 @@ async def test_a_bomb_for_rosbridge_is_answered(
         await client.send('{"op":"set_level","level":"error"}')
         async with busiest_turn() as busy:
             await client.send(frame.encode() if as_bytes else frame)
-            assert words in await status_of(client)
+            assert re.search(words, await status_of(client))
         assert busy.longest_sec < TURN_SEC
         await still_served(client)
 
@@ -132,7 +136,7 @@ async def test_a_bomb_over_http_is_answered(gateway: Gateway, name: str) -> None
     async with http_client() as client, busiest_turn() as busy:
         answer = await post(client, gateway, type_name, values)
         assert answer.status_code == 400
-        assert words in answer.json()["error"]
+        assert re.search(words, answer.json()["error"])
     assert busy.longest_sec < TURN_SEC
 
 
@@ -166,7 +170,7 @@ async def test_a_bomb_for_foxglove_is_answered(gateway: Gateway, encoding: str) 
             await client.send(json.dumps({"op": "advertise", "channels": [channel]}))
             async with busiest_turn() as busy:
                 await client.send(struct.pack("<BI", 1, number) + data)
-                assert words in await status_of(client)
+                assert re.search(words, await status_of(client))
             assert busy.longest_sec < TURN_SEC
 
 
