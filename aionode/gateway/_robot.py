@@ -144,7 +144,7 @@ class Bucket:
     """A token bucket: so many a second, and a second's worth at once, but at least one."""
 
     def __init__(self, rate_hz: float, now_ns: Callable[[], int]) -> None:
-        self._rate_hz = rate_hz
+        self.rate_hz = rate_hz
         self._now_ns = now_ns
         self._room = self._tokens = max(1.0, rate_hz)
         self._at_ns = now_ns()
@@ -153,9 +153,9 @@ class Bucket:
         """Take one, and return 0; without one, return after how many seconds there is one."""
         now_ns = self._now_ns()
         passed = (now_ns - self._at_ns) / S_TO_NS
-        self._tokens = min(self._room, self._tokens + passed * self._rate_hz)
+        self._tokens = min(self._room, self._tokens + passed * self.rate_hz)
         self._at_ns = now_ns
         if self._tokens >= 1.0:
             self._tokens -= 1.0
             return 0.0
-        return (1.0 - self._tokens) / self._rate_hz
+        return (1.0 - self._tokens) / self.rate_hz

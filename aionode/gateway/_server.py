@@ -44,6 +44,9 @@ ANSWERED: Final = "aionode.answered"
 MOST_ASKED: Final = 16
 """Pings that may wait for their answers at once."""
 
+PINGS_PER_SEC: Final = 200.0
+"""Pings and their answers that are read of a client in a second: each has to be answered."""
+
 MOST_PARTS: Final = 10_000
 """Parts that a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
 
@@ -301,8 +304,12 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         self.conn.debug = False  # it would write the tokens of addresses and headers into the log
         self.logger = ServerLog(self.logger)  # type: ignore[assignment]  # does what is called of it
         self._asked: dict[bytes, Callable[[], None]] = {}  # by the payloads of pings
-        limits = self.config.policy().limits
-        self._bucket = Bucket(limits.frames_per_sec, lambda: round(self.loop.time() * S_TO_NS))
+        rate_hz = self.config.policy().limits.frames_per_sec
+        self._parts = Bucket(rate_hz, self._now_ns)
+        self._pings = Bucket(min(PINGS_PER_SEC, rate_hz), self._now_ns)
+
+    def _now_ns(self) -> int:
+        return round(self.loop.time() * S_TO_NS)
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Have frames leave as the client reads them, and arrive as the application does."""
@@ -437,12 +444,12 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
 
     def handle_ping(self) -> None:
         """Answer a ping."""
-        self._count()
+        self._count(self._pings)
         super().handle_ping()
 
     def handle_pong(self, event: Any) -> None:
         """Take the answer to a ping."""
-        self._count()
+        self._count(self._pings)
         answered = self._asked.pop(bytes(event.data), None)
         if answered is None:
             super().handle_pong(event)
@@ -459,15 +466,15 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
 
     def handle_cont(self, event: Any) -> None:
         """Take a part of a message; without any bytes in them, there could be any number."""
-        self._count()
+        self._count(self._parts)
         if len(self.frames) >= MOST_PARTS:
             self.transport.abort()
         else:
             super().handle_cont(event)
 
-    def _count(self) -> None:
-        if self._bucket.wait_sec():
-            self._portions.owed_sec += 1.0 / self.config.policy().limits.frames_per_sec
+    def _count(self, bucket: Bucket) -> None:
+        if bucket.wait_sec():
+            self._portions.owed_sec += 1.0 / bucket.rate_hz
 
 
 def unread_bytes(transport: asyncio.Transport) -> int:

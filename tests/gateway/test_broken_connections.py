@@ -505,13 +505,13 @@ async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
         writer.transport.abort()
 
 
-async def test_pings_are_read_no_faster_than_frames() -> None:
-    """The answers to them must cost the robot no more than what it is asked to do."""
-    async with serving(Policy.parse(POLICY + "frames_per_sec = 100")) as gateway:
+async def test_of_pings_two_hundred_a_second_are_read() -> None:
+    """Each has to be answered, and no client needs one more often than once in some seconds."""
+    async with serving(Policy.parse(POLICY)) as gateway:
         reader, writer, _ = await upgraded(gateway)
         began = asyncio.get_running_loop().time()
-        writer.write(frame(b"", PING) * 200)
-        pongs = await reader.readexactly(2 * 200)
-        assert pongs == bytes([0x80 | PONG, 0]) * 200
+        writer.write(frame(b"", PING) * 400)
+        pongs = await reader.readexactly(2 * 400)
+        assert pongs == bytes([0x80 | PONG, 0]) * 400
         assert asyncio.get_running_loop().time() - began > 0.2
         writer.close()
