@@ -125,7 +125,7 @@ def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:
                         types=entry.get("topic_types") or (),
                         regex=entry.get("regex") or "",
                         every=every,
-                        exclude_regex=entry.get("exclude_regex") or "",
+                        exclude_regex=entry.get("exclude_regex") or entry.get("exclude") or "",
                         exclude=[
                             name
                             for kind in ("topics", "services", "actions")

@@ -20,7 +20,7 @@ class Place(Protocol):
     uri: str
 
 
-def bag_rewrite(input_options: Sequence[Place], output_config_file: str) -> None:
+def bag_rewrite(input_options: Sequence[Place], output_config_file: str, /) -> None:
     """Write bags anew, as one or several others.
 
     Args:
@@ -33,7 +33,7 @@ def bag_rewrite(input_options: Sequence[Place], output_config_file: str) -> None
     """
     try:
         for uri, options in outputs_in(output_config_file):
-            bag.convert([each.uri for each in input_options], uri, **options)
+            bag.convert([place.uri for place in input_options], uri, **options)
     except (AionodeError, OSError, ValueError) as error:
         raise RuntimeError(str(error)) from error
 

@@ -153,6 +153,10 @@ def test_bags_are_written_anew_by_a_file(tmp_path: Path) -> None:
         assert run.counts == {"/words": 5}
     with pytest.raises(RuntimeError, match="already exists"):
         rosbag2_py.bag_rewrite(places, str(options))
+    options.write_text(f"output_bags:\n- uri: {tmp_path / 'none'}\n  exclude: wor.s\n")
+    rosbag2_py.bag_rewrite(places, str(options))
+    with bag.open(tmp_path / "none") as run:  # `exclude` is the former name of `exclude_regex`
+        assert run.message_count == 0
     options.write_text("output_bags: 1")
     with pytest.raises(RuntimeError, match=r"out\.yaml: it needs output_bags"):
         rosbag2_py.bag_rewrite(places, str(options))
