@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode._node.graph import GraphQueries
-from aionode.clock import MachineTime
 from aionode.graph import EndpointKind
-from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy._entities import wait_until
 from aionode.rclpy.qos import as_own
 from aionode.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from aionode.rclpy.type_hash import TypeHash
@@ -15,24 +14,21 @@ from aionode.rclpy.type_hash import TypeHash
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.rclpy._impl.node import NodeHandle
+    from aionode.rclpy.context import Context
 
 __all__ = ["NodeGraph"]
-
-CHECK_S = 0.05
-"""Time between two looks of `wait_for_node`."""
 
 TYPES = {
     EndpointKind.PUBLISHER: TopicEndpointTypeEnum.PUBLISHER,
     EndpointKind.SUBSCRIPTION: TopicEndpointTypeEnum.SUBSCRIPTION,
 }
 
-steady_ns = MachineTime().steady_ns
-
 
 class NodeGraph(GraphQueries):
     """The part of `Node` that has a name, and looks at others."""
 
     _handle: NodeHandle
+    _context: Context
 
     @property
     def _graph_answers(self) -> NodeHandle:  # type: ignore[override] # it may be destroyed
@@ -82,14 +78,9 @@ class NodeGraph(GraphQueries):
             timeout: The longest wait in seconds.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
-        ends_ns = steady_ns() + int(timeout * 1e9)
-        wakeup = Wakeup()
-        while wanted not in self.get_fully_qualified_node_names():
-            left_s = (ends_ns - steady_ns()) / 1e9
-            if left_s <= 0:
-                return False
-            wakeup.wait(min(left_s, CHECK_S))
-        return True
+        return wait_until(
+            lambda: wanted in self.get_fully_qualified_node_names(), self._context, timeout
+        )
 
     # Endpoints
 

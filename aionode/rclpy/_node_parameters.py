@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 from aionode._node.parameter_methods import ParameterMethods
 from aionode.parameter import ParameterStore
 from aionode.rclpy._impl import messages as msg
-from aionode.rclpy._impl.typesupport import message_support, ros_name
+from aionode.rclpy._impl.typesupport import type_of
+from aionode.rclpy._rosidl import decode, encode
 from aionode.rclpy.parameter import Parameter
 
 if TYPE_CHECKING:
@@ -32,11 +33,8 @@ class Store(ParameterStore):
 
     def _own_descriptor(self, given: Any, index: int) -> Any:
         """Return a copy of a descriptor, which may be of aionode's class."""
-        if given is not None and is_descriptor(given):
-            given_class: Any = type(given)
-            own_class: Any = self.messages.ParameterDescriptor
-            data = message_support(given_class).encode(given)
-            return message_support(own_class).decode(data)
+        if type_of(given) == "rcl_interfaces/msg/ParameterDescriptor":
+            return decode(msg.ParameterDescriptor, encode(given))
         return super()._own_descriptor(given, index)
 
     def _prepared(self, parameters: list[Any], descriptors: Mapping[str, Any]) -> list[Any]:
@@ -96,11 +94,3 @@ class NodeParameters(ParameterMethods):
         self._pre_set_parameters_callbacks = store._pre
         self._on_set_parameters_callbacks = store._on
         self._post_set_parameters_callbacks = store._post
-
-
-def is_descriptor(value: object) -> bool:
-    """Return whether an object is a descriptor of either family."""
-    try:
-        return ros_name(type(value)) == "rcl_interfaces/msg/ParameterDescriptor"
-    except (TypeError, AttributeError):
-        return False

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock import MachineTime
+from aionode.rclpy._entities import wait_until
 from aionode.rclpy._impl import messages as msg
-from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy.parameter import Parameter, parameter_dict_from_yaml_file
 from aionode.rclpy.qos import (
     QoSProfile,
@@ -26,10 +25,6 @@ if TYPE_CHECKING:
     from aionode.rclpy.task import Future
 
 __all__ = ["AsyncParameterClient"]
-
-CHECK_S = 0.05
-
-steady_ns = MachineTime().steady_ns
 
 
 class AsyncParameterClient:
@@ -88,13 +83,7 @@ class AsyncParameterClient:
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
         """Block the thread until all services are there; return whether they are in time."""
-        ends_ns = None if timeout_sec is None else steady_ns() + timeout_sec * 1e9
-        wakeup = Wakeup()
-        while not self.services_are_ready():
-            if ends_ns is not None and steady_ns() >= ends_ns:
-                return False
-            wakeup.wait(CHECK_S)
-        return True
+        return wait_until(self.services_are_ready, self.node.context, timeout_sec)
 
     def list_parameters(
         self,

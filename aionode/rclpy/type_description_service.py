@@ -5,15 +5,11 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from aionode.message import type_name
 from aionode.rclpy._impl import messages as msg
-from aionode.rclpy._impl.typesupport import aionode_class, message_support
-from aionode.rclpy._rosidl import message_class
+from aionode.rclpy._rosidl import aionode_class, from_aionode
 from aionode.rclpy.parameter import Parameter
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
-    from aionode.message import Message
     from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.service import Service
 
@@ -68,10 +64,4 @@ class TypeDescriptionService:
 
         entities = (*node._publishers, *node._subscriptions, *node._services, *node._clients)
         used = [aionode_class(type_of(entity)) for entity in entities]
-        return describe_type(used, request, response, own_message)
-
-
-def own_message(message: Message) -> Any:
-    """Return a message of aionode in rclpy's class."""
-    own_class: Any = message_class(type_name(type(message)))
-    return message_support(own_class).decode(cdr.encode(message))
+        return describe_type(used, request, response, from_aionode)

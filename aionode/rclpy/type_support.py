@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any, TypeVar
 
-from aionode.rclpy._impl.typesupport import is_own, ros_name
+from aionode.rclpy._impl.typesupport import is_own
+from aionode.rclpy._rosidl import ros_type_name
 from aionode.rclpy.exceptions import NoTypeSupportImportedException
 
 __all__ = [
@@ -60,7 +61,7 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
         RuntimeError: it is a service or action.
     """
     check_for_type_support(msg_type)
-    if hasattr(msg_type, "Request") or hasattr(msg_type, "Goal") or not ros_name(msg_type):
+    if hasattr(msg_type, "Request") or hasattr(msg_type, "Goal") or not ros_type_name(msg_type):
         raise RuntimeError(
             f"The message type provided is not valid ({msg_type}), this might be a service or "
             "action"

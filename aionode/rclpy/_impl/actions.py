@@ -22,7 +22,8 @@ from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
-from aionode.rclpy._impl.typesupport import aionode_class, message_like
+from aionode.rclpy._impl.typesupport import message_like
+from aionode.rclpy._rosidl import aionode_class
 
 if TYPE_CHECKING:
     from aionode.rclpy._impl.node import NodeHandle

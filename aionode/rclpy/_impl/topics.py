@@ -17,7 +17,8 @@ from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.qos import profile_of
-from aionode.rclpy._impl.typesupport import aionode_class, message_support
+from aionode.rclpy._impl.typesupport import message_support
+from aionode.rclpy._rosidl import aionode_class
 from aionode.transport.base import SampleInfo
 from aionode.wire import cdr
 

@@ -5,9 +5,14 @@ from __future__ import annotations
 from functools import cache, cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode.message import ActionType, Message, ServiceType, serialized, type_name
-from aionode.rclpy import _rosidl
-from aionode.wire import cdr
+from aionode.message import ActionType, Message, ServiceType, serialized
+from aionode.rclpy._rosidl import (
+    aionode_class,
+    decoder_of,
+    encode,
+    message_class,
+    ros_type_name,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -15,12 +20,11 @@ if TYPE_CHECKING:
 __all__ = [
     "MessageSupport",
     "ServiceSupport",
-    "aionode_class",
     "expect_message",
     "message_like",
     "message_support",
-    "ros_name",
     "service_support",
+    "type_of",
 ]
 
 
@@ -28,23 +32,20 @@ class MessageSupport:
     """How to send messages of one class.
 
     Attributes:
+        encode: Returns a message as bytes.
         wire_type: The class of its encoded messages, for the core.
     """
+
+    encode = staticmethod(encode)
 
     def __init__(self, msg_type: type[Any], wire_type: Any) -> None:
         self.wire_type = wire_type
         self._msg_type = msg_type
 
     @cached_property
-    def encode(self) -> Callable[[Any], bytes]:
-        """Returns a message as bytes."""
-        return cdr.encoder(self._msg_type) if is_own(self._msg_type) else _rosidl.encode
-
-    @cached_property
     def decode(self) -> Callable[[bytes], Any]:
         """Returns the message in bytes."""
-        cls = self._msg_type
-        return cdr.decoder(cls) if is_own(cls) else _rosidl.decoder_of(cls)
+        return decoder_of(self._msg_type)
 
 
 class ServiceSupport(NamedTuple):
@@ -60,24 +61,10 @@ def is_own(cls: Any) -> bool:
     return isinstance(cls, type) and issubclass(cls, Message | ServiceType | ActionType)
 
 
-def ros_name(cls: Any) -> str:
-    """Return the ROS name of a message, service or action class of either family.
-
-    Raises:
-        TypeError: it is no such class.
-    """
-    return type_name(cls) if is_own(cls) else _rosidl.ros_type_name(cls)
-
-
-def aionode_class(cls: Any) -> Any:
-    """Return aionode's class of the same type."""
-    return cls if is_own(cls) else _rosidl.aionode_class(cls)
-
-
 def message_like(cls: Any, name: str) -> Any:
     """Return the message class with a ROS name that is of the same family as `cls`."""
-    found = _rosidl.message_class(name)
-    return _rosidl.aionode_class(found) if is_own(cls) else found
+    like = message_class(name)
+    return aionode_class(like) if is_own(cls) else like
 
 
 @cache
@@ -97,11 +84,16 @@ def service_support(cls: Any) -> ServiceSupport:
     )
 
 
+def type_of(message: object) -> str:
+    """Return the ROS name of a message's type; the name of the class of any other object."""
+    try:
+        return ros_type_name(type(message))
+    except TypeError:
+        return type(message).__name__
+
+
 def expect_message(message: Any, name: str) -> None:
     """Raise a TypeError unless an object is a message of a type, of either family."""
-    try:
-        given = ros_name(type(message))
-    except (TypeError, AttributeError):
-        given = type(message).__name__
+    given = type_of(message)
     if given != name:
         raise TypeError(f"Must pass a {name} object, not {given}")

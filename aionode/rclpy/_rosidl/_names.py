@@ -54,7 +54,7 @@ def of_kind(name: str, base: type[Any]) -> type[Any]:
     return python_class(found)
 
 
-def aionode_class(cls: Any) -> type[Any]:
+def aionode_class(cls: Any) -> Any:
     """Return the aionode class of the same ROS type; one of aionode is returned as it is.
 
     Raises:
