@@ -25,6 +25,10 @@ __all__ = ["main"]
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
+    Without `argv` the process is the command, and ends with it: at once, or by its deadline while
+    Zenoh still waits for a peer. With `argv` the process belongs to its program: nothing ends it,
+    and closing takes as long as Zenoh does.
+
     Args:
         argv: The arguments without the program name; default: those of the process.
     """

@@ -5,6 +5,7 @@ Click is the only large import here; of the nouns, only the one that is used is 
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import errno
 import importlib
@@ -17,12 +18,12 @@ import click
 
 from aionode._streams import discard, open_missing
 from aionode.cli._support.error_text import limited, one_line
-from aionode.cli._support.exit import INTERRUPTED, status_of
+from aionode.cli._support.exit import INTERRUPTED, OWN_PROCESS, status_of
 from aionode.cli._support.output import unwritable
 from aionode.errors import AionodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
 __all__ = ["LateGroup", "main", "report", "root"]
 
@@ -109,14 +110,29 @@ class LateGroup(click.Group):
     help="How to reach other nodes: rmw_zenoh's format, or the ROS 2 that is installed (rcl, over "
     "DDS); also $AIONODE_TRANSPORT.",
 )
-def root(transport: str | None) -> None:
+@click.pass_context
+def root(ctx: click.Context, transport: str | None) -> None:
     """Inspect and use nodes, topics, services, parameters and actions.
 
     Commands, options and output are those of ros2. Every command that prints data has --json, which
     prints one record per line. There is no daemon: every answer is current.
     """
     if transport is not None:
-        os.environ["AIONODE_TRANSPORT"] = transport
+        ctx.with_resource(in_environment("AIONODE_TRANSPORT", transport))
+
+
+@contextlib.contextmanager
+def in_environment(name: str, value: str) -> Iterator[None]:
+    """Set a variable of the environment for the time of a command: the program may run others."""
+    before = os.environ.get(name)
+    os.environ[name] = value
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -146,8 +162,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def run(argv: Sequence[str] | None) -> int:
     """Run the command line, report an error, and return the exit status."""
+    process = OWN_PROCESS if argv is None else None
     try:
-        status = root.main(args=argv, prog_name="aionode", standalone_mode=False)
+        status = root.main(args=argv, prog_name="aionode", standalone_mode=False, obj=process)
     except click.exceptions.NoArgsIsHelpError as error:
         sys.stdout.write(f"{error.format_message()}\n")
         return 0

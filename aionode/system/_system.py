@@ -45,7 +45,7 @@ if TYPE_CHECKING:
 __all__ = ["System"]
 
 MAX_ENDS: Final = 1000
-"""Ends of members that are kept."""
+"""Maximum number of ends that the system remembers."""
 
 
 class System:
@@ -59,26 +59,28 @@ class System:
             await system.ready()
             await system.wait()
 
-    Members start in the order in which they are added, at once or, if they were added before, as
-    ``async with`` is entered. At its end they stop in reverse order, each after the one before has
-    ended: a process gets SIGINT, after 7 s SIGTERM, and after 5 s more SIGKILL.
+    Members start in the order in which they are added. Those added before ``async with`` start when
+    the block is entered, later ones at once. When the block ends, the members stop in reverse
+    order, one after the other: a process gets SIGINT, after 7 s SIGTERM, and after 5 s more
+    SIGKILL.
 
-    Nothing of a process is left when it has ended, nor of the system, even if this process is
-    killed: a guardian, a small process of its own, then stops all of them in the same order.
-    Processes need Linux.
+    When a process ends, the system also stops all processes that it has left behind. If this
+    process is killed, a guardian, which is a small process of its own, stops all members in the
+    same order. Processes need Linux.
 
     Args:
-        name: Its name: that of its node is ``aionode_system_NAME``.
+        name: Name of the system; its node is called ``aionode_system_NAME``. The default is the
+            process id.
         context: The context of its nodes; `Context.default()` by default.
         log: Where the output of all members goes; `SystemLog` on ``sys.stdout`` by default.
 
     Attributes:
         context: The context of its nodes; its processes are in the same domain.
         log: The log.
-        ends: How members ended that nobody had stopped, in order; the first thousand.
+        ends: The ends of members that nobody stopped, in order; the first 1000.
 
     Raises:
-        ConfigurationError: this is no Linux (a ValueError).
+        ConfigurationError: the machine does not run Linux (a ValueError).
     """
 
     def __init__(
@@ -103,7 +105,7 @@ class System:
         self._changed = asyncio.Event()
         self._clock = SteadyClock()
         self._since_ns = 0
-        self._unguarded = ""  # what became of the guardian
+        self._unguarded = ""  # how the guardian ended; empty while it runs
         self.tasks: asyncio.TaskGroup
         self.guard: Guard
         self.reader: OutputReader
@@ -138,35 +140,37 @@ class System:
     ) -> Member:
         """Add a program.
 
-        It runs in a session of its own, so the terminal's Ctrl-C does not reach it: the system
-        stops it. What it has started and left behind is stopped when it ends.
+        The program runs in a session of its own, so Ctrl-C in the terminal does not reach it: the
+        system stops it. When it ends, the system also stops the processes that it has left behind.
 
         Args:
             name: Its name in the system.
             argv: Its command line.
-            parameters: For a program with nodes of ROS, as are the next two: a mapping of names to
-                values, the path of a parameter file, or a sequence of both, of which later ones
-                win. They are added to the command line, after ``--ros-args``.
-            remappings: Names of topics and services, and what they become.
+            parameters: Parameters for the ROS nodes of the program: a mapping of names to values,
+                the path of a parameter file, or a sequence of both, in which later entries win.
+                Parameters, remappings and the namespace become arguments after ``--ros-args``.
+            remappings: Names of topics and services, each with its new name.
             namespace: The namespace of its nodes.
-            env: Variables of its environment beside those of this process; None for one that it
-                does not get.
+            env: Variables to add to the environment of this process, or to remove if the value is
+                None.
             cwd: Its working folder.
-            restart: When it is started again: ``"never"``, ``"on-failure"`` (an exit status other
+            restart: When to start it again: ``"never"``, ``"on-failure"`` (an exit status other
                 than 0, or a signal) or ``"always"``.
-            ready: What is awaited before it is ready; without it, that it runs.
-            stdin: Whether it reads the keyboard: standard input and output are the terminal then,
-                if there is one, and standard error goes to the log. Others have an empty standard
-                input.
-            terminal: Whether it prints to a terminal of its own, into the log: many programs
-                write each line at once then, and in colours.
-            on_output: Called with what it prints, as it comes, and with 1 for standard output or 2
-                for standard error. In the log, lines of the two may change their order then.
-            term_after_sec: How long after SIGINT it gets SIGTERM, in seconds.
-            kill_after_sec: How long after SIGTERM it gets SIGKILL, in seconds.
-            memory_bytes: How much memory it may have, by cgroup v2. Where that is not allowed, it
-                runs without, and the log says so.
-            cpu_cores: How many cores it may use, such as 0.5; as above.
+            ready: Facts to await before the member counts as ready; by default it is ready as soon
+                as it runs.
+            stdin: Whether the program reads the keyboard. If so, and if there is a terminal, its
+                standard input and output are that terminal, and its standard error goes to the log.
+                Other programs have an empty standard input.
+            terminal: Whether the program gets a terminal of its own, whose output goes to the log.
+                Many programs print each line at once, and in colours, if they have a terminal.
+            on_output: Called with each piece of output as it arrives, and with 1 for standard
+                output or 2 for standard error. With it, lines of the two may change their order in
+                the log.
+            term_after_sec: Time from SIGINT to SIGTERM, in seconds.
+            kill_after_sec: Time from SIGTERM to SIGKILL, in seconds.
+            memory_bytes: Memory limit in bytes, set by cgroup v2. Where limits are not allowed, the
+                program runs without, and the log says so.
+            cpu_cores: Maximum number of cores, such as 0.5, set in the same way.
             options: The rest; see `MemberOptions`.
 
         Returns:
@@ -205,7 +209,7 @@ class System:
         processes: bool = False,
         restart: Restart = "never",
         ready: Fact | Sequence[Fact] | None = None,
-        env: Mapping[str, str] | None = None,
+        env: Mapping[str, str | None] | None = None,
         cwd: str | os.PathLike[str] | None = None,
         memory_bytes: int | None = None,
         cpu_cores: float | None = None,
@@ -213,23 +217,26 @@ class System:
     ) -> Member:
         """Add a node, as tasks of this process or as a process of its own.
 
-        It is called `name`, whatever name it gives itself, so that one class can be there twice.
-        Without `ready`, it is ready when it is in the graph.
+        The node is called `name`, whatever name its class gives it, so that one class can be there
+        twice.
 
         Args:
-            name: Its name, and that of the node.
-            node: Makes the node, such as its class; or ``"module:Class"``, ``"file.py:Class"``.
+            name: Name of the member and of the node.
+            node: A callable that returns the node, such as its class; or ``"module:Class"`` or
+                ``"file.py:Class"``.
             parameters: A mapping of names to values, the path of a parameter file, or a sequence
-                of both, of which later ones win.
-            remappings: Names of topics and services, and what they become.
+                of both, in which later entries win.
+            remappings: Names of topics and services, each with its new name.
             namespace: Its namespace.
-            processes: Whether it runs in a process of its own: several use several cores.
-            restart: When it is started again; as for `process`.
-            ready: What is awaited before it is ready.
-            env: Variables of the environment of a process of its own.
-            cwd: Its working folder; as above.
-            memory_bytes: How much memory it may have in a process of its own; as for `process`.
-            cpu_cores: How many cores it may use; as above.
+            processes: Whether the node runs in a process of its own: several use several cores.
+            restart: When to start it again; as for `process`.
+            ready: Facts to await before the member counts as ready; by default it is ready when it
+                is in the graph.
+            env: Variables to add to the environment of a process of its own, or to remove if the
+                value is None.
+            cwd: Working folder of a process of its own.
+            memory_bytes: Memory limit of a process of its own, in bytes; as for `process`.
+            cpu_cores: Maximum number of cores of a process of its own; as for `process`.
             options: The rest; see `MemberOptions`.
 
         Returns:
@@ -282,7 +289,7 @@ class System:
         """Return a member by its name.
 
         Raises:
-            MemberNotFoundError: there is none (a LookupError).
+            MemberNotFoundError: there is no such member (a LookupError).
         """
         if name not in self._members:
             raise MemberNotFoundError(name, tuple(self._members))
@@ -328,9 +335,9 @@ class System:
         exc: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Stop all members in reverse order, and return when nothing of them is left.
+        """Stop all members in reverse order, and return when none of their processes is left.
 
-        It goes on if it is cancelled. An exception from the body propagates unchanged.
+        Cancelling does not interrupt this. An exception from the body propagates unchanged.
         """
         try:
             await to_the_end(self._stop_all(), exc)
@@ -354,7 +361,7 @@ class System:
             self.log.note(exit_report(self.ends, self.first_failure))
 
     def _note_guardian_lost(self, code: int) -> None:
-        """End: nothing would stop the processes any more if this one were killed as well."""
+        """End the system: if this process were killed too, nothing would stop the members."""
         ran_sec = (self._clock.now_ns() - self._since_ns) / S_TO_NS
         end = MemberEnd("the guardian", True, end_text(code), shell_status(code), ran_sec)
         self._unguarded = f"the guardian of the system {end.text}: the system ends"
@@ -365,13 +372,13 @@ class System:
         self.request_end()
 
     async def ready(self) -> None:
-        """Return when all members are ready; those that were stopped are left out.
+        """Return when all members are ready, except those that were stopped.
 
         Cancelling is safe.
 
         Raises:
-            NotReadyError: one is not: its `name`, `problem` and `last_lines` say why (a
-                TimeoutError).
+            NotReadyError: a member did not become ready: `name`, `problem` and `last_lines` of the
+                error say why (a TimeoutError).
         """
         waits = [member.run.ready for member in self._members.values() if member.state != "stopped"]
         if waits:
@@ -383,8 +390,8 @@ class System:
     async def wait(self) -> None:
         """Return when the system is over.
 
-        That is when all members have ended for good, when one has that is `required`, or when
-        `request_end` was called. Cancelling is safe.
+        The system is over when all members have ended for good, when a `required` member has, or
+        when `request_end` is called. Cancelling is safe.
         """
         while not self._over.is_set():
             if all(member.is_over() for member in self._members.values()):
@@ -394,47 +401,47 @@ class System:
     async def changed(self) -> None:
         """Return when the state of a member changes next, or `request_end` is called.
 
-        A change that follows the call is not missed: check what you wait for, then call it, without
-        an ``await`` between. Cancelling is safe.
+        No change after the call is missed: check your condition, then call this method, without an
+        ``await`` in between. Cancelling is safe.
         """
         if self._changed.is_set():
             self._changed = asyncio.Event()
         await self._changed.wait()
 
     def request_end(self) -> None:
-        """Have `wait` return. It may be called at any time, and more than once."""
+        """Make `wait` return; may be called at any time, and more than once."""
         self._over.set()
         self.note_change()
 
     # Control
 
     async def stop(self, name: str) -> None:
-        """Stop a member, and return when nothing of it is left; it is not restarted.
+        """Stop a member for good, and return when none of its processes is left.
 
         Raises:
-            MemberNotFoundError: there is none of this name (a LookupError).
+            MemberNotFoundError: there is no member of this name (a LookupError).
         """
         await self.member(name).stop()
 
     async def restart(self, name: str) -> None:
-        """Stop a member and start it again, or start one that has ended.
+        """Stop a member and start it again, or start a member that has ended.
 
-        It returns when the member is starting; `ready` waits until it is ready.
+        The method returns when the member starts; `ready` waits until it is ready.
 
         Raises:
-            MemberNotFoundError: there is none of this name (a LookupError).
+            MemberNotFoundError: there is no member of this name (a LookupError).
         """
         await self.member(name).restart()
 
     def status(self) -> dict[str, MemberStatus]:
-        """Return what each member does now, by its name, in the order of their starts."""
+        """Return the current status of each member by its name, in the order of their starts."""
         return {
             name: member.status(self._usage.of(member.pid))
             for name, member in self._members.items()
         }
 
     def health(self) -> SystemHealth:
-        """Return the health of the system now; it costs next to nothing."""
+        """Return the current health of the system; calling this costs next to nothing."""
         problems, ready = [self._unguarded] if self._unguarded else [], True
         for name, member in self._members.items():
             if member.state in {"ended", "stopped"} or member.is_running_and_ready():
@@ -451,12 +458,12 @@ class System:
 
     @property
     def first_failure(self) -> MemberEnd | None:
-        """How the first member ended that failed for good; None if none has."""
+        """The end of the first member that failed for good; None if there is none."""
         return self._first_failure
 
     @property
     def exit_status(self) -> int:
-        """The exit status of the first member that failed for good; 0 if none has."""
+        """The exit status of the first member that failed for good; 0 if there is none."""
         return 0 if self._first_failure is None else self._first_failure.status
 
     # For members
@@ -471,11 +478,11 @@ class System:
         }
 
     def note_change(self) -> None:
-        """Wake those that wait for a change: a member has changed its state."""
+        """Wake all waiters of `changed`, after a member has changed its state."""
         self._changed.set()
 
     def note_end(self, member: Member, end: MemberEnd, *, for_good: bool) -> None:
-        """Record the end of a run that nobody asked for, and let others follow it."""
+        """Record the end of a run that nobody asked for, and stop the members that depend on it."""
         if self.closing:
             return
         if len(self.ends) < MAX_ENDS:
@@ -491,7 +498,7 @@ class System:
                     self.tasks.create_task(self._follow(other, member))
 
     async def _follow(self, member: Member, failed: Member) -> None:
-        """Stop a member that fails with another one, and start it when that runs again."""
+        """Stop a member that fails with another member, and start it when the other runs again."""
         if member.is_over():
             return
         self.log.note(f"{member.name} is stopped: it fails with {failed.name}")

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+from aionode.cli import main
 from tests.support.peers import isolated_environment
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="pipes whose size can be set")
@@ -270,12 +271,62 @@ def test_a_command_that_has_answered_ends(
     assert (done.returncode, done.stdout, done.stderr) == (status, stdout, stderr)
 
 
+GUEST = """
+import asyncio, sys
+from pathlib import Path
+from aionode.cli import main
+from aionode.cli._support import session
+from aionode.transport.zenoh import _transport as transport
+
+session.CLOSE_S = 0.01
+close = transport.close_session
+async def close_session(session):
+    await asyncio.sleep(0.3)
+    await close(session)
+transport.close_session = close_session
+
+statuses = [main(["topic", "list", "-c"])]
+Path("program.py").write_text("import rclpy; raise SystemExit(3)")
+statuses.append(main(["run", "program.py"]))
+print("still here", statuses)
+"""
+
+
+def test_a_program_that_runs_a_command_keeps_its_process(
+    env: dict[str, str], tmp_path: Path
+) -> None:
+    """Neither a close that takes longer than its deadline ends it, nor another program replaces it.
+
+    A library is a guest in its process: only what the shell started may end so.
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", GUEST],
+        env=env | {"PYTHONPATH": str(ROOT)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=ENDS_S,
+        check=False,
+    )
+
+    assert (done.returncode, done.stdout, done.stderr) == (0, "0\nstill here [0, 3]\n", "")
+
+
+def test_a_command_leaves_the_environment_as_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The program may open contexts of its own afterwards."""
+    monkeypatch.delenv("AIONODE_TRANSPORT", raising=False)
+
+    assert main(["--transport", "rcl", "completion", "bash"]) == 0
+
+    assert "AIONODE_TRANSPORT" not in os.environ
+
+
 INSIDE_START = """
 import threading
 from aionode.cli._support.deadline import Deadline
 
 with threading._active_limbo_lock:
-    Deadline().set(0.01, 7)
+    Deadline(armed=True).set(0.01, 7)
     threading.Event().wait(30)
 """
 
@@ -299,7 +350,7 @@ CANCELLED = """
 import threading
 from aionode.cli._support.deadline import Deadline
 
-deadline = Deadline()
+deadline = Deadline(armed=True)
 deadline.set(0.2, 7)
 deadline.set(0.1, 8)
 deadline.cancel()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sys
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from aionode.cli._support.exit import become
 from aionode.errors import CommandError
 
 if TYPE_CHECKING:
@@ -93,7 +93,7 @@ def launch_command(
             plan, watch=watch, once_ready=once_ready, as_json=as_json, log_folder=log_folder
         )
         if status and not noninteractive:
-            sys.exit(status)
+            raise click.exceptions.Exit(status)
 
 
 def file_and_values(
@@ -191,8 +191,7 @@ def run_real(path: str, values: dict[str, str]) -> None:
             "leave out --real: aionode has the names that most launch files use"
         )
     arguments = [f"{name}:={value}" for name, value in values.items()]
-    command = [sys.executable, "-m", "aionode.launch", str(Path(path)), *arguments]
-    os.execv(sys.executable, command)  # noqa: S606  # its own signals, and its own exit status
+    become([sys.executable, "-m", "aionode.launch", str(Path(path)), *arguments])
 
 
 def is_installed(package: str) -> bool:

@@ -6,17 +6,16 @@ A program, and an executable of a package, takes the place of this process.
 from __future__ import annotations
 
 import ast
-import os
 import re
-import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, NoReturn
+from typing import TYPE_CHECKING, Final
 
 import click
 
+from aionode.cli._support.exit import become
 from aionode.errors import CommandError, PackageNotFoundError
 from aionode.interfaces import shipped_packages
 
@@ -91,14 +90,14 @@ def run_command(
     if check and (module is not None or not args):
         raise click.UsageError("--check takes files and folders, such as src/my_robot/talker.py.")
     if check:
-        replace_process(programs.under_rclpy("--check", *args))
+        become(programs.under_rclpy("--check", *args))
     if module is not None:
-        replace_process(programs.under_rclpy("-m", module, *args))
+        become(programs.under_rclpy("-m", module, *args))
     if args and rclpy:
-        replace_process(programs.under_rclpy(*args))
+        become(programs.under_rclpy(*args))
     command = programs.command(args)
     if command is not None:
-        replace_process(command)
+        become(command)
     # Not before: a program that takes the place of this process needs no nodes here.
     from aionode._node_source import FITS, node_maker
     from aionode.runner import run
@@ -246,14 +245,3 @@ def is_rclpy_program(name: str) -> bool:
     return not {"rclpy", *shipped_packages()}.isdisjoint(
         module.partition(".")[0] for module in modules
     )
-
-
-def replace_process(command: Sequence[str]) -> NoReturn:
-    """Run a command in the place of this process, as it is the owner of its signals.
-
-    Raises:
-        SystemExit: The command has ended, on Windows.
-    """
-    if sys.platform == "win32":  # where the new process would not take the place of this one
-        sys.exit(subprocess.run(command, check=False).returncode)  # noqa: S603 (the user's program)
-    os.execv(command[0], list(command))  # noqa: S606 (the same)

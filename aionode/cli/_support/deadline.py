@@ -16,9 +16,13 @@ class Deadline:
 
     By then the work is done and its output printed. Only Zenoh may still be waiting, for a peer
     that is frozen or overloaded, and there is no reason to wait with it.
+
+    Args:
+        armed: Whether the process may be ended: it is the command, and no other program.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, armed: bool) -> None:
+        self._armed = armed
         # The lock of each thread that waits for a deadline; releasing the lock ends that thread.
         # A signal handler may run `set` between two lines of `set` or `cancel` of the same thread:
         # each step is one call of C, and leaves no deadline out of the list.
@@ -30,6 +34,8 @@ class Deadline:
         A signal handler may call it.
         """
         self.cancel()
+        if not self._armed:
+            return
         cancelled = _thread.allocate_lock()
         cancelled.acquire()
         self._waiting.append(cancelled)

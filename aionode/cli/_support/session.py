@@ -10,7 +10,7 @@ import click
 
 from aionode._distribution import other_distribution
 from aionode.cli._support.error_text import one_line
-from aionode.cli._support.exit import INTERRUPTED, status_of
+from aionode.cli._support.exit import INTERRUPTED, owns_process, status_of
 from aionode.cli._support.output import Output
 from aionode.errors import AionodeError
 
@@ -94,7 +94,7 @@ def run_verb(
 
     output = Output(json=json)
     stopped_status = 0 if endless else INTERRUPTED
-    deadline = Deadline()
+    deadline = Deadline(armed=owns_process())
 
     async def work() -> int | None:
         async with make_node(node_name=node_name, use_sim_time=use_sim_time) as node:
