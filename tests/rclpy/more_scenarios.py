@@ -12,6 +12,7 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
+import action_scenarios  # noqa: F401  # its scenes
 import rclpy
 from rcl_interfaces.msg import Log, LoggerLevel
 from rcl_interfaces.srv import GetLoggerLevels, ListParameters, SetLoggerLevels

@@ -346,7 +346,7 @@ def test_of_too_many_results_the_oldest_is_forgotten(
     kept = [result_of(handle.get_result_async()).status for handle in handles]
 
     assert kept == [GoalStatus.UNKNOWN, GoalStatus.SUCCEEDED, GoalStatus.SUCCEEDED]
-    assert len(server.server._goal_handles) == len(server.server._result_futures) == 2
+    assert len(server.server._goal_handles) == len(server.server._futures) == 2
 
 
 def test_the_states_of_many_goals_are_published_less_often_than_they_change(

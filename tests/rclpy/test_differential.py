@@ -1,10 +1,11 @@
 """The same scenes on rclpy and on aionode: what can be seen of them is the same.
 
-`scenarios.py` and `more_scenarios.py` have the scenes. ``expected.json`` is what rclpy 9.1.2 (ROS 2
-Kilted) shows. With the path of an interpreter that has rclpy in ``RCLPY_PYTHON`` it is asked
+The files whose names end in ``scenarios.py`` have the scenes. ``expected.json`` is what rclpy 9.1.2
+(ROS 2 Kilted) shows. With the path of an interpreter that has rclpy in ``RCLPY_PYTHON`` it is asked
 again::
 
-    python -m venv kilted; kilted/bin/pip install 'ros-rclpy[fastrtps]' ros-std-msgs
+    python -m venv kilted
+    kilted/bin/pip install 'ros-rclpy[fastrtps]' ros-std-msgs ros-test-msgs
     RCLPY_PYTHON=kilted/bin/python python -m pytest tests/rclpy/test_differential.py
 """
 
