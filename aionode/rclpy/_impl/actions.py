@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import threading
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import S_TO_NS, MachineTime
 from aionode.endpoints.actions._goal_store import GoalStore, StatusSpacing
-from aionode.endpoints.actions.goal import (
-    GoalEvent,
-    GoalKey,
-    GoalStatus,
-    candidates,
-    next_status,
-)
-from aionode.errors import GoalTransitionError
+from aionode.endpoints.actions.goal import GoalEvent, GoalKey, GoalStatus, candidates
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
@@ -29,7 +21,7 @@ if TYPE_CHECKING:
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.rclpy._impl.timers import ClockHandle
 
-__all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent", "GoalState"]
+__all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent"]
 
 RETRY_S = 0.001
 """Time for which states wait for a thread that is sending earlier ones, in seconds."""
@@ -42,35 +34,16 @@ def now_s() -> float:
     return steady_ns() / S_TO_NS
 
 
-@dataclass(eq=False)
-class GoalState:
-    """One goal of a server.
+class Goal(Protocol):
+    """A goal of a server: the part of its `ServerGoalHandle` that others are told.
 
     Attributes:
-        info: Its id, and when it was accepted.
-        request: Its message.
-        status: Its state.
+        _goal_info: Its id, and when it was accepted.
+        _status: Its state.
     """
 
-    info: Any
-    request: Any
-    status: GoalStatus = GoalStatus.ACCEPTED
-
-    @property
-    def is_active(self) -> bool:
-        """Whether it has not ended."""
-        return self.status.is_active
-
-    def update(self, event: GoalEvent) -> None:
-        """Change the state.
-
-        Raises:
-            RCLError: that cannot happen in the present state.
-        """
-        try:
-            self.status = next_status(self.status, event, bytes(self.info.goal_id.uuid).hex())
-        except GoalTransitionError as error:
-            raise RCLError(f"Failed to update goal state: {error}") from error
+    _goal_info: Any
+    _status: GoalStatus
 
 
 def goal_key(info: Any, status: GoalStatus = GoalStatus.UNKNOWN) -> GoalKey:
@@ -176,7 +149,7 @@ class Expiry(Destroyable):
         super().__init__(node.signal)
         self._clock = clock
         self.goals = goals
-        self.forgotten: list[GoalState] = []
+        self.forgotten: list[Any] = []
 
     def keep(self, goal_id: bytes) -> None:
         """Keep a goal that has ended for the time of results, and forget the oldest of too many."""
@@ -195,7 +168,7 @@ class Expiry(Destroyable):
             return None
         return max(0, due_ns - self._clock.clock.now_ns())
 
-    def take(self) -> list[GoalState]:
+    def take(self) -> list[Any]:
         """Forget the goals whose time is over; return all that were forgotten."""
         forgotten, self.forgotten = self.forgotten, []
         return forgotten + self.goals.expire()
@@ -245,17 +218,16 @@ class ActionServerHandle(ActionHandle):
         self.expiry = Expiry(node, clock, self.goals)
         self.parts.append(self.expiry)
 
-    def add_goal(self, info: Any, request: Any) -> GoalState:
-        """Return the state of a new goal, whose message is `request`.
+    def add_goal(self, goal: Goal) -> None:
+        """Add a new goal.
 
         Raises:
             RCLError: there is one of this id.
         """
-        goal_id = bytes(info.goal_id.uuid)
+        goal_id = bytes(goal._goal_info.goal_id.uuid)
         if goal_id in self.goals:
             raise RCLError("Failed to accept new goal: goal ID already exists")
-        state = self.goals[goal_id] = GoalState(info, request)
-        return state
+        self.goals[goal_id] = goal
 
     def publish_status(self) -> None:
         """Publish the states of all goals: at once, or after a while if they are many."""
@@ -298,10 +270,11 @@ class ActionServerHandle(ActionHandle):
         finally:
             self._is_sending_status = False
 
-    def _status_of(self, goals: list[GoalState]) -> Any:
+    def _status_of(self, goals: list[Goal]) -> Any:
         message = self.action_type.Impl.GoalStatusMessage()
         message.status_list = [
-            self._status_message(goal_info=goal.info, status=int(goal.status)) for goal in goals
+            self._status_message(goal_info=goal._goal_info, status=int(goal._status))
+            for goal in goals
         ]
         return message
 
@@ -318,10 +291,10 @@ class ActionServerHandle(ActionHandle):
         The rules are those of `aionode.endpoints.actions.goal.candidates`.
         """
         code, selected = candidates(
-            [goal_key(goal.info, goal.status) for goal in list(self.goals.values())],
+            [goal_key(goal._goal_info, goal._status) for goal in list(self.goals.values())],
             goal_key(request.goal_info),
         )
         response = self.action_type.Impl.CancelGoalService.Response()
         response.return_code = int(code)
-        response.goals_canceling = [self.goals[goal_id].info for goal_id in selected]
+        response.goals_canceling = [self.goals[goal_id]._goal_info for goal_id in selected]
         return response

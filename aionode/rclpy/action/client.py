@@ -25,7 +25,6 @@ from aionode.rclpy.waitable import NumberOfEntities
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.rclpy._impl.services import ClientHandle
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.node import Node
@@ -33,6 +32,9 @@ if TYPE_CHECKING:
 __all__ = ["ActionClient", "ClientGoalHandle"]
 
 FEEDBACK_QOS = QoSProfile(depth=10)
+
+SERVICES = ("goal", "cancel", "result")
+"""The services of an action, as attributes of its handle."""
 
 ENDED = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
 
@@ -150,11 +152,10 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
                 status_sub_qos_profile,
             )
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle[Any, Any, Any]]] = {}
-        # Of each service: the futures by the number of the request.
-        self._pending_goal_requests: dict[int, Future[Any]] = {}
-        self._pending_cancel_requests: dict[int, Future[Any]] = {}
-        self._pending_result_requests: dict[int, Future[Any]] = {}
-        self._goal_ids: dict[int, Any] = {}  # of goal requests
+        # Of each service: future and request, by the number of the request.
+        self._pending: dict[str, dict[int, tuple[Future[Any], Any]]] = {
+            name: {} for name in SERVICES
+        }
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
         # The states that were published last: they may be here before the response of a goal.
         self._states: list[Any] = []
@@ -201,50 +202,38 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         request.goal = goal
         if feedback_callback is not None:
             self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
-        future: Future[Any] = Future()
-        with self._lock:
-            sequence = self._handle.goal.send_request(request)
-            self._pending_goal_requests[sequence] = future
-            self._goal_ids[sequence] = request.goal_id
-        self._track(future, self._pending_goal_requests, sequence)
-        return future
+        return self._send("goal", request)
 
     def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal_handle.goal_id
-        return self._send(self._handle.cancel, request, self._pending_cancel_requests)
+        return self._send("cancel", request)
 
     def _get_result_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request()
         request.goal_id = goal_handle.goal_id
-        future = self._send(self._handle.result, request, self._pending_result_requests)
+        future = self._send("result", request)
         goal_id = bytes(goal_handle.goal_id.uuid)
         future.add_done_callback(lambda _: self._feedback_callbacks.pop(goal_id, None))
         return future
 
-    def _send(
-        self, client: ClientHandle, request: Any, pending: dict[int, Future[Any]]
-    ) -> Future[Any]:
+    def _send(self, service: str, request: Any) -> Future[Any]:
+        """Send a request to one of the services; return a future that executors complete."""
         future: Future[Any] = Future()
+        pending = self._pending[service]
         with self._lock:
-            sequence = client.send_request(request)
-            pending[sequence] = future
-        self._track(future, pending, sequence)
-        return future
-
-    def _track(self, future: Future[Any], pending: dict[int, Future[Any]], sequence: int) -> None:
-        """Have executors complete `future`, and forget it then."""
+            sequence = getattr(self._handle, service).send_request(request)
+            pending[sequence] = future, request
         self.add_future(future)
 
         def forget(_: Future[Any]) -> None:
             if pending.pop(sequence, None) is not None:
                 self.remove_future(future)
-                if pending is self._pending_goal_requests:
-                    self._goal_ids.pop(sequence, None)
 
         future.add_done_callback(forget)
+        return future
 
     # For executors to call
 
@@ -257,12 +246,8 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         handle = self._handle
         data: dict[str, Any] = {}
         with self._lock:
-            for name, client in (
-                ("goal", handle.goal),
-                ("cancel", handle.cancel),
-                ("result", handle.result),
-            ):
-                header, response = client.take_response(None)
+            for name in SERVICES:
+                header, response = getattr(handle, name).take_response(None)
                 if header is not None:
                     data[name] = (header.request_id.sequence_number, response)
             for name, subscription in (("feedback", handle.feedback), ("status", handle.status)):
@@ -273,19 +258,9 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
         """Complete futures, call feedback callbacks, and note states."""
-        if "goal" in taken_data:
-            self._take_goal_response(*taken_data["goal"])
-        for name, pending in (
-            ("cancel", self._pending_cancel_requests),
-            ("result", self._pending_result_requests),
-        ):
+        for name in SERVICES:
             if name in taken_data:
-                sequence, response = taken_data[name]
-                future = pending.get(sequence)
-                if future is None:
-                    self._warn_of_unexpected(name)
-                else:
-                    future.set_result(response)
+                self._take_response(name, *taken_data[name])
         if "feedback" in taken_data:
             feedback = taken_data["feedback"]
             callback = self._feedback_callbacks.get(bytes(feedback.goal_id.uuid))
@@ -296,12 +271,19 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             for status in self._states:
                 self._take_status(status)
 
-    def _take_goal_response(self, sequence: int, response: Any) -> None:
-        future = self._pending_goal_requests.get(sequence)
-        if future is None:
-            self._warn_of_unexpected("goal")
+    def _take_response(self, service: str, sequence: int, response: Any) -> None:
+        if sequence not in self._pending[service]:
+            self._logger.warning(
+                f"Ignoring unexpected {service} response. There may be more than one action server "
+                f"for the action '{self._action_name}'"
+            )
             return
-        handle = ClientGoalHandle(self, self._goal_ids[sequence], response)
+        future, request = self._pending[service][sequence]
+        future.set_result(self._goal(request, response) if service == "goal" else response)
+
+    def _goal(self, request: Any, response: Any) -> ClientGoalHandle[Any, Any, Any]:
+        """Return the goal of a request, which is followed if the server has accepted it."""
+        handle = ClientGoalHandle(self, request.goal_id, response)
         goal_id = bytes(handle.goal_id.uuid)
         if not handle.accepted:
             self._feedback_callbacks.pop(goal_id, None)
@@ -311,7 +293,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             self._goal_handles[goal_id] = weakref.ref(handle)
             for status in self._states:
                 self._take_status(status)
-        future.set_result(handle)
+        return handle
 
     def _take_status(self, status: Any) -> None:
         goal_id = bytes(status.goal_info.goal_id.uuid)
@@ -323,12 +305,6 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             handle._status = status.status
         if handle is None or status.status in ENDED:
             del self._goal_handles[goal_id]
-
-    def _warn_of_unexpected(self, what: str) -> None:
-        self._logger.warning(
-            f"Ignoring unexpected {what} response. There may be more than one action server for "
-            f"the action '{self._action_name}'"
-        )
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return how many handles it adds to a wait set."""

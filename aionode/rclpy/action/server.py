@@ -14,9 +14,11 @@ from aionode.endpoints.actions.goal import (
     GoalEvent,
     GoalResponse,
     GoalStatus,
+    next_status,
     reason_id,
 )
-from aionode.rclpy._impl.actions import ActionServerHandle, GoalState
+from aionode.errors import GoalTransitionError
+from aionode.rclpy._impl.actions import ActionServerHandle
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.typesupport import message_like
 from aionode.rclpy.action._entity import ActionEntity
@@ -61,13 +63,15 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         goal_info: Any,
         goal_request: Any,
     ) -> None:
-        self._goal_handle: GoalState | None = action_server._handle.add_goal(
-            goal_info, goal_request
-        )
         self._action_server = action_server
         self._goal_info = goal_info
         self._goal_request = goal_request
+        self._status = GoalStatus.ACCEPTED
+        self._is_destroyed = False
+        self._result: Future[Any] = Future()
+        self._reason = ""  # why it was aborted
         self._lock = threading.RLock()
+        action_server._handle.add_goal(self)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ServerGoalHandle) and self.goal_id == other.goal_id
@@ -88,8 +92,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     def is_active(self) -> bool:
         """Whether it has not ended."""
         with self._lock:
-            state = self._goal_handle
-            return state is not None and state.is_active
+            return self._status.is_active and not self._is_destroyed
 
     @property
     def is_cancel_requested(self) -> bool:
@@ -100,18 +103,21 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     def status(self) -> int:
         """Its state."""
         with self._lock:
-            state = self._goal_handle
-            return int(GoalStatus.UNKNOWN if state is None else state.status)
+            return int(GoalStatus.UNKNOWN if self._is_destroyed else self._status)
 
     def _update_state(self, event: GoalEvent) -> None:
         with self._lock:
-            if self._goal_handle is None:
+            if self._is_destroyed:
                 return
-            self._goal_handle.update(event)
+            goal_id = bytes(self.goal_id.uuid)
+            try:
+                self._status = next_status(self._status, event, goal_id.hex())
+            except GoalTransitionError as error:
+                raise RCLError(f"Failed to update goal state: {error}") from error
             handle = self._action_server._handle
-            if not self._goal_handle.is_active:
+            if not self._status.is_active:
                 with self._action_server._lock:
-                    handle.expiry.keep(bytes(self.goal_id.uuid))
+                    handle.expiry.keep(goal_id)
             handle.publish_status()
 
     def execute(self, execute_callback: Callable[[AnyGoalHandle], Any] | None = None) -> None:
@@ -130,7 +136,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         if not isinstance(feedback, action_type.Feedback):
             raise TypeError
         with self._lock:
-            if self._goal_handle is not None:
+            if not self._is_destroyed:
                 message = action_type.Impl.FeedbackMessage()
                 message.goal_id = self.goal_id
                 message.feedback = feedback
@@ -151,7 +157,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     def destroy(self) -> None:
         """Forget it."""
         with self._lock:
-            self._goal_handle = None
+            self._is_destroyed = True
 
 
 AnyGoalHandle = ServerGoalHandle[Any, Any, Any]
@@ -237,9 +243,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 max_goals=checked_max_goals(max_goals, f"action server {action_name}"),
             )
         self._action_name = action_name
-        self._goal_handles: dict[bytes, AnyGoalHandle] = {}
-        self._result_futures: dict[bytes, Future[Any]] = {}
-        self._reasons: dict[bytes, str] = {}  # why goals were aborted
+        self._goal_handles: dict[bytes, AnyGoalHandle] = self._handle.goals
         self._logger = node.get_logger().get_child("action_server")
         node.add_waitable(self)
 
@@ -255,7 +259,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         info = message_like(self._action_type, "action_msgs/msg/GoalInfo")()
         info.goal_id = goal_id
         accepted = False
-        if bytes(goal_id.uuid) not in self._handle.goals and not self._is_full(request.goal):
+        if bytes(goal_id.uuid) not in self._goal_handles and not self._is_full(request.goal):
             answer = await await_or_execute(self._goal_callback, request.goal)
             if isinstance(answer, GoalResponse):
                 accepted = answer is GoalResponse.ACCEPT
@@ -290,11 +294,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 f"Failed to accept new goal with ID {info.goal_id.uuid}: {error}"
             )
             return None
-        goal_id = bytes(info.goal_id.uuid)
-        self._goal_handles[goal_id] = goal_handle
-        result: Future[Any] = Future()
-        self._result_futures[goal_id] = result
-        self.add_future(result)
+        self.add_future(goal_handle._result)
         return goal_handle
 
     async def _execute_goal(
@@ -303,13 +303,11 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         goal_handle: AnyGoalHandle,
     ) -> None:
         goal_id = goal_handle.goal_id.uuid
-        # Kept, as the goal may expire before the callback returns, while clients wait.
-        future = self._result_futures[bytes(goal_id)]
         try:
             result = await await_or_execute(execute_callback, goal_handle)
         except Exception as error:  # noqa: BLE001  # the client gets an empty result
             result = self._action_type.Result()
-            self._reasons[bytes(goal_id)] = f"{type(error).__name__}: {error}"
+            goal_handle._reason = f"{type(error).__name__}: {error}"
             self._logger.error(  # noqa: TRY400  # rclpy's loggers have no exception()
                 f"Error raised in execute callback: {error}"
             )
@@ -320,7 +318,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         response = self._action_type.Impl.GetResultService.Response()
         response.status = goal_handle.status
         response.result = result
-        future.set_result(response)
+        goal_handle._result.set_result(response)
 
     async def _execute_cancel_request(self, header: Any, request: Any) -> None:
         with self._lock:
@@ -344,36 +342,31 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
 
     def _execute_get_result_request(self, header: Any, request: Any) -> None:
         goal_id = bytes(request.goal_id.uuid)
-        future = self._result_futures.get(goal_id)
-        if reason_id(goal_id) in self._reasons:  # a client of aionode asks
-            reason = self._reasons[reason_id(goal_id)]
-            self._handle.result.service_send_error("AbortReason", reason, header.request_id)
+        aborted = self._goal_handles.get(reason_id(goal_id))  # if a client of aionode asks why
+        if aborted is not None and aborted._reason:
+            self._handle.result.service_send_error(
+                "AbortReason", aborted._reason, header.request_id
+            )
             return
-        if goal_id not in self._goal_handles or future is None:
-            is_question = reason_id(goal_id) in self._goal_handles  # of a client of aionode
-            tell = self._logger.debug if is_question else self._logger.warning
+        goal_handle = self._goal_handles.get(goal_id)
+        if goal_handle is None:
+            tell = self._logger.warning if aborted is None else self._logger.debug
             tell(f"Sending result response for unknown or expired goal ID: {request.goal_id.uuid}")
             response = self._action_type.Impl.GetResultService.Response()
             response.status = int(GoalStatus.UNKNOWN)
             self._handle.result.service_send_response(response, header.request_id)
             return
-        future.add_done_callback(partial(self._send_result_response, header))
+        goal_handle._result.add_done_callback(partial(self._send_result_response, header))
 
     def _send_result_response(self, header: Any, future: Future[Any]) -> None:
         result = future.result()
         if result is not None:
             self._handle.result.service_send_response(result, header.request_id)
 
-    def _expire_goals(self, expired: list[Any]) -> None:
-        for info in expired:
-            goal_id = bytes(info.goal_id.uuid)
-            goal_handle = self._goal_handles.pop(goal_id, None)
-            if goal_handle is not None:
-                goal_handle.destroy()
-            self._reasons.pop(goal_id, None)
-            future = self._result_futures.pop(goal_id, None)
-            if future is not None:
-                self.remove_future(future)
+    def _expire_goals(self) -> None:
+        for goal_handle in self._handle.expiry.take():
+            goal_handle.destroy()
+            self.remove_future(goal_handle._result)
 
     # For executors to call
 
@@ -397,8 +390,6 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 request, header = service.service_take_request(None)
                 if header is not None:
                     data[name] = (header, request)
-            if handle.expiry.ready():
-                data["expired"] = [goal.info for goal in handle.expiry.take()]
         return data
 
     async def execute(self, taken_data: dict[str, Any]) -> None:
@@ -415,8 +406,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                     service.give_up(header.request_id)
         if "result" in taken_data:
             self._execute_get_result_request(*taken_data["result"])
-        if "expired" in taken_data:
-            self._expire_goals(taken_data["expired"])
+        self._expire_goals()  # last: a result may have been asked for just before
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return how many handles it adds to a wait set."""
@@ -470,6 +460,5 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         """Destroy it; what it executes goes on, without effect on clients."""
         for goal_handle in list(self._goal_handles.values()):
             goal_handle.destroy()
-        for result in list(self._result_futures.values()):
-            self.remove_future(result)
+            self.remove_future(goal_handle._result)
         super().destroy()
