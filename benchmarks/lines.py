@@ -1,11 +1,11 @@
 """How much code each room of aionode has: lines by package, now and in an earlier commit.
 
 Rooms are those of docs/design.md: a package or module of ``aionode/``, and each transport by
-itself. What ``aionode/rclpy`` has besides rclpy, such as tf2, is counted apart. Generated
-interfaces are left out, and so are tests and documentation. A line counts whatever is in it, so
-that denser lines save nothing unseen: the columns say what is code, what is text (docstrings and
-comments), and what only passes names on, which is each ``__all__`` and each module that has nothing
-but imports.
+itself, as is the protocol of bridges to DDS inside that of Zenoh. What ``aionode/rclpy`` has
+besides rclpy, such as tf2, is counted apart. Generated interfaces are left out, and so are tests
+and documentation. A line counts whatever is in it, so that denser lines save nothing unseen: the
+columns say what is code, what is text (docstrings and comments), and what only passes names on,
+which is each ``__all__`` and each module that has nothing but imports.
 
 Run it with ``python benchmarks/lines.py``. ``--since COMMIT`` adds the lines of a commit and the
 difference, ``--room rclpy`` lists the modules of one room.
@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 ROOT: Final = Path(__file__).parents[1]
 DIVIDED: Final = ("transport",)
 """Packages whose parts are rooms of their own."""
+
+INNER_ROOMS: Final = ("transport/zenoh/bridge",)
+"""Packages that are rooms of their own inside another: a protocol each."""
 
 BESIDE_RCLPY: Final = {
     "other packages": (
@@ -173,6 +176,9 @@ def is_generated(path: str) -> bool:
 def room_of(path: str) -> str:
     """Return the room of a module."""
     parts = path.removesuffix(".py").split("/")[1:]
+    for room in INNER_ROOMS:
+        if "/".join(parts).startswith(f"{room}/"):
+            return room
     if parts[0] in DIVIDED and len(parts) > 2:
         return "/".join(parts[:2])
     if parts[0] == "rclpy":

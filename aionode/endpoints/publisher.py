@@ -98,16 +98,16 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._signs: tuple[Writer, ...] = ()
         if self._monitor is not None and self._monitor.needs_signs:
             self._signs = (SignOfLife(writers, self._check, self._monitor.note_message),)
-        self._leave_out_dormant()
+        self._leave_out_placeholders()
         for writer in writers:
-            writer.when_awake(self._leave_out_dormant)
+            writer.when_replaced(self._leave_out_placeholders)
 
-    def _leave_out_dormant(self) -> None:
+    def _leave_out_placeholders(self) -> None:
         """Have the other writers take the messages."""
-        awake = tuple(writer for writer in self._all_writers if not writer.dormant)
-        self._awake_writers: tuple[Writer, ...] = awake + self._signs
+        ready = tuple(writer for writer in self._all_writers if not writer.is_placeholder)
+        self._ready_writers: tuple[Writer, ...] = ready + self._signs
         if self._lease is None:
-            self._writers: tuple[Writer, ...] = self._awake_writers
+            self._writers: tuple[Writer, ...] = self._ready_writers
         else:
             self._lease.prepare()
 
@@ -255,17 +255,17 @@ class Publisher(Endpoint, Generic[MsgT]):
         stats = self.stats
         return tuple(
             writer.prepare_stop(stop, lambda: number() == stats.published)
-            for writer in self._awake_writers
+            for writer in self._ready_writers
         )
 
     def _let_go(self) -> None:
         """Have `publish` publish again: the lease has ended."""
         self._lease = None
-        self._writers = self._awake_writers
+        self._writers = self._ready_writers
 
     def _publish_leased(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
         """Publish a command of the lease."""
-        held, self._writers = self._writers, self._awake_writers
+        held, self._writers = self._writers, self._ready_writers
         try:
             self.publish(msg)
         finally:
@@ -329,7 +329,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         cancelling = task.cancelling()
         self._draining[task] = False
         try:
-            for writer in self._awake_writers:
+            for writer in self._ready_writers:
                 await writer.drain()
         except asyncio.CancelledError:
             # As in asyncio.timeout: a cancellation of others passes.

@@ -166,16 +166,16 @@ class Writer(Registration):
         active: Whether a message written now would be used: a reader is matched, or it is kept for
             late ones. Encoding and copying are left out where this is false.
         bounded: Whether `has_room` may be false.
-        dormant: Whether it is neither of both, until it calls what `when_awake` took; publishers do
-            not ask it for each message.
+        is_placeholder: Whether it stands for a writer that is not made yet, and is neither of both;
+            publishers do not ask it for each message.
     """
 
     active: bool = False
     bounded: bool = False
-    dormant: bool = False
+    is_placeholder: bool = False
 
-    def when_awake(self, callback: Callable[[], None]) -> None:
-        """Call `callback` when it is no longer dormant, if it is."""
+    def when_replaced(self, callback: Callable[[], None]) -> None:
+        """Call `callback` when it is a placeholder no longer, if it is one."""
 
     @abstractmethod
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:

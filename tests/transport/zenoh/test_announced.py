@@ -18,8 +18,8 @@ from aionode.transport.zenoh import _announced as announced
 from aionode.transport.zenoh import _graph_watcher as graph_watcher
 from aionode.transport.zenoh._acknowledgements import GONE
 from aionode.transport.zenoh._announced import AnnouncedLimit
-from aionode.transport.zenoh._bridge_state import BridgeState
 from aionode.transport.zenoh._session_state import SessionState
+from aionode.transport.zenoh.bridge._state import BridgeState
 from aionode.wire._liveliness import endpoint_token
 from aionode.wire.typehash import type_hash
 from tests.support.peers import DOMAIN_ID, quiet_node, raw_session

@@ -1,4 +1,9 @@
-"""The contract of transports, for nodes on DDS behind `zenoh-bridge-ros2dds`."""
+"""The contract of transports, for nodes on DDS behind `zenoh-bridge-ros2dds`.
+
+A bridge announces itself, and has keys and tokens of its own (`aionode.wire._bridge`). The
+endpoints here are those of `rmw_zenoh` with other names; `_placeholders` stand for them until the
+first bridge is seen.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +13,16 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.transport.base import Registration, Transport
-from aionode.transport.zenoh._bridge_graph import BridgeWatcher
-from aionode.transport.zenoh._bridge_services import BridgeRequester, BridgeServer
-from aionode.transport.zenoh._bridge_state import BridgeState
-from aionode.transport.zenoh._bridge_stubs import ReaderStub, RequesterStub, Stub, WriterStub
-from aionode.transport.zenoh._bridge_topics import (
+from aionode.transport.zenoh.bridge._graph import BridgeWatcher
+from aionode.transport.zenoh.bridge._placeholders import (
+    Placeholder,
+    ReaderPlaceholder,
+    RequesterPlaceholder,
+    WriterPlaceholder,
+)
+from aionode.transport.zenoh.bridge._services import BridgeRequester, BridgeServer
+from aionode.transport.zenoh.bridge._state import BridgeState
+from aionode.transport.zenoh.bridge._topics import (
     BridgeReader,
     BridgeWriter,
     keeps_for_late_readers,
@@ -94,23 +104,35 @@ class BridgeTransport(Transport):
         """
         make = partial(BridgeWriter, self._state, endpoint, msg_type)
         is_needed = self._state.session is not None or keeps_for_late_readers(endpoint.qos)
-        return make() if is_needed else WriterStub(self._state.stubs, make)
+        return make() if is_needed else WriterPlaceholder(self._state.placeholders, make)
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> ReaderRegistration:
         """Declare a subscription, once there is a bridge."""
         make = partial(BridgeReader, self._state, endpoint, msg_type, reader)
-        return make() if self._state.session is not None else ReaderStub(self._state.stubs, make)
+        return (
+            make()
+            if self._state.session is not None
+            else ReaderPlaceholder(self._state.placeholders, make)
+        )
 
     def create_server(
         self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
     ) -> Registration:
         """Declare a server, once there is a bridge."""
         make = partial(BridgeServer, self._state, endpoint, srv_type, serve)
-        return make() if self._state.session is not None else Stub(self._state.stubs, make)
+        return (
+            make()
+            if self._state.session is not None
+            else Placeholder(self._state.placeholders, make)
+        )
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
         """Declare a client, once there is a bridge."""
         make = partial(BridgeRequester, self._state, endpoint, srv_type)
-        return make() if self._state.session is not None else RequesterStub(self._state.stubs, make)
+        return (
+            make()
+            if self._state.session is not None
+            else RequesterPlaceholder(self._state.placeholders, make)
+        )

@@ -8,10 +8,10 @@ import zenoh
 
 from aionode.qos import is_unlimited
 from aionode.transport.base import SampleInfo
-from aionode.transport.zenoh._bridge_state import BridgeDeclaration
 from aionode.transport.zenoh._delivery import UNKNOWN_GID, is_transient, sample_info_of
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._subscription import ZenohReader
+from aionode.transport.zenoh.bridge._state import BridgeDeclaration
 
 if TYPE_CHECKING:
     from aionode.content_filter import ContentFilterOptions

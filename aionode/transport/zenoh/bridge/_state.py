@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.transport._loop_waker import LoopWaker
     from aionode.transport.zenoh._announced import AnnouncedLimit
-    from aionode.transport.zenoh._bridge_stubs import Stub
+    from aionode.transport.zenoh.bridge._placeholders import Placeholder
 
 __all__ = ["BridgeDeclaration", "BridgeState"]
 
@@ -67,7 +67,7 @@ class BridgeState(SessionState):
     Attributes:
         prefixes: What the keys of each bridge begin with, by its Zenoh id; empty in the root.
         fast_dds: The bridges with nodes on Fast DDS behind them, whose services do not answer.
-        stubs: What stands for endpoints from before the first bridge.
+        placeholders: What stands for endpoints from before the first bridge.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class BridgeState(SessionState):
         )
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()
-        self.stubs: dict[Stub[Any], None] = {}
+        self.placeholders: dict[Placeholder[Any], None] = {}
         self._served: set[str] = set()  # all prefixes that there were; what is declared stays
         self._tokens: dict[str, SharedToken] = {}
         self._warned_of: set[str] = set()
@@ -99,10 +99,10 @@ class BridgeState(SessionState):
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
         """Make all endpoints: this is the first bridge."""
         super().connect(session, graph)
-        stubs = list(self.stubs)
-        self.stubs.clear()
-        for stub in stubs:
-            stub.replace()
+        placeholders = list(self.placeholders)
+        self.placeholders.clear()
+        for placeholder in placeholders:
+            placeholder.replace()
 
     def names_of(self, endpoint: EndpointInfo, backends: str = "") -> EndpointNames:  # noqa: ARG002  # of rmw_zenoh only
         """Return the names of one of our endpoints."""

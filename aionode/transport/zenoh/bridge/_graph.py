@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from aionode.graph import Graph
-    from aionode.transport.zenoh._bridge_state import BridgeState
     from aionode.transport.zenoh._session_state import SessionState
+    from aionode.transport.zenoh.bridge._state import BridgeState
     from aionode.wire._bridge import BridgedEndpoint
 
 __all__ = ["BridgeWatcher"]

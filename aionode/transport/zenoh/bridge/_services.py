@@ -8,9 +8,9 @@ import zenoh
 
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.transport.base import SampleInfo
-from aionode.transport.zenoh._bridge_state import BridgeDeclaration
 from aionode.transport.zenoh._delivery import UNKNOWN_GID, sample_info_of
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
+from aionode.transport.zenoh.bridge._state import BridgeDeclaration
 from aionode.wire._bridge import parse_request_id
 
 __all__ = ["BridgeRequester", "BridgeServer"]
