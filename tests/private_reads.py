@@ -8,45 +8,52 @@ from __future__ import annotations
 
 import argparse
 import ast
+import re
 import sys
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
 ROOT: Final = Path(__file__).parents[1]
 
 
 def is_private(name: str) -> bool:
-    """Return whether a name is private, and none of Python's own."""
-    return name.startswith("_") and not name.startswith("__")
+    """Return whether a name is private, and none that others have given."""
+    return name.startswith("_") and not name.startswith("__") and name not in OTHERS
 
 
-def trees(folder: str) -> Iterator[tuple[Path, ast.Module]]:
-    """Yield each module of a folder."""
-    for path in sorted((ROOT / folder).rglob("*.py")):
-        yield path.relative_to(ROOT), ast.parse(path.read_text(encoding="utf-8"))
+OTHERS: Final = frozenset(
+    {
+        "_TYPE_SUPPORT",  # the classes that ROS generates
+        "_allFramesAsDot",  # tf2
+        "_chain",
+        "_check_fields",
+        "_frameExists",
+        "_getFrameStrings",
+        "_replace",  # named tuples
+        "_set_ros_time_is_active",  # rclpy
+    }
+)
+"""Names with an underscore that programs use, because others have named them so."""
+
+MODULES: Final = frozenset({"asyncio", "os", "sys"})
+"""Modules of Python whose private names are none of aionode's."""
 
 
-def names_of(tree: ast.Module) -> Iterable[str]:
-    """Yield what a module defines and assigns."""
-    for node in ast.walk(tree):
-        match node:
-            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
-                yield node.name
-            case ast.Attribute():
-                yield node.attr
-            case ast.Name(ctx=ast.Store()):
-                yield node.id
+def names_in_aionode() -> set[str]:
+    """Return the private names that stand in aionode."""
+    texts = (path.read_text(encoding="utf-8") for path in (ROOT / "aionode").rglob("*.py"))
+    return {name for text in texts for name in re.findall(r"\b_[A-Za-z]\w*", text)}
 
 
 def reads_in(tree: ast.Module) -> Iterable[str]:
     """Yield each private name that a module takes from another object, or has replaced."""
     for node in ast.walk(tree):
         match node:
-            case ast.Attribute(value=ast.Name(id="self" | "cls")):
+            case ast.Attribute(value=ast.Name(id=owner)) if owner in {"self", "cls", *MODULES}:
                 pass
             case ast.Attribute() if is_private(node.attr):
                 yield node.attr
@@ -57,22 +64,30 @@ def reads_in(tree: ast.Module) -> Iterable[str]:
                 yield name
 
 
+def count() -> dict[Path, Counter[str]]:
+    """Return how often each file of the tests reads which private names, if it reads any."""
+    own = names_in_aionode()
+    counts = {}
+    for path in sorted((ROOT / "tests").rglob("*.py")):
+        text = path.read_text(encoding="utf-8")
+        if re.search(r"[.\"']_[A-Za-z]", text):
+            names = Counter(name for name in reads_in(ast.parse(text)) if name in own)
+            if names:
+                counts[path.relative_to(ROOT)] = names
+    return counts
+
+
 def main() -> None:
     """Print the files with most of them first, and the sum."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--names", action="store_true", help="say which names, too")
     with_names = parser.parse_args().names
-    own = {name for _, tree in trees("aionode") for name in names_of(tree)}
-    found = {
-        path: Counter(name for name in reads_in(tree) if name in own)
-        for path, tree in trees("tests")
-    }
+    counts = count()
     lines = [
         " ".join((f"{names.total():5} {path}", *(sorted(names) if with_names else ())))
-        for path, names in sorted(found.items(), key=lambda item: -item[1].total())
-        if names
+        for path, names in sorted(counts.items(), key=lambda item: -item[1].total())
     ]
-    reads = sum(names.total() for names in found.values())
+    reads = sum(names.total() for names in counts.values())
     sys.stdout.write("\n".join((*lines, f"{reads:5} in {len(lines)} files\n")))
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import grimp
 
 import aionode
+from tests import private_reads
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,6 +24,9 @@ MODULES = sorted(
 MAX_LINES = 600
 MAX_CHAIN = 14
 """How many modules may import one another in a row, each at its top."""
+
+MOST_PRIVATE_READS = 423
+"""How often tests may read private names of aionode; the number only falls."""
 
 SHARED = {
     "aionode.arguments._parameter_yaml": "the command line reads and writes parameter files too",
@@ -91,6 +95,13 @@ def test_texts_name_the_thing_first() -> None:
     modules = [path.name for path in MODULES if free_relative.search("\n" + path.read_text())]
 
     assert not modules
+
+
+def test_tests_read_fewer_private_names_than_before() -> None:
+    """Such a test breaks with each change inside, and passes when the public name is broken."""
+    counts = private_reads.count()
+    reads = sum(names.total() for names in counts.values())
+    assert reads <= MOST_PRIVATE_READS, {str(path): [*names] for path, names in counts.items()}
 
 
 def test_no_imports_form_a_cycle() -> None:

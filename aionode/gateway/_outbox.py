@@ -153,7 +153,7 @@ class Outbox:
     async def __aiter__(self) -> AsyncIterator[Frame]:
         """Yield the frames until the outbox is closed. For the one task that writes."""
         while not self._closed:
-            frame = self._next()
+            frame = self.next_frame()
             if frame is None:
                 self._filled.clear()
                 await self._filled.wait()
@@ -166,7 +166,8 @@ class Outbox:
     def _is_empty(self) -> bool:
         return not (self._turns or self._answers or self._is_leaving)
 
-    def _next(self) -> Frame | None:
+    def next_frame(self) -> Frame | None:
+        """Take the frame that is to leave next; None if nothing waits."""
         if self._answers:
             answer = self._answers.popleft()
             self._answer_bytes -= len(answer)

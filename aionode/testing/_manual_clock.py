@@ -16,7 +16,7 @@ __all__ = ["ManualClock"]
 
 
 class ManualClock(TimeBase):
-    """Time for tests: it passes only in `advance` and `jump`, which take no real time.
+    """Time for tests: it passes only in `advance`, `jump` and `stall`, which take no real time.
 
     Given to a `Context`, it drives the clocks, timers and rates of all its nodes. It drives
     aionode's clocks only: `asyncio.sleep` and `asyncio.timeout` still run in real time.
@@ -69,6 +69,16 @@ class ManualClock(TimeBase):
         await settle()
         self._move(self._now_ns + span_ns(seconds, "jump"))
         await settle()
+
+    def stall(self, seconds: float) -> None:
+        """Let `seconds` pass as in a callback that blocks the event loop: nothing fires yet.
+
+        Everything due meanwhile fires late, when the clock moves next.
+
+        Raises:
+            ValueError: `seconds` is negative.
+        """
+        self._now_ns += span_ns(seconds, "stall")
 
     async def _walk_to(self, end_ns: int, settled: Callable[[], Awaitable[None]]) -> None:
         """Let time pass until `end_ns`, if that is later, after everything has settled.

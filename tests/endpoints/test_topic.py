@@ -32,6 +32,7 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, Reliability
 from aionode.testing import FaultyTransport, settle
 from aionode.transport.local import LocalTransport
 from aionode.wire import cdr
+from tests.support.arrivals import reader_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -259,7 +260,7 @@ async def test_a_direct_subscription_counts_what_is_missing_and_leaves_out_what_
     subscription = node._create_direct_subscription(
         String, "words", lambda _raw, sequence, *_: taken.append(sequence), QoSProfile(depth=1)
     )
-    deliver = subscription._reader.deliver
+    deliver = reader_of(subscription).deliver
     for sequence in (1, 2, 5):
         deliver(b"", b"g" * 16, sequence, 0)
     assert (taken, subscription.stats.lost) == ([1, 2, 5], 2)
@@ -571,7 +572,7 @@ async def test_the_statistics_name_each_subscription_and_its_route(node: Node) -
     node.create_subscription(Int8, "words")
 
     assert publisher.stats.routes == {
-        f"/node {reader._reader.endpoint.gid.hex()[:8]}": "local" for reader in readers
+        f"/node {reader_of(reader).endpoint.gid.hex()[:8]}": "local" for reader in readers
     }
     readers[0].destroy()
     (name,) = publisher.stats.routes

@@ -25,10 +25,14 @@ from tests.support.gateway_server import (
     Cable,
     busiest_turn,
     cable,
+    connections_of,
     drive,
     get,
     raw_connect,
     serving,
+    session_of,
+    sessions_of,
+    subscribers_of,
     upgraded,
 )
 from tests.support.waiting import until
@@ -83,7 +87,7 @@ async def test_the_stop_is_sent_when_packets_vanish_and_nobody_else_notices() ->
         async with through(line) as client:
             for each in (client, other):
                 await each.send(subscribing)
-            await until(lambda: len([s for s in gateway._sessions if s._subscribed]) == 2)
+            await until(lambda: subscribers_of(gateway) == 2)
             await client.send(drive(1.0))
             await until(lambda: got == [1.0])
             line.cut()
@@ -91,7 +95,7 @@ async def test_the_stop_is_sent_when_packets_vanish_and_nobody_else_notices() ->
                 words.publish(String(data=f"{number}:" + "x" * 100_000))
                 assert json.loads(await other.recv())["msg"]["data"].startswith(f"{number}:")
             await until(lambda: got == [1.0, 0.0])
-            assert max(s.outbox.waiting_bytes for s in gateway._sessions) <= 5 * 101_000
+            assert max(s.outbox.waiting_bytes for s in sessions_of(gateway)) <= 5 * 101_000
             line.join()
 
 
@@ -114,7 +118,7 @@ async def test_commands_of_a_cut_count_only_behind_the_answer_to_a_ping(is_one_w
             if is_one_way:  # the ping is answered, behind the commands
                 commands = 20 * len(frame(drive(100.0).encode()))
                 await until(lambda: line.sent_bytes > sent + commands)
-            (session,) = gateway._sessions
+            session = session_of(gateway)
             line.join()
             await until(lambda: not session.is_doubtful)
             while got == [1.0, 0.0]:
@@ -165,11 +169,11 @@ async def test_a_goal_of_a_client_that_gives_no_sign_is_cancelled() -> None:
                 op = {"op": "send_action_goal", "action": "/count", "args": {"order": order}}
                 op |= {"action_type": "example_interfaces/action/Fibonacci", "id": str(order)}
                 await client.send(json.dumps(op))
-            await until(lambda: all(s.has_goals for s in gateway._sessions))
+            await until(lambda: all(s.has_goals for s in sessions_of(gateway)))
             line.cut()
-            await until(lambda: len(gateway._sessions) == 1 and ends)
+            await until(lambda: len(sessions_of(gateway)) == 1 and ends)
             assert ends == ["0"]
-            (session,) = gateway._sessions
+            session = session_of(gateway)
             assert session.has_goals
             line.join()
 
@@ -196,11 +200,11 @@ async def test_the_stop_comes_within_the_time_to_live_when_a_cable_is_pulled() -
                     await asyncio.sleep(0.005)  # noqa: TID251  # it goes on
                 late.append(loop.time() - began - (waited_sec() - waited))
                 stopped = len(got)
-                (session,) = gateway._sessions
+                session = session_of(gateway)
                 line.join()
                 await until(lambda: not session.is_doubtful)  # noqa: B023  # awaited at once
                 assert len(got) == stopped
-            await until(lambda: not gateway._sessions)
+            await until(lambda: not gateway.stats.sessions)
 
     assert sorted(late)[44] <= TTL_SEC + 0.1
 
@@ -220,7 +224,7 @@ async def test_a_ping_cannot_be_answered_before_it_is_sent() -> None:
         for number in range(10):
             writer.write(frame(b"aionode%d" % number, PONG))
         writer.write(frame(drive(2.0).encode()))
-        (session,) = gateway._sessions
+        session = session_of(gateway)
         await until(lambda: session.refused)
         assert got == [1.0, 0.0]
         asked = [await ping_of(reader) for _ in range(2)]
@@ -239,7 +243,7 @@ async def test_a_sign_that_is_asked_for_meanwhile_leaves_the_doubt() -> None:
         reader, writer, _ = await upgraded(gateway)
         writer.write(frame(drive(1.0).encode()))
         await until(lambda: got == [1.0, 0.0])
-        (session,) = gateway._sessions
+        session = session_of(gateway)
         for _ in range(3):
             payload = await ping_of(reader)
             assert session.is_doubtful
@@ -348,7 +352,7 @@ async def test_five_hundred_connections_that_say_nothing_keep_nobody_out() -> No
                 each.send(SLOW["head"])
                 slow.append(each)
             assert (await get(gateway)).status_code == 200
-        assert len(gateway._server.server_state.connections) <= 4 + 16 + 1
+        assert connections_of(gateway) <= 4 + 16 + 1
         op = {"op": "call_service", "service": "/rosapi/get_time"}
         await client.send(json.dumps(op))
         assert json.loads(await client.recv())["op"] == "service_response"
@@ -365,11 +369,11 @@ async def test_an_answer_that_nobody_reads_is_given_up() -> None:
         head = f"GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nAccept: text/event-stream\r\n\r\n"
         with slow_reader(gateway.port) as caller:
             caller.send(head.encode())
-            await until(lambda: gateway._sessions)
-            while gateway._sessions:
+            await until(lambda: gateway.stats.sessions)
+            while gateway.stats.sessions:
                 words.publish(String(data="x" * 100_000))
                 await asyncio.sleep(0.01)  # noqa: TID251  # a topic's rate
-            await until(lambda: not gateway._server.server_state.connections)
+            await until(lambda: not connections_of(gateway))
 
 
 async def test_a_large_answer_has_as_long_as_its_reader_takes() -> None:
@@ -381,7 +385,7 @@ async def test_a_large_answer_has_as_long_as_its_reader_takes() -> None:
         head = "GET /topics/words?type=std_msgs/msg/String HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
         with slow_reader(gateway.port) as caller:
             caller.send(head.encode())
-            await until(lambda: [s for s in gateway._sessions if s._subscribed])
+            await until(lambda: subscribers_of(gateway))
             words.publish(String(data="x" * size))
             loop, got = asyncio.get_running_loop(), 0
             caller.setblocking(False)
@@ -408,14 +412,14 @@ async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_no
     monkeypatch.setattr("aionode.gateway._server.PING_SEC", 0.2)
     async with serving(Policy.parse(POLICY)) as gateway:
         words = gateway.node.create_publisher(String, "/words", 10)
-        reader, writer, _ = await upgraded(gateway)
-        reader._transport.pause_reading()  # type: ignore[attr-defined]  # the stream's own
+        _, writer, _ = await upgraded(gateway)
+        writer.transport.pause_reading()  # type: ignore[attr-defined]  # it reads, too
         writer.write(frame(json.dumps({"op": "subscribe", "topic": "/words"}).encode()))
-        await until(lambda: [s for s in gateway._sessions if s._subscribed])
+        await until(lambda: subscribers_of(gateway))
         for _ in range(100):
             words.publish(String(data="x" * 100_000))
-        await until(lambda: not gateway._sessions)
-        await until(lambda: not gateway._server.server_state.connections)
+        await until(lambda: not gateway.stats.sessions)
+        await until(lambda: not connections_of(gateway))
         writer.transport.abort()
 
 
@@ -423,15 +427,15 @@ async def test_a_client_that_reads_no_answers_is_disconnected() -> None:
     """It asks again and again: what waits is bounded, and so is the time."""
     limits = "client_lost_sec = 0.3\nframes_per_sec = 1e6"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
-        reader, writer, _ = await upgraded(gateway)
-        reader._transport.pause_reading()  # type: ignore[attr-defined]  # the stream's own
-        await until(lambda: gateway._sessions)
+        _, writer, _ = await upgraded(gateway)
+        writer.transport.pause_reading()  # type: ignore[attr-defined]  # it reads, too
+        await until(lambda: gateway.stats.sessions)
         asking = json.dumps({"op": "call_service", "service": "/rosapi/topics_and_raw_types"})
         with contextlib.suppress(*CLOSED):
-            while gateway._sessions and not writer.is_closing():
+            while gateway.stats.sessions and not writer.is_closing():
                 writer.write(frame(asking.encode()) * 20)
                 await asyncio.sleep(0)  # noqa: TID251  # the gateway has its turn
-        await until(lambda: not gateway._sessions)
+        await until(lambda: not gateway.stats.sessions)
         writer.transport.abort()
 
 
@@ -458,7 +462,7 @@ async def test_a_burst_of_tiny_parts_leaves_the_loop_to_the_robot(kind: str) -> 
             _, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
         else:
             _, writer, _ = await upgraded(gateway)
-            await until(lambda: gateway._sessions)
+            await until(lambda: gateway.stats.sessions)
         async with busiest_turn() as busy:
             writer.write(data)
             await until(lambda: busy.turns > 300)
@@ -475,7 +479,7 @@ async def test_parts_without_bytes_do_not_pile_up() -> None:
             writer.write(frame(b"", TEXT, first=0) + frame(b"", 0, first=0) * 10_001)
             await writer.drain()
         assert await closed(reader) == b""
-        await until(lambda: not gateway._sessions)
+        await until(lambda: not gateway.stats.sessions)
         writer.close()
 
 

@@ -88,6 +88,7 @@ class Slow:
     def __init__(self, robot: Robot, depth: int = 10) -> None:
         self.go_on = asyncio.Event()
         self.delivered: list[str] = []
+        self.failures: list[Exception] = []  # raised instead of deliveries, one each
         self.preparing = Preparing(robot, self.prepare, self.deliver, depth)
 
     async def prepare(self, _: Received) -> None:
@@ -96,6 +97,8 @@ class Slow:
 
     def deliver(self, received: Received) -> None:
         """Take a message that is encoded."""
+        if self.failures:
+            raise self.failures.pop()
         self.delivered.append(received.message.data[:1])
 
     def put(self, letter: str, size: int = LARGE_BYTES) -> None:
@@ -136,13 +139,7 @@ async def test_a_message_that_cannot_be_encoded_ends_nothing(robot: Robot) -> No
     """Neither the gateway, whose task encodes it, nor the messages after it."""
     slow = Slow(robot)
     slow.go_on.set()
-    deliver = slow.preparing._deliver
-
-    def fail_once(_: Received) -> None:
-        slow.preparing._deliver = deliver
-        raise RuntimeError("no memory")
-
-    slow.preparing._deliver = fail_once
+    slow.failures.append(RuntimeError("no memory"))
     slow.put("a")
     slow.put("b")
     await settle()

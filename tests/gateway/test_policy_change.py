@@ -73,7 +73,7 @@ async def test_a_client_of_foxglove_is_told_what_ends_and_what_is_hidden(bench: 
         sent.put_nowait(json.dumps({"op": "subscribeParameterUpdates", "parameterNames": []}))
         sent.put_nowait(json.dumps({"op": "subscribeConnectionGraph"}))
         await settle()
-        assert len(session._subscribed) == 3
+        assert len(session.dropped()) == 3
         assert "/secret" in json.dumps(ops(session))
 
         bench.allow("[[allow]]\nsee = '/words'\n[[allow]]\nsubscribe = '/numbers'")
@@ -81,7 +81,7 @@ async def test_a_client_of_foxglove_is_told_what_ends_and_what_is_hidden(bench: 
         await bench.advance(1.0)
         told = ops(session)
         serving.cancel()
-    assert not session._subscribed
+    assert not session.dropped()
     ended = {op["message"].partition(":")[0] for op in told if op["op"] == "status"}
     assert ended == {"/words", "/secret"}
     gone = next(op["channelIds"] for op in told if op["op"] == "unadvertise")
@@ -94,7 +94,7 @@ async def test_a_client_of_foxglove_is_told_what_ends_and_what_is_hidden(bench: 
 def ops(session: Session) -> list[dict[str, Any]]:
     """Return the ops in text that wait for a client."""
     found = []
-    while (frame := session.outbox._next()) is not None:
+    while (frame := session.outbox.next_frame()) is not None:
         if isinstance(frame, str):
             found.append(json.loads(frame))
     return found

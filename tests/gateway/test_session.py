@@ -45,7 +45,7 @@ def text_of(received: Received) -> str:
 def waiting(session: Session) -> list[Any]:
     """Return the frames that wait for a client."""
     frames = []
-    while (frame := session.outbox._next()) is not None:
+    while (frame := session.outbox.next_frame()) is not None:
         frames.append(frame)
     return frames
 

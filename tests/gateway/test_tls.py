@@ -18,7 +18,7 @@ from websockets.exceptions import InvalidMessage, InvalidStatus
 
 from aionode.gateway import Gateway, Policy
 from aionode.interfaces.std_msgs.msg import String
-from tests.support.gateway_server import serving
+from tests.support.gateway_server import serving, sessions_of
 from tests.support.waiting import until
 
 TOKEN = "secret"  # of this test
@@ -114,9 +114,9 @@ async def test_a_certificate_tells_who_a_client_is(
         names = []
         for context, token in ((trust("clients"), ""), (trust(None), TOKEN), (trust(None), "")):
             async with websocket(gateway, context, protocol, token):
-                await until(lambda: gateway._sessions)
-                names += [session.identity.name for session in gateway._sessions]
-            await until(lambda: not gateway._sessions)
+                await until(lambda: gateway.stats.sessions)
+                names += [session.identity.name for session in sessions_of(gateway)]
+            await until(lambda: not gateway.stats.sessions)
             sees = (await get(gateway, context, token)).json() != []
             assert sees is (names[-1] == "driver")
         assert names == ["driver", "holder", "local"]
@@ -134,7 +134,7 @@ async def test_a_certificate_that_nobody_has_signed_cannot_connect(
             with pytest.raises((OSError, InvalidMessage)):
                 async with websocket(gateway, stranger, protocol):
                     pass
-        assert gateway._sessions == {}
+        assert gateway.stats.sessions == {}
 
 
 async def test_without_a_certificate_it_is_what_the_policy_says(folder: Path, trust: Trust) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import copy
 import os
 import shutil
 import signal
@@ -24,12 +23,16 @@ from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
 from aionode.transport.link._connection import Connection
+from aionode.transport.link._protocol import FrameParser
 from aionode.transport.link._publisher import LinkWriter
 from aionode.transport.link._subscription import Route
 from aionode.transport.link._transport import LinkTransport
 from tests.processes.link_member import STREAMED_BYTES
+from tests.support.arrivals import reader_of, writers_of
+from tests.support.links import fd_of, freeze, thaw
 from tests.support.peers import isolated_environment, quiet_node
 from tests.support.spies import returns_of
+from tests.support.waiting import until
 
 MEMBER = Path(__file__).with_name("link_member.py")
 
@@ -78,7 +81,7 @@ class Pings:
     @property
     def writer(self) -> LinkWriter:
         """The publisher's end of both routes."""
-        writer = self.there._writers[1]
+        writer = writers_of(self.there)[1]
         assert isinstance(writer, LinkWriter)
         return writer
 
@@ -121,7 +124,7 @@ async def test_a_killed_process_ends_its_link_and_the_next_gets_one() -> None:
                     await asyncio.to_thread(lambda: None)
             while ping.there.get_subscription_count():
                 await ping.node.graph.changed()
-            while ping.back._reader:
+            while reader_of(ping.back):
                 await ping.back.receive()
 
 
@@ -139,7 +142,7 @@ async def test_a_frozen_process_costs_nothing_but_its_messages() -> None:
             ping.there.publish(Int32(data=-2))
             while (await ping.back.receive()).data != -2:
                 pass
-            while ping.back._reader:
+            while reader_of(ping.back):
                 await ping.back.receive()
             await ping.go()
 
@@ -176,7 +179,7 @@ class Stream:
 
     async def freeze_in_mid_frame(self, process: subprocess.Popen[bytes]) -> None:
         """Read no more, and stop the sender when it waits to send the rest of a frame."""
-        asyncio.get_running_loop().remove_reader(self.link._fd)
+        freeze(self.link)
         while True:
             stop(process)
             if in_mid_frame(self.link):
@@ -186,7 +189,7 @@ class Stream:
 
     def on_writable(self) -> None:
         """Read again."""
-        asyncio.get_running_loop().add_reader(self.link._fd, self.link._on_readable)
+        thaw(self.link)
 
 
 def stop(process: subprocess.Popen[bytes]) -> None:
@@ -197,13 +200,14 @@ def stop(process: subprocess.Popen[bytes]) -> None:
 
 def in_mid_frame(link: Connection) -> bool:
     """Return whether what waits in the socket ends within a frame."""
-    assert link._sock is not None
-    parser = copy.deepcopy(link._parser)
-    try:
-        parser.feed(link._sock.recv(1 << 20, socket.MSG_PEEK))
-    except BlockingIOError:  # nothing waits
-        return False
-    return bool(parser._pieces)
+    parser = FrameParser()
+    assert not link.held  # so the socket begins with a frame
+    with socket.socket(fileno=os.dup(fd_of(link))) as peeking:
+        try:
+            parser.feed(peeking.recv(1 << 20, socket.MSG_PEEK))
+        except BlockingIOError:  # nothing waits
+            return False
+    return parser.held > 0
 
 
 async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next_is_heard(
@@ -223,7 +227,7 @@ async def test_a_sender_that_is_killed_in_mid_frame_ends_its_stream_and_the_next
                 stream.on_writable()
                 while not link.closed:  # others that dial may be closed, too
                     await closed.get()
-                while stream.subscription._reader:
+                while reader_of(stream.subscription):
                     await stream.next()
             while stream.subscription.get_publisher_count():
                 await stream.node.graph.changed()
@@ -238,10 +242,8 @@ async def test_a_sender_that_is_frozen_in_mid_frame_goes_on_where_it_was(
         with other_process("stream") as process:
             await stream.until_linked()
             await stream.freeze_in_mid_frame(process)
-            read = returns_of(monkeypatch, stream.link, "_on_readable")
             stream.on_writable()
-            while not stream.link._parser._pieces:
-                await read.get()
+            await until(lambda: stream.link.held)
             process.send_signal(signal.SIGCONT)
             for _ in range(20):
                 await stream.next()

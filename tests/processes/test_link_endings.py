@@ -17,7 +17,7 @@ import pytest
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.transport.link._subscription import Route
-from tests.support.links import folder, manager_of
+from tests.support.links import folder, freeze, manager_of
 from tests.support.peers import KEEP_ALL, quiet_node
 
 __all__ = ["folder"]  # a fixture
@@ -102,7 +102,7 @@ async def test_a_frozen_reader_holds_a_process_up_for_a_second_and_is_told_of() 
             await until_linked(node, subscription)
             (link,) = (manager_of(node).linked(p) for p in manager_of(node).links)
             assert link is not None
-            asyncio.get_running_loop().remove_reader(link._fd)  # it reads no more
+            freeze(link)
             tell(process)
             assert await asyncio.to_thread(process.wait, 10) == 0
             assert process.stderr is not None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
-from aionode.action import ServerGoalHandle
+from aionode.action import GoalStatus, ServerGoalHandle
 from aionode.endpoints.actions.goal import alive_id, left_id
 from aionode.interfaces.action_msgs.msg import GoalInfo, GoalStatusArray
 from aionode.interfaces.action_msgs.srv import CancelGoal
@@ -13,11 +13,13 @@ from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.unique_identifier_msgs.msg import UUID
 from aionode.qos import qos_profile_action_status_default
+from tests.support.waiting import until
 
 if TYPE_CHECKING:
+    from aionode.endpoints.client import Client
     from aionode.node import Node
 
-__all__ = ["Goal", "PlainClient", "Worker", "endpoint_count", "uuid_of"]
+__all__ = ["Goal", "PlainClient", "Worker", "end_of", "endpoint_count", "result_client", "uuid_of"]
 
 Goal = ServerGoalHandle[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 Impl = Fibonacci.Impl
@@ -40,6 +42,18 @@ def endpoint_count(node: Node) -> int:
             node.timers,
         )
     )
+
+
+async def end_of(goal: Goal) -> GoalStatus:
+    """Wait until the server has ended a goal, and return how."""
+    await until(lambda: not goal.is_active)
+    return goal.status
+
+
+def result_client(node: Node) -> Client[Any, Any]:
+    """Return the client by which an action client of a node asks for results, and gives signs."""
+    (client,) = [each for each in node.clients if each.srv_name.endswith("/get_result")]
+    return client
 
 
 class Worker:

@@ -11,14 +11,16 @@ from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 import httpx
+import psutil
 from websockets.asyncio.client import ClientConnection, connect
 
-from aionode.gateway import Gateway, Policy
+from aionode.gateway import Gateway, Policy, Session
 from aionode.node import Node
 from aionode.testing import local_context
 
 __all__ = ["Cable", "address", "busiest_turn", "cable", "drive", "get", "http_client"]
-__all__ += ["raw_connect", "serving", "upgraded"]
+__all__ += ["connections_of", "raw_connect", "serving", "session_of", "sessions_of"]
+__all__ += ["subscribers_of", "upgraded"]
 
 UPGRADE = (
     "GET {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
@@ -41,6 +43,29 @@ async def serving(policy: Policy | None = None, **options: Any) -> AsyncIterator
 def address(gateway: Gateway, path: str = "/") -> str:
     """Return the address of a WebSocket."""
     return f"ws://127.0.0.1:{gateway.port}{path}"
+
+
+def sessions_of(gateway: Gateway) -> list[Session]:
+    """Return the sessions of the clients, of which `stats` has the numbers only."""
+    return list(gateway._sessions)
+
+
+def session_of(gateway: Gateway) -> Session:
+    """Return the session of the only client."""
+    (session,) = sessions_of(gateway)
+    return session
+
+
+def subscribers_of(gateway: Gateway) -> int:
+    """Return how many clients have a subscription."""
+    return sum(bool(session.dropped()) for session in sessions_of(gateway))
+
+
+def connections_of(gateway: Gateway) -> int:
+    """Return how many sockets the gateway has for its clients, as the operating system counts."""
+    sockets = psutil.Process().net_connections("tcp")
+    mine = [each for each in sockets if each.laddr.port == gateway.port]
+    return sum(each.status != psutil.CONN_LISTEN for each in mine)
 
 
 def http_client() -> httpx.AsyncClient:

@@ -19,15 +19,20 @@ from aionode.transport.link import _manager as manager
 from aionode.transport.link._connection import Connection
 from aionode.transport.link._publisher import LinkWriter
 from aionode.transport.link._transport import LinkTransport
+from tests.support.arrivals import writers_of
 from tests.support.peers import quiet_node
 
 __all__ = [
     "Counting",
     "Two",
     "calls_of",
+    "fd_of",
     "folder",
+    "freeze",
     "link_of",
     "manager_of",
+    "read",
+    "thaw",
     "transport_of",
     "two_nodes",
     "writer_of",
@@ -83,9 +88,29 @@ def link_of(node: Node) -> Connection:
     return connection
 
 
+def fd_of(link: Connection) -> int:
+    """Return the descriptor of a link's socket."""
+    return link._fd
+
+
+def freeze(link: Connection) -> None:
+    """Have a link read nothing, as if its process were frozen."""
+    asyncio.get_running_loop().remove_reader(fd_of(link))
+
+
+def read(link: Connection) -> bool:
+    """Have a link read once what its socket has; return whether it had anything."""
+    return link._on_readable()
+
+
+def thaw(link: Connection) -> None:
+    """Have a link read again."""
+    asyncio.get_running_loop().add_reader(fd_of(link), read, link)
+
+
 def writer_of(publisher: Any) -> LinkWriter:
     """Return the publisher's end of both routes."""
-    writer = publisher._writers[1]
+    writer = writers_of(publisher)[1]
     assert isinstance(writer, LinkWriter)
     return writer
 

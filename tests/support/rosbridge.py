@@ -6,7 +6,7 @@ import asyncio
 import json
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
-from typing import Any
+from typing import Any, Final
 
 import cbor2
 import msgspec
@@ -22,6 +22,12 @@ from aionode.gateway._session import Session
 from aionode.node import Node
 
 __all__ = ["RosbridgeClient", "robot_of", "rosbridge_client"]
+
+
+ALL: Final = Policy.default(allow_write=True)
+SMALL_FRAMES: Final = msgspec.structs.replace(
+    ALL, limits=msgspec.structs.replace(ALL.limits, frame_bytes=1000)
+)
 
 
 class RosbridgeClient:
@@ -73,10 +79,10 @@ class RosbridgeClient:
 
 @asynccontextmanager
 async def robot_of(node: Node, policy: Policy | None = None) -> AsyncIterator[Robot]:
-    """Yield what the sessions of a gateway share; by default everything is allowed."""
+    """Yield what the sessions of a gateway share; by default all but large frames is allowed."""
     audit = Audit(node, "")
     async with asyncio.TaskGroup() as tasks:
-        robot = Robot(node, policy or Policy.default(allow_write=True), audit, tasks)
+        robot = Robot(node, policy or SMALL_FRAMES, audit, tasks)
         try:
             yield robot
         finally:
@@ -90,7 +96,6 @@ async def rosbridge_client(robot: Robot) -> AsyncIterator[RosbridgeClient]:
     async with asyncio.TaskGroup() as tasks:
         identity = Identity("tester", address="127.0.0.1")
         async with Session(robot, identity, "rosbridge") as session:
-            session._limits = msgspec.structs.replace(session._limits, frame_bytes=1000)
             client = RosbridgeClient(session)
             serving = tasks.create_task(serve_frames(session, client.frames()))
             try:

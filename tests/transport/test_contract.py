@@ -29,6 +29,7 @@ from aionode.testing import local_context
 from aionode.transport.rcl import RclTransport
 from aionode.wire import cdr
 from tests.support import fake_rcl
+from tests.support.arrivals import reader_of
 from tests.support.ros import gids_of_a_client, ros_domain, ros_missing
 from tests.support.waiting import until
 
@@ -406,8 +407,8 @@ async def test_so_many_bytes_wait_in_a_subscription_whatever_its_depth(pair: Pai
     await writer.wait_for_subscribers()
     for number in range(40):
         writer.publish(Image(width=number, data=bytes(100_000)))
-        await until(lambda: late._reader.items and late._reader.items[-1][1].width == number)  # noqa: B023  # called at once
-    kept = [(await late.receive()).width for _ in range(len(late._reader))]
+        await until(lambda: reader_of(late).items and reader_of(late).items[-1][1].width == number)  # noqa: B023  # called at once
+    kept = [(await late.receive()).width for _ in range(len(reader_of(late)))]
 
     assert kept == list(range(40 - len(kept), 40))
     assert 8 <= len(kept) <= 20

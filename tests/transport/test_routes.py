@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from aionode._concurrency import checkpoint
 from aionode.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.testing import FaultyTransport
 from aionode.transport.base import LinkStatus
 from aionode.transport.local import LocalTransport
+from tests.support.arrivals import reader_of
 from tests.support.links import (
     Counting,
     folder,
+    freeze,
     link_of,
     manager_of,
     transport_of,
@@ -31,8 +31,8 @@ async def test_a_subscription_of_another_context_is_reached_by_zenoh() -> None:
         publisher = nodes.a.create_publisher(Int32, "n", 10)
         await publisher.wait_for_subscribers(2)
         assert publisher.stats.routes == {
-            f"/a {readers[0]._reader.endpoint.gid.hex()[:8]}": "local",
-            f"/b {readers[1]._reader.endpoint.gid.hex()[:8]}": "zenoh",
+            f"/a {reader_of(readers[0]).endpoint.gid.hex()[:8]}": "local",
+            f"/b {reader_of(readers[1]).endpoint.gid.hex()[:8]}": "zenoh",
         }
 
 
@@ -64,7 +64,7 @@ async def test_a_publisher_counts_what_a_slow_link_dropped() -> None:
         numbers = Counting(nodes, 10)
         await numbers.until_linked()
         assert numbers.publisher.stats.dropped == 0
-        asyncio.get_running_loop().remove_reader(link_of(nodes.b)._fd)  # as if it were frozen
+        freeze(link_of(nodes.b))
         numbers.publish(20_000)
         dropped = numbers.publisher.stats.dropped
         assert 0 < dropped < 20_000

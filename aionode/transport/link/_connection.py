@@ -137,6 +137,7 @@ class Connection:
         secret: By what the other end knows this one when Zenoh continues the link.
         pool: The buffers of this context.
         receivers: The subscriptions here that hear publishers of the other process.
+        lent: The buffers that the other process reads now, until it releases them, by number.
     """
 
     def __init__(
@@ -176,8 +177,7 @@ class Connection:
         self._queues: dict[WriteWaiter, None] = {}
         # Numbers of the buffers whose descriptor the other process has, until they are closed.
         self._known: set[int] = set()
-        # Buffers that the other process reads now, until it releases them.
-        self._lent: dict[int, SharedBuffer] = {}
+        self.lent: dict[int, SharedBuffer] = {}
         self._lent_bytes = 0
         # Buffers of the other process that are mapped here.
         self._mappings = BufferMappings()
@@ -316,7 +316,7 @@ class Connection:
             self._loop.add_writer(self._fd, self._on_writable)
 
     def _write_with(self, sock: socket.socket, data: bytes, buffer: SharedBuffer) -> bool:
-        limit_reached = self._lent_bytes >= LENT_BYTES or len(self._lent) >= LENT_PIECES
+        limit_reached = self._lent_bytes >= LENT_BYTES or len(self.lent) >= LENT_PIECES
         if limit_reached and buffer.size <= protocol.MAX_INLINE:
             if not self.write(whole(data, buffer)):
                 return False
@@ -342,7 +342,7 @@ class Connection:
             if sent < len(data):
                 self._rest = memoryview(data)[sent:]
                 self._note_full()
-        self._lent[buffer.number] = buffer
+        self.lent[buffer.number] = buffer
         self._lent_bytes += buffer.size
         return True
 
@@ -522,7 +522,7 @@ class Connection:
             self._loop.call_soon_threadsafe(self.send, Release(number))
 
     def _on_release(self, number: int) -> None:
-        buffer = self._lent.pop(number, None)
+        buffer = self.lent.pop(number, None)
         if buffer is not None:
             self._lent_bytes -= buffer.size
             self.pool.release(buffer)
@@ -559,10 +559,10 @@ class Connection:
             if buffer is not None:
                 self.pool.release(buffer)
         self._urgent.clear()
-        for buffer in self._lent.values():
+        for buffer in self.lent.values():
             buffer.retired = True  # the other process may go on reading it
             self.pool.release(buffer)
-        self._lent.clear()
+        self.lent.clear()
         self._lent_bytes = self._urgent_bytes = 0
         self.pool.listeners.discard(self._on_buffer_closed)
         self._mappings.close()

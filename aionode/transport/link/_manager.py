@@ -140,7 +140,7 @@ class LinkManager:
         self._loop = asyncio.get_running_loop()
         self._listener = listener
         if listener is not None:
-            self._peer_directory.on_retransmit = self._on_retransmit
+            self._peer_directory.on_retransmit = self.on_retransmit
             self._peer_directory.on_unannounced_peers = self._on_unannounced_peers
             self._loop.add_reader(listener.sock.fileno(), self._accept)
 
@@ -558,7 +558,7 @@ class LinkManager:
                 batch.clear()
                 size, number = 0, number + 1
 
-    def _on_retransmit(self, data: bytes) -> None:
+    def on_retransmit(self, data: bytes) -> None:
         """Take what another context could not deliver over its link."""
         if self._listener is None:  # closed: each end of a link is followed by a batch
             return

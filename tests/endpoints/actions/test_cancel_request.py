@@ -20,7 +20,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.testing import FaultyTransport, local_context, settle
 from aionode.transport.local import LocalTransport
-from tests.support.actions import Goal, Worker
+from tests.support.actions import Goal, Worker, end_of
 from tests.support.peers import isolated_environment
 from tests.support.spies import returns_of
 
@@ -74,8 +74,7 @@ def beside(work: Any) -> asyncio.Task[Any]:
 
 async def expect_canceled(goal: Goal) -> None:
     """Wait for the end of the goal, and see that a request has ended it."""
-    await goal._outcome()
-    assert goal.status is GoalStatus.CANCELED
+    assert await end_of(goal) is GoalStatus.CANCELED
 
 
 # What a program waits for

@@ -36,7 +36,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import local_context, settle
-from tests.support.actions import Goal, PlainClient, Worker, endpoint_count, uuid_of
+from tests.support.actions import Goal, PlainClient, Worker, end_of, endpoint_count, uuid_of
 from tests.support.peers import isolated_environment
 from tests.support.spies import returns_of
 
@@ -497,7 +497,7 @@ async def test_cancelling_an_awaiter_cancels_the_goal(ends: Ends, wait: Any) -> 
 
     await cancelled(waiting)
 
-    await goal._outcome()
+    await end_of(goal)
     assert ends.requests == [goal]
     assert goal.status is GoalStatus.CANCELED
 
@@ -510,7 +510,7 @@ async def test_a_timeout_cancels_the_goal(ends: Ends) -> None:
         async with asyncio.timeout(0.01):
             await sent.result()
 
-    await goal._outcome()
+    await end_of(goal)
     assert ends.requests == [goal]
 
 
@@ -524,7 +524,7 @@ async def test_several_awaiters_of_a_goal_send_one_request(ends: Ends) -> None:
     await asyncio.wait(waiting)
 
     assert all(each.cancelled() for each in waiting)
-    await goal._outcome()
+    await end_of(goal)
     assert ends.requests == [goal]
 
 
@@ -702,8 +702,8 @@ async def test_a_destroyed_client_ends_its_waits_and_what_they_wait_for(ends: En
     for each in waiting:
         with pytest.raises(EntityDestroyedError):
             await each
-    await goal._outcome()
-    await called._outcome()
+    await end_of(goal)
+    await end_of(called)
     await ends.asking.graph.until(lambda: endpoint_count(ends.asking) == before - 10)
     assert ends.requests == [goal, called]
     with pytest.raises(EntityDestroyedError):
@@ -720,8 +720,7 @@ async def test_a_goal_that_no_task_awaits_outlives_its_client(ends: Ends) -> Non
     await gone_from(ends.serving)
     ends.worker.may_end.set()
 
-    await goal._outcome()
-    assert goal.status is GoalStatus.SUCCEEDED
+    assert await end_of(goal) is GoalStatus.SUCCEEDED
     assert ends.requests == []
     with pytest.raises(EntityDestroyedError):
         await sent.result()
@@ -749,8 +748,7 @@ async def test_a_stopping_node_cancels_the_goals_that_it_awaits(ends: Ends) -> N
     node.destroy_node()
     await running
 
-    await goal._outcome()
-    assert goal.status is GoalStatus.CANCELED
+    assert await end_of(goal) is GoalStatus.CANCELED
     assert ends.requests == [goal]
 
 

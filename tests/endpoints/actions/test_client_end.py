@@ -16,7 +16,7 @@ from aionode.errors import EntityDestroyedError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.testing import local_context
-from tests.support.actions import Worker
+from tests.support.actions import Worker, end_of
 from tests.support.peers import isolated_environment
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -257,8 +257,7 @@ async def expect_canceled(program: Program) -> None:
     program.server_may_decide.set()
     with suppress(asyncio.QueueEmpty):
         goal = program.worker.begun.get_nowait()
-        await goal._outcome()
-        assert goal.status is GoalStatus.CANCELED
+        assert await end_of(goal) is GoalStatus.CANCELED
 
 
 @in_process
@@ -337,8 +336,7 @@ async def test_a_loop_that_was_left_leaves_its_goal_alone(program: Program) -> N
     program.client.destroy()
     program.worker.may_end.set()
 
-    await goal._outcome()
-    assert goal.status is GoalStatus.SUCCEEDED
+    assert await end_of(goal) is GoalStatus.SUCCEEDED
 
 
 @in_process

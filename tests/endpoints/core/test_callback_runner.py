@@ -20,6 +20,7 @@ from aionode.errors import CallbackCancelledError
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.testing import settle
+from tests.support.arrivals import reader_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -370,7 +371,7 @@ def test_an_empty_distribution_is_zero() -> None:
 async def test_a_full_queue_lets_others_run_in_between(node: Node) -> None:
     """A callback that is always ready does not occupy the loop."""
     order: list[str] = []
-    listen(node, lambda msg: order.append("topic"))._reader.slice_ns = 0
+    reader_of(listen(node, lambda msg: order.append("topic"))).slice_ns = 0
     send(node, 10)
 
     async def other() -> None:

@@ -17,6 +17,7 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.testing import settle
 from aionode.transport.base import Request, SampleInfo
+from tests.support.arrivals import reader_of, serve_of
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
@@ -42,7 +43,9 @@ def bring(
     if inline_deadline_ns is None:
         inline_deadline_ns = perf_ns() + MINUTE_NS
     for number in numbers:
-        subscription._reader.deliver(Int32(data=number), bytes(16), number, 0, inline_deadline_ns)
+        reader_of(subscription).deliver(
+            Int32(data=number), bytes(16), number, 0, inline_deadline_ns
+        )
 
 
 class Asked(Request):
@@ -180,7 +183,7 @@ async def test_callbacks_with_a_task_or_a_thread_of_their_own_queue(
     subscription = listen(node, lambda msg: heard.append(msg.data), **options)
     await settle()
     bring(subscription, 1)
-    assert len(subscription._reader) == 1
+    assert len(reader_of(subscription)) == 1
     await settle()
     assert heard == [1]
 
@@ -196,7 +199,7 @@ async def test_coroutine_functions_queue(node: Node) -> None:
     subscription = listen(node, Listener())
     await settle()
     bring(subscription, 1)
-    assert len(subscription._reader) == 1
+    assert len(reader_of(subscription)) == 1
     await settle()
     assert heard == [1]
 
@@ -343,7 +346,7 @@ async def test_what_a_callback_returns_is_awaited_before_the_next_message(node: 
     subscription = listen(node, lambda msg: work(msg))  # noqa: PLW0108  # not known to be async
     await settle()
     bring(subscription, 1, 2)
-    assert len(subscription._reader) == 1
+    assert len(reader_of(subscription)) == 1
     await settle()
     assert heard == ["begin 1", "end 1", "begin 2", "end 2"]
     assert subscription.stats.run_time.count == 2
@@ -491,7 +494,7 @@ async def test_an_idle_service_answers_within_the_event(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     request = Asked()
-    service._serve(request, perf_ns() + MINUTE_NS)
+    serve_of(service)(request, perf_ns() + MINUTE_NS)
     assert request.outcome == [5]
     assert service.stats.received == service.stats.run_time.count == 1
 
@@ -503,7 +506,7 @@ async def test_a_handler_of_the_request_alone_answers_within_the_event(node: Nod
     )
     await settle()
     request = Asked()
-    service._serve(request, perf_ns() + MINUTE_NS)
+    serve_of(service)(request, perf_ns() + MINUTE_NS)
     assert request.outcome == [2]
 
 
@@ -512,8 +515,8 @@ async def test_without_a_time_a_request_waits_for_its_turn(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", add)
     await settle()
     requests = [Asked(), Asked()]
-    service._serve(requests[0])
-    service._serve(requests[1], perf_ns() + MINUTE_NS)
+    serve_of(service)(requests[0])
+    serve_of(service)(requests[1], perf_ns() + MINUTE_NS)
     assert [request.outcome for request in requests] == [[], []]
     await settle()
     assert [request.outcome for request in requests] == [[5], [5]]
@@ -524,7 +527,7 @@ async def test_a_failing_handler_tells_the_client_at_once(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", fail, on_error="log")
     await settle()
     request = Asked()
-    service._serve(request, perf_ns() + MINUTE_NS)
+    serve_of(service)(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["ValueError: no sums today"]
     assert service.stats.errors == 1
 
@@ -537,7 +540,7 @@ async def test_a_failing_handler_ends_its_node(context: Context) -> None:
 
     async def transport() -> None:
         await settle()
-        service._serve(request, perf_ns() + MINUTE_NS)
+        serve_of(service)(request, perf_ns() + MINUTE_NS)
 
     async with asyncio.TaskGroup() as tasks:
         tasks.create_task(transport())
@@ -556,7 +559,7 @@ async def test_a_handler_that_raises_a_cancellation_answers_with_an_error(node: 
     service = node.create_service(AddTwoInts, "sums", handler)
     await settle()
     request = Asked()
-    service._serve(request, perf_ns() + MINUTE_NS)
+    serve_of(service)(request, perf_ns() + MINUTE_NS)
     (outcome,) = request.outcome
     assert str(outcome).startswith("CallbackCancelledError: service /sums")
 
@@ -571,7 +574,7 @@ async def test_what_a_handler_returns_is_awaited(node: Node) -> None:
     service = node.create_service(AddTwoInts, "sums", lambda request: work(request))  # noqa: PLW0108  # not known to be async
     await settle()
     request = Asked()
-    service._serve(request, perf_ns() + MINUTE_NS)
+    serve_of(service)(request, perf_ns() + MINUTE_NS)
     assert request.outcome == []
     await settle()
     assert request.outcome == [5]
@@ -583,6 +586,6 @@ async def test_a_request_that_was_given_up_is_not_served(node: Node) -> None:
     await settle()
     request = Asked()
     request.cancelled = True
-    service._serve(request, perf_ns() + MINUTE_NS)
+    serve_of(service)(request, perf_ns() + MINUTE_NS)
     assert request.outcome == ["dropped"]
     assert service.stats.dropped == 1

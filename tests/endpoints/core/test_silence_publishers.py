@@ -16,6 +16,7 @@ from aionode.qos import HistoryPolicy, QoSProfile
 from aionode.testing import FaultyTransport, ManualClock, settle
 from aionode.transport.local import LocalTransport
 from aionode.wire.typehash import type_hash
+from tests.support.arrivals import reader_of
 from tests.support.peers import quiet_node
 from tests.support.waiting import until
 
@@ -88,7 +89,7 @@ async def test_the_clock_of_another_host_may_be_wrong(
 
     def come(number: int, published_s: float) -> None:
         stamp = round((published_s + by_s) * 1e9)
-        subscription._reader.deliver(Int32(data=number), b"g" * 16, number, stamp)
+        reader_of(subscription).deliver(Int32(data=number), b"g" * 16, number, stamp)
 
     began_s = clock.now().nanoseconds / 1e9
     for number in range(3):
@@ -145,7 +146,7 @@ class Elsewhere:
 
     async def command(self) -> None:
         """Publish a message, which is handled."""
-        self.subscription._reader.deliver(Int32(), self.info.gid, 1, 0)
+        reader_of(self.subscription).deliver(Int32(), self.info.gid, 1, 0)
         await settle()
 
 
@@ -256,7 +257,7 @@ async def test_many_publishers_are_not_remembered(
         Int32, "n", lambda _: None, on_silence=lambda: None, silence_sec=60
     )
     for number in range(10):
-        subscription._reader.deliver(Int32(), bytes([number]) * 16, 1, 0)
+        reader_of(subscription).deliver(Int32(), bytes([number]) * 16, 1, 0)
     await settle()
     assert subscription._silence_watch is not None
     assert len(subscription._silence_watch._heard) == 3
@@ -274,10 +275,10 @@ async def test_a_lifespan_and_a_silence_go_together(node: Node, clock: ManualClo
         on_silence=lambda: log.append("stop"),
     )
     began_ns = clock.now().nanoseconds
-    subscription._reader.deliver(Int32(data=1), b"g" * 16, 1, began_ns - 2 * 10**9)
+    reader_of(subscription).deliver(Int32(data=1), b"g" * 16, 1, began_ns - 2 * 10**9)
     await clock.advance(1)
     assert log == []
     assert subscription.stats.expired == 1
-    subscription._reader.deliver(Int32(data=2), b"g" * 16, 2, clock.now().nanoseconds)
+    reader_of(subscription).deliver(Int32(data=2), b"g" * 16, 2, clock.now().nanoseconds)
     await clock.advance(0.3)
     assert log == [2, "stop"]

@@ -20,6 +20,7 @@ from aionode.lifecycle import LifecycleNode
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import ManualClock, local_context, settle
+from tests.support.arrivals import reader_of
 
 MACHINE = SteadyClock()
 
@@ -392,7 +393,7 @@ async def test_a_full_queue_that_keeps_all_is_emptied(
         await asyncio.Event().wait()
 
     subscription = wheels.create_subscription(Int32, "n", drive, KEEP_ALL, on_silence=driven.stop)
-    subscription._reader.depth = 3  # in place of 10,000
+    reader_of(subscription).depth = 3  # in place of 10,000
     publisher = teleop.create_publisher(Int32, "n", KEEP_ALL)
     send(publisher, 1)
     await settle()
@@ -614,7 +615,7 @@ async def test_a_loop_that_was_busy_for_less_has_missed_nothing(
 
     def come(number: int, after_s: float) -> None:
         stamp = began_ns + round(after_s * 1e9)
-        subscription._reader.deliver(Int32(data=number), b"g" * 16, number, stamp)
+        reader_of(subscription).deliver(Int32(data=number), b"g" * 16, number, stamp)
 
     come(1, 0)
 
@@ -636,7 +637,7 @@ async def test_a_message_that_a_transport_has_held_counts_from_its_arrival(
     """For example until others before it have come."""
     subscription = wheels.create_subscription(Int32, "n", driven.drive, on_silence=driven.stop)
     arrived_ns = clock.now().nanoseconds - 2 * 10**8
-    subscription._reader.deliver(Int32(), b"g" * 16, 1, arrived_ns, 0, arrived_ns)
+    reader_of(subscription).deliver(Int32(), b"g" * 16, 1, arrived_ns, 0, arrived_ns)
     await clock.advance(0.099)
     assert driven.log == [0]
     await clock.advance(0.001)

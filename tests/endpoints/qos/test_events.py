@@ -24,6 +24,7 @@ from aionode.node import Node
 from aionode.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from aionode.testing import local_context, settle
 from tests.endpoints.qos.conftest import Pair, next_of, waiting
+from tests.support.arrivals import reader_of
 
 BEST_EFFORT = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -67,7 +68,7 @@ async def test_messages_that_are_missing_are_an_event(node: Node) -> None:
         Int32, "n", event_callbacks=SubscriptionEventCallbacks(message_lost=got.append)
     )
     for number in (1, 2, 5, 6, 8):
-        subscription._reader.deliver(Int32(), b"x" * 16, number, 0)
+        reader_of(subscription).deliver(Int32(), b"x" * 16, number, 0)
     await settle()
     assert got == [QoSMessageLostInfo(2, 2), QoSMessageLostInfo(3, 1)]
 
@@ -78,7 +79,7 @@ async def test_a_late_stream_begins_with_what_has_happened(node: Node) -> None:
     subscription = node.create_subscription(Int32, "n")
     node.create_subscription(Int32, "n").destroy()
     for number in (1, 5):
-        subscription._reader.deliver(Int32(), b"x" * 16, number, 0)
+        reader_of(subscription).deliver(Int32(), b"x" * 16, number, 0)
     assert waiting(subscription.events, QoSMessageLostInfo) == [QoSMessageLostInfo(3, 3)]
     assert waiting(publisher.events, MatchedInfo) == [MatchedInfo(1, 1, 1, 1)]
 
@@ -189,7 +190,7 @@ async def test_events_of_a_publisher_without_policies_cost_no_message_anything(n
     publisher = node.create_publisher(Int32, "n", 10)
     subscription = node.create_subscription(Int32, "n")
     assert len(publisher._writers) == len(node.context.transports)
-    assert subscription._reader.on_arrival is None
+    assert reader_of(subscription).on_arrival is None
 
 
 async def test_a_message_that_does_not_fit_is_no_sign_of_life(node: Node) -> None:

@@ -20,6 +20,7 @@ from aionode.qos import LivelinessPolicy, QoSProfile
 from aionode.testing import FaultyTransport, ManualClock, settle
 from aionode.transport.local import LocalTransport
 from tests.endpoints.qos.conftest import waiting
+from tests.support.arrivals import reader_of
 from tests.support.peers import quiet_node
 
 SECOND = Duration(seconds=1)
@@ -55,7 +56,7 @@ async def test_a_message_that_was_on_its_way_for_too_long_is_not_delivered(
         network.delay = delay
         publisher.publish(Int32())
     await clock.advance(2)
-    assert len(subscription._reader) == 0
+    assert len(reader_of(subscription)) == 0
     assert subscription.stats.expired == 2
     network.delay = 0.9
     publisher.publish(Int32(data=3))

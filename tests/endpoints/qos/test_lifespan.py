@@ -16,6 +16,7 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import settle
 from aionode.transport.zenoh._subscription import ZenohReader
 from tests.endpoints.qos.conftest import Pair
+from tests.support.arrivals import reader_of
 from tests.support.peers import quiet_node
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ KEPT_LIMITED = KEPT.replace(lifespan=LIFESPAN)
 
 async def until_queued(subscription: Subscription[Any], count: int = 1) -> None:
     """Wait until so many messages are in the queue of a subscription."""
-    while len(subscription._reader) < count:
+    while len(reader_of(subscription)) < count:
         await checkpoint()
 
 
@@ -124,18 +125,18 @@ async def test_a_message_of_a_publisher_that_has_gone_expires_too(pair: Pair) ->
     await until_queued(subscription)
     publisher.destroy()
     await pair.clock.advance(1)
-    assert not subscription._reader
+    assert not reader_of(subscription)
 
 
 async def test_a_stamp_from_the_future_counts_as_now(pair: Pair) -> None:
     """Clocks of two machines may differ; DDS then counts from the arrival."""
     _, subscription = await pair.joined(10, LIMITED)
     future_ns = pair.clock.system_ns() + 3600 * 10**9
-    subscription._reader.deliver(Int32(data=1), b"x" * 16, 1, future_ns)
+    reader_of(subscription).deliver(Int32(data=1), b"x" * 16, 1, future_ns)
     assert (await subscription.receive()).data == 1
-    subscription._reader.deliver(Int32(data=2), b"x" * 16, 2, future_ns)
+    reader_of(subscription).deliver(Int32(data=2), b"x" * 16, 2, future_ns)
     await pair.clock.advance(1)
-    assert not subscription._reader
+    assert not reader_of(subscription)
 
 
 async def test_what_waits_for_a_new_process_expires_too(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import gc
+import weakref
 from typing import Any
 
 import pytest
@@ -77,7 +79,7 @@ async def test_several_tasks_share_each_turn() -> None:
 
 async def test_destroying_a_rate_ends_a_sleep_and_ends_an_iteration() -> None:
     """Later sleeps are refused, later iterations are empty."""
-    _, clock, rate = make()
+    _, _, rate = make()
     ended: list[str] = []
 
     async def iterate() -> None:
@@ -99,7 +101,17 @@ async def test_destroying_a_rate_ends_a_sleep_and_ends_an_iteration() -> None:
     with pytest.raises(EntityDestroyedError):
         await rate.sleep()
     assert [turn async for turn in rate] == []
-    assert not clock._jumps._handles
+
+
+async def test_a_clock_knows_no_rate_that_was_destroyed() -> None:
+    """A clock lives longer than the rates of a day."""
+    _, clock, rate = make()
+    rate.destroy()
+    known = weakref.ref(rate)
+    del rate
+    gc.collect()
+    assert clock.ros_time_is_active is False
+    assert known() is None
 
 
 async def test_a_cancelled_sleep_takes_no_turn_away() -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.transport.link import _subscription as subscriptions
+from tests.support import arrivals
 from tests.support.links import folder, manager_of, two_nodes, writer_of
 from tests.support.peers import KEEP_ALL
 
@@ -37,7 +38,7 @@ async def test_copies_that_zenoh_brings_after_the_end_of_a_publisher_are_left_ou
             reader.deliver(Int32(data=number), gid, number, 0)
 
         assert subscription.stats.received == sent + 1
-        assert not subscription._reader
+        assert not arrivals.reader_of(subscription)
 
 
 async def test_a_publisher_that_has_ended_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:

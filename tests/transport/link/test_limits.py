@@ -30,7 +30,19 @@ from aionode.transport.link import (
 )
 from aionode.transport.link._listener import Advertisement, Listener, socket_folder
 from aionode.transport.link._protocol import Kind
-from tests.support.links import Counting, folder, link_of, manager_of, two_nodes, writer_of
+from aionode.transport.link._publisher import LinkWriter
+from tests.support.links import (
+    Counting,
+    fd_of,
+    folder,
+    freeze,
+    link_of,
+    manager_of,
+    read,
+    thaw,
+    two_nodes,
+    writer_of,
+)
 from tests.support.peers import DOMAIN_ID, quiet_node
 from tests.support.waiting import until
 
@@ -72,7 +84,6 @@ async def test_a_client_without_a_hello_is_disconnected(
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         with closing(await dialled(folder, node.context)) as sock:
             await until_closed(sock)
-        assert not manager_of(node)._opening
 
 
 async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> None:
@@ -85,7 +96,10 @@ async def test_of_many_silent_sockets_the_oldest_are_closed(folder: Path) -> Non
                 await checkpoint()  # or the backlog is full
             for sock in socks[:20]:
                 await until_closed(sock)
-            assert len(manager_of(node)._opening) == manager.MAX_OPENING
+            for sock in socks[20:]:
+                assert sock.recv(1 << 16)  # a Hello, and then neither more nor an end
+                with pytest.raises(BlockingIOError):
+                    sock.recv(1)
 
 
 async def test_a_context_that_was_dialled_may_take_as_long_as_it_likes(
@@ -97,15 +111,21 @@ async def test_a_context_that_was_dialled_may_take_as_long_as_it_likes(
     async with asyncio.timeout(20), quiet_node("n", Context(link=True)) as node:
         links = manager_of(node)
         with ExitStack() as stack:
+            listening = []
             for number in range(70):
                 busy = stack.enter_context(closing(socket.socket(socket.AF_UNIX)))
                 busy.bind(str(folder / f"{number}.sock"))
                 busy.listen()
+                listening.append(busy)
                 links._dial(str(number))
             accepted = stack.enter_context(closing(await dialled(folder, node.context)))
             await until_closed(accepted)
 
-            assert len(links._opening) == 70
+            for busy in listening:
+                sock = stack.enter_context(closing(busy.accept()[0]))
+                assert sock.recv(1 << 16)
+                with pytest.raises(BlockingIOError):  # it was not given up
+                    sock.recv(1, socket.MSG_DONTWAIT)
 
 
 def test_the_sockets_of_contexts_that_live_are_not_dialled_at_the_start(folder: Path) -> None:
@@ -179,13 +199,10 @@ async def test_what_is_kept_for_a_reader_that_confirms_nothing_is_bounded(
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
-        (remote_publisher,) = next(
-            iter(manager_of(nodes.b).readers.values())
-        ).remote_publishers.values()
-        remote_publisher._confirms = False
+        monkeypatch.setattr(LinkWriter, "credit", lambda *_: None)
         await numbers.go(1000)
-        (route,) = writer_of(numbers.publisher)._send_queues.values()
-        assert len(route._unconfirmed) == 200
+        frames = writer_of(numbers.publisher).broken(link_of(nodes.a))
+        assert len(list(frames)) == 200
 
 
 async def test_a_process_that_keeps_memory_gets_the_rest_through_the_stream(
@@ -204,7 +221,7 @@ async def test_a_process_that_keeps_memory_gets_the_rest_through_the_stream(
             publisher.publish(Image(height=1, width=600_000, data=bytes([number]) * 600_000))
             kept.append(await subscription.receive())
         assert [bytes(one.data[-1:])[0] for one in kept] == list(range(8))
-        assert len(link_of(nodes.a)._lent) == 3
+        assert len(link_of(nodes.a).lent) == 3
 
 
 async def test_a_publisher_that_goes_gives_its_memory_back() -> None:
@@ -298,7 +315,7 @@ async def test_a_context_that_dials_again_replaces_a_link_whose_end_is_unread(
             await loop.sock_sendall(first, hello(1))
             await until(lambda: manager_of(node).links)
             old = link_of(node)
-            loop.remove_reader(old._fd)
+            freeze(old)
         with closing(await dialled(folder, node.context)) as second:
             await loop.sock_sendall(second, hello(1))
             await until(lambda: manager_of(node).linked("1") not in (None, old))
@@ -315,17 +332,16 @@ async def test_each_part_of_a_large_frame_that_the_socket_takes_is_progress() ->
         numbers = Counting(nodes)
         await numbers.until_linked()
         link, other = link_of(nodes.a), link_of(nodes.b)
-        loop = asyncio.get_running_loop()
-        loop.remove_reader(other._fd)
+        freeze(other)
         assert link.write(protocol.pack(Kind.DATA, 1, 1, bytes(16), bytes(8 << 20)))
         for _ in range(3):
             progress = link.progress()
             assert not link.idle
             while not progress.done():
-                other._on_readable()
+                read(other)
                 await checkpoint()
         assert not link.idle
-        loop.add_reader(other._fd, other._on_readable)
+        thaw(other)
 
 
 async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
@@ -338,22 +354,22 @@ async def test_what_the_socket_took_a_part_of_counts_among_what_is_given_up(
         await numbers.until_linked()
         link, other = link_of(nodes.a), link_of(nodes.b)
         loop = asyncio.get_running_loop()
-        loop.remove_reader(other._fd)
+        freeze(other)
         numbers.publish(20_000)
-        assert link._rest
+        assert not link.idle
 
         await _connection.flush(link)
 
         (warning,) = [each for each in caplog.records if "were given up" in each.message]
         assert isinstance(warning.args, tuple)
-        loop.remove_writer(link._fd)  # nothing more is sent, as after the end of the process
-        while other._on_readable():
+        loop.remove_writer(fd_of(link))  # nothing more is sent, as after the end of the process
+        while read(other):
             pass
         numbers.subscription.destroy()
         got = [msg.data async for msg in numbers.subscription]
         assert got[-1] == numbers.next - int(str(warning.args[1])) - 1
-        loop.add_writer(link._fd, link._on_writable)
-        loop.add_reader(other._fd, other._on_readable)
+        loop.add_writer(fd_of(link), link.send_rest)
+        thaw(other)
 
 
 # The folder

@@ -27,6 +27,7 @@ from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProf
 from aionode.transport.rcl import _participants, _transport, _wake
 from aionode.transport.rcl._bindings import view
 from tests.support import fake_rcl
+from tests.support.arrivals import reader_of
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -144,7 +145,7 @@ async def test_a_full_keep_all_subscription_leaves_messages_in_the_middleware(
         for one in rcl.of(fake_rcl.SubscriptionHandle)
         if (one.name, one.node.name) == ("/numbers", "right")
     ]
-    await until(lambda: len(handle.queue) and not reader._reader.has_room())
+    await until(lambda: len(handle.queue) and not reader_of(reader).has_room())
     assert [(await reader.receive()).data for _ in range(count)] == list(range(count))
 
 

@@ -1,0 +1,42 @@
+"""The ends of publishers, subscriptions and services that transports have to do with."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from aionode.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from aionode.endpoints._core.subscription_reader import SubscriptionReader
+    from aionode.endpoints.publisher import Publisher
+    from aionode.endpoints.service import Service
+    from aionode.endpoints.subscription import Subscription
+    from aionode.node import Node
+    from aionode.transport.base import Serve, Writer
+
+__all__ = ["gid_of", "reader_of", "serve_of", "writers_of"]
+
+
+def gid_of(node: Node, topic: str, kind: EndpointKind = EndpointKind.PUBLISHER) -> bytes:
+    """Return the gid of the only endpoint of a kind that a node has on a topic."""
+    (endpoint,) = [
+        each
+        for each in node.graph.endpoints(kind, name=topic)
+        if each.node.participant == node.context.participant and each.node.name == node.get_name()
+    ]
+    return endpoint.gid
+
+
+def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:
+    """Return what a subscription gives to each transport: messages are delivered to it."""
+    return subscription._reader
+
+
+def writers_of(publisher: Publisher[Any]) -> tuple[Writer, ...]:
+    """Return what a publisher got from each transport: it writes each message to them."""
+    return tuple(publisher._writers)
+
+
+def serve_of(service: Service[Any, Any]) -> Serve:
+    """Return what a service gives to each transport: it is called with each request."""
+    return service._serve
