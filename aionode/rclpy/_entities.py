@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Generic, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
 
 from aionode.clock import MachineTime
 from aionode.rclpy._impl.destroyable import Destroyable, Wakeup
@@ -10,6 +10,7 @@ from aionode.rclpy._impl.destroyable import Destroyable, Wakeup
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.rclpy._impl.endpoint import EndpointHandle
     from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
     from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
     from aionode.rclpy.clock import Clock
@@ -26,6 +27,7 @@ CHECK_S = 0.05
 steady_ns = MachineTime().steady_ns
 
 HandleT = TypeVar("HandleT", bound=Destroyable)
+EndpointHandleT = TypeVar("EndpointHandleT", bound="EndpointHandle[Any]")
 TopicHandleT = TypeVar("TopicHandleT", bound="PublisherHandle | SubscriptionHandle")
 ServiceHandleT = TypeVar("ServiceHandleT", bound="ClientHandle | ServiceHandle")
 
@@ -51,7 +53,17 @@ class HandleOwner(Generic[HandleT]):
         self.destroy()
 
 
-class TopicEntity(HandleOwner[TopicHandleT]):
+class EndpointEntity(HandleOwner[EndpointHandleT]):
+    """A publisher, subscription, client or server."""
+
+    @property
+    def logger_name(self) -> str:
+        """The name of the node's logger."""
+        with self._handle:
+            return self._handle.get_logger_name()
+
+
+class TopicEntity(EndpointEntity[TopicHandleT]):
     """A publisher or subscription."""
 
     event_handlers: list[EventHandler]
@@ -62,12 +74,6 @@ class TopicEntity(HandleOwner[TopicHandleT]):
         with self._handle:
             return self._handle.get_topic_name()
 
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self._handle:
-            return self._handle.get_logger_name()
-
     def destroy(self) -> None:
         """Destroy it, and its event handlers. Use the method of the node."""
         for handler in self.event_handlers:
@@ -75,7 +81,7 @@ class TopicEntity(HandleOwner[TopicHandleT]):
         super().destroy()
 
 
-class ServiceEntity(HandleOwner[ServiceHandleT]):
+class ServiceEntity(EndpointEntity[ServiceHandleT]):
     """A client or server."""
 
     def configure_introspection(
@@ -101,12 +107,6 @@ class ServiceEntity(HandleOwner[ServiceHandleT]):
         """The full name of the service."""
         with self._handle:
             return self._handle.service_name
-
-    @property
-    def logger_name(self) -> str:
-        """The name of the node's logger."""
-        with self._handle:
-            return self._handle.get_logger_name()
 
 
 def wait_until(is_ready: Callable[[], bool], context: Context, timeout_sec: float | None) -> bool:

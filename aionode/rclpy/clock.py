@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from aionode import clock as core
 from aionode.clock import (
     ClockChange,
     ClockType,
@@ -20,8 +21,6 @@ from aionode.rclpy.time import Time
 from aionode.rclpy.utilities import get_default_context
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from aionode.rclpy.context import Context
 
 __all__ = [
@@ -41,63 +40,35 @@ LONGEST_STEP_S = 1.0
 steady_ns = MachineTime().steady_ns
 
 
-class Clock:
+class Clock(ClockHandle):
     """Shows the time. With ROS_TIME, a `ROSClock` is created.
+
+    Callbacks of jumps are called in the thread that sets the clock, which is the one that spins its
+    node.
 
     Raises:
         TypeError: `clock_type` is not a `ClockType`.
     """
 
-    _handle: ClockHandle
-    _clock_type: ClockType
-
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Clock:  # noqa: PYI034  # may be a ROSClock
         """Create a `ROSClock` for ROS time."""
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
-        self = object.__new__(ROSClock if clock_type is ClockType.ROS_TIME else cls)
-        self._handle = ClockHandle(clock_type.value)
-        self._clock_type = clock_type
-        return self
+        return object.__new__(ROSClock if clock_type is ClockType.ROS_TIME else cls)
 
-    @property
-    def clock_type(self) -> ClockType:
-        """The kind of time that the clock shows."""
-        return self._clock_type
+    def __init__(self, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> None:
+        super().__init__(clock_type)
 
     @property
     def handle(self) -> ClockHandle:
-        """The handle."""
-        return self._handle
-
-    def __repr__(self) -> str:
-        return f"Clock(clock_type={self.clock_type.name})"
+        """The handle: the clock itself."""
+        return self
 
     def now(self) -> Time:
         """Return the time."""
-        with self._handle:
-            return Time(nanoseconds=self._handle.clock.now_ns(), clock_type=self._clock_type)
+        return Time(nanoseconds=self.now_ns(), clock_type=self._clock_type)
 
-    def create_jump_callback(
-        self,
-        threshold: JumpThreshold,
-        *,
-        pre_callback: Callable[[], None] | None = None,
-        post_callback: Callable[[TimeJump], None] | None = None,
-    ) -> JumpHandle:
-        """Call callbacks before and after each jump that meets `threshold`.
-
-        They are called in the thread that sets the clock, which is the one that spins its node.
-
-        Raises:
-            ValueError: neither is given, or one is not callable.
-        """
-        with self._handle:
-            return self._handle.clock.create_jump_callback(
-                threshold, pre_callback=pre_callback, post_callback=post_callback
-            )
-
-    def sleep_until(self, until: Time, context: Context | None = None) -> bool:
+    def sleep_until(self, until: core.Time, context: Context | None = None) -> bool:  # type: ignore[override] # blocks
         """Block the thread until the clock shows `until`, or the context is shut down.
 
         A clock of ROS time is set by a callback: another thread has to spin meanwhile.
@@ -127,7 +98,6 @@ class Clock:
             switched = switched or jump.clock_change in SWITCHES
             wakeup.wake()
 
-        clock = self._handle.clock
         threshold = JumpThreshold(
             min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=True
         )
@@ -135,18 +105,18 @@ class Clock:
         try:
             with self.create_jump_callback(threshold, post_callback=on_jump):
                 while context.ok() and not switched:
-                    left_ns = until.nanoseconds - clock.now_ns()
+                    left_ns = until.nanoseconds - self.now_ns()
                     if left_ns <= 0:
                         break
                     timeout_sec = None
-                    if not clock.ros_time_is_active:
+                    if not self.ros_time_is_active:
                         timeout_sec = left_ns / 1e9
                         if self._clock_type is not ClockType.STEADY_TIME:
                             timeout_sec = min(timeout_sec, LONGEST_STEP_S)
                     wakeup.wait(timeout_sec)
         finally:
             context.handle.signal.remove(wakeup)
-        return context.ok() and not switched and clock.now_ns() >= until.nanoseconds
+        return context.ok() and not switched and self.now_ns() >= until.nanoseconds
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
         """Block the thread for a duration; see `sleep_until`."""
@@ -158,30 +128,7 @@ class ROSClock(Clock):
 
     def __new__(cls, **_: Any) -> ROSClock:  # noqa: PYI034  # as in Clock
         """Create a clock of ROS time."""
-        clock = object.__new__(cls)
-        clock._handle = ClockHandle(ClockType.ROS_TIME.value)
-        clock._clock_type = ClockType.ROS_TIME
-        return clock
+        return object.__new__(cls)
 
-    @property
-    def ros_time_is_active(self) -> bool:
-        """Whether ROS time is switched on: the clock shows what it is set to."""
-        with self._handle:
-            return self._handle.clock.ros_time_is_active
-
-    def _set_ros_time_is_active(self, enabled: bool) -> None:
-        with self._handle:
-            self._handle.clock.set_ros_time_active(enabled)
-
-    def set_ros_time_override(self, time: Time) -> None:
-        """Set the time that it shows while ROS time is switched on.
-
-        Raises:
-            TypeError: `time` is not a `Time`.
-        """
-        if not isinstance(time, Time):
-            raise TypeError(
-                f"Time must be specified as rclpy.time.Time. Received type: {type(time)}"
-            )
-        with self._handle:
-            self._handle.clock.set_ros_time_override(time)
+    def __init__(self, **_: Any) -> None:
+        super().__init__(clock_type=ClockType.ROS_TIME)

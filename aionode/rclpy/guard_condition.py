@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aionode.rclpy._entities import HandleOwner
 from aionode.rclpy._impl.timers import GuardConditionHandle
 from aionode.rclpy.utilities import get_default_context
 
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["GuardCondition"]
 
 
-class GuardCondition:
+class GuardCondition(HandleOwner[GuardConditionHandle]):
     """Has an executor call `callback` after `trigger`. Made by `Node.create_guard_condition`.
 
     Attributes:
@@ -47,12 +48,3 @@ class GuardCondition:
         """
         with self._handle:
             self._handle.trigger_guard_condition()
-
-    @property
-    def handle(self) -> GuardConditionHandle:
-        """The handle."""
-        return self._handle
-
-    def destroy(self) -> None:
-        """Destroy it. Use `Node.destroy_guard_condition` for those of nodes."""
-        self._handle.destroy_when_not_in_use()

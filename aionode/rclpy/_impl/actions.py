@@ -159,14 +159,14 @@ class Expiry(Destroyable):
     def ready(self) -> bool:
         """Return whether one is to be forgotten now, or was."""
         due_ns = self.goals.due_ns
-        return bool(self.forgotten) or (due_ns is not None and self._clock.clock.now_ns() >= due_ns)
+        return bool(self.forgotten) or (due_ns is not None and self._clock.now_ns() >= due_ns)
 
     def due_in_ns(self) -> int | None:
         """Return how long it is until then; None if no goal has ended."""
         due_ns = self.goals.due_ns
-        if due_ns is None or self._clock.clock.ros_time_is_active:
+        if due_ns is None or self._clock.ros_time_is_active:
             return None
-        return max(0, due_ns - self._clock.clock.now_ns())
+        return max(0, due_ns - self._clock.now_ns())
 
     def take(self) -> list[Any]:
         """Forget the goals whose time is over; return all that were forgotten."""
@@ -209,7 +209,7 @@ class ActionServerHandle(ActionHandle):
         self.action_type = action_type
         self._status_message = message_like(action_type, "action_msgs/msg/GoalStatus")
         self.goals = GoalStore(
-            clock.clock.now_ns,
+            clock.now_ns,
             max_goals,
             int(result_timeout * 1e9),
             node.bare.context.network.queue_bytes,

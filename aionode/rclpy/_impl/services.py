@@ -8,6 +8,7 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from aionode.bare_node import BareClient, BareEndpoint
 from aionode.clock import MachineTime
 from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints.service_introspection import (
@@ -17,21 +18,18 @@ from aionode.endpoints.service_introspection import (
     RESPONSE_SENT,
 )
 from aionode.errors import DecodeError
-from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.endpoint import BareT, EndpointHandle
 from aionode.rclpy._impl.introspection import Introspection
-from aionode.rclpy._impl.qos import profile_of
 from aionode.rclpy._impl.typesupport import service_support
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.bare_node import BareClient, BareEndpoint
+    from aionode.clock import Clock
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.errors import ServiceError
-    from aionode.graph import EndpointInfo
     from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.node import NodeHandle
-    from aionode.rclpy._impl.timers import ClockHandle
     from aionode.transport.base import Request
 
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
@@ -88,45 +86,57 @@ class Requests:
         return waiting_bytes + len(request.message.data) > self._limit_bytes
 
 
-class ServiceHandle(Destroyable):
+class CallHandle(EndpointHandle[BareT]):
+    """One end of a service: a server or a client.
+
+    Args:
+        node: Its node.
+        srv_type: The service class.
+        srv_name: Its name.
+        qos_profile: Its profile.
+        wanted: Which end it is, in the error after shutdown.
+    """
+
+    def __init__(
+        self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any, wanted: str
+    ) -> None:
+        super().__init__(node, srv_name, qos_profile, f"failed to create {wanted}", is_service=True)
+        self.srv_type = srv_type
+        self._support = service_support(srv_type)
+        self._introspection = Introspection(node, srv_type, self.name)
+
+    @property
+    def service_name(self) -> str:
+        """The full name of the service."""
+        return self.name
+
+    def configure_introspection(
+        self, clock: Clock, qos_profile: Any, state: ServiceIntrospectionState
+    ) -> None:
+        """Tell of calls on ``<service>/_service_event``."""
+        self._introspection.configure(clock, qos_profile, state)
+
+    def _destroy(self) -> None:
+        if hasattr(self, "_introspection"):
+            self._introspection.close()
+        super()._destroy()
+
+
+class ServiceHandle(CallHandle[BareEndpoint]):
     """A service server: requests wait in it until they are taken."""
 
     def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
-        super().__init__(node.signal)
-        self._node = node
-        self._io = node.io
-        self._support = service_support(srv_type)
-        self.srv_type = srv_type
-        node.context_handle.refuse_after_shutdown("failed to create service")
-        profile = profile_of(qos_profile)
-        self._name = node.resolve(srv_name, is_service=True)
+        super().__init__(node, srv_type, srv_name, qos_profile, "service")
         limit_bytes = node.bare.context.network.queue_bytes
-        text = heavy_text(self._name, limit_bytes, "refused, without another word")
+        text = heavy_text(self.name, limit_bytes, "refused, without another word")
         self._requests = Requests(
-            profile.depth or MOST_REQUESTS,
+            self.profile.depth or MOST_REQUESTS,
             limit_bytes,
             node.requests,
             partial(logger.warning, text),
         )
         self._taken: dict[rmw_request_id_t, Request] = {}
-        self._introspection = Introspection(node, srv_type, self._name)
-        self._bare: BareEndpoint = node.io.call(
-            node.bare.create_server,
-            self._support.wire_type,
-            self._name,
-            profile,
-            self._requests.serve,
-        )
-
-    @property
-    def endpoint(self) -> EndpointInfo:
-        """The entry in the graph."""
-        return self._bare.endpoint
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        return self._name
+        self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 
     @property
     def qos(self) -> Any:
@@ -148,12 +158,12 @@ class ServiceHandle(Destroyable):
             except IndexError:
                 return None, None
             if request.cancelled:
-                self._io.post(request.drop)
+                self.io.post(request.drop)
                 continue
             try:
                 message = self._support.request.decode(request.message.data)
             except DecodeError as error:
-                self._io.send(partial(request.fail, "DecodeError", str(error)))
+                self.io.send(partial(request.fail, "DecodeError", str(error)))
                 continue
             info = request.sample_info
             request_id = rmw_request_id_t(info.sequence, info.gid)
@@ -167,7 +177,7 @@ class ServiceHandle(Destroyable):
         request = self._taken.pop(request_id, None)
         if request is None:
             return
-        self._io.send(partial(request.reply, self._support.wire_type.Response(data)))
+        self.io.send(partial(request.reply, self._support.wire_type.Response(data)))
         self._introspection.tell(
             RESPONSE_SENT, request_id.writer_guid, request_id.sequence_number, response
         )
@@ -176,13 +186,7 @@ class ServiceHandle(Destroyable):
         """Send an error in place of a response; only clients of aionode learn of it."""
         request = self._taken.pop(request_id, None)
         if request is not None:
-            self._io.send(partial(request.fail, error_type, text))
-
-    def configure_introspection(
-        self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
-    ) -> None:
-        """Tell of calls on ``<service>/_service_event``."""
-        self._introspection.configure(clock.clock, qos_profile, state)
+            self.io.send(partial(request.fail, error_type, text))
 
     def give_up(self, request_id: rmw_request_id_t) -> None:
         """Leave the request of this id without an answer; its client goes on waiting.
@@ -190,16 +194,6 @@ class ServiceHandle(Destroyable):
         As in rclpy, whose clients are not told that a callback has failed.
         """
         self._taken.pop(request_id, None)
-
-    def get_logger_name(self) -> str:
-        """Return the name of the node's logger."""
-        return self._node.logger_name()
-
-    def _destroy(self) -> None:
-        bare = getattr(self, "_bare", None)
-        if bare is not None:
-            self._introspection.close()
-            self._io.post(bare.destroy)
 
 
 class Replies:
@@ -220,34 +214,15 @@ class Replies:
         self._arrivals.note()
 
 
-class ClientHandle(Destroyable):
+class ClientHandle(CallHandle[BareClient]):
     """A client: responses wait in it until they are taken."""
 
     def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
-        super().__init__(node.signal)
-        self._node = node
-        self._io = node.io
-        self.srv_type = srv_type
-        self._support = service_support(srv_type)
-        node.context_handle.refuse_after_shutdown("failed to create client")
+        super().__init__(node, srv_type, srv_name, qos_profile, "client")
         self._replies = Replies(node.responses)
         self._calls: dict[int, Any] = {}
         self._sequence = 0
-        self._name = node.resolve(srv_name, is_service=True)
-        self._introspection = Introspection(node, srv_type, self._name)
-        self._bare: BareClient = node.io.call(
-            node.bare.create_client, self._support.wire_type, self._name, profile_of(qos_profile)
-        )
-
-    @property
-    def endpoint(self) -> EndpointInfo:
-        """The entry in the graph."""
-        return self._bare.endpoint
-
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        return self._name
+        self._announce(node.bare.create_client, self._support.wire_type)
 
     def ready(self) -> bool:
         """Return whether a response waits."""
@@ -267,9 +242,7 @@ class ClientHandle(Destroyable):
         if on_response is not None:
             self._replies.blocked[sequence] = on_response
         self._introspection.tell(REQUEST_SENT, self.endpoint.gid, sequence, request)
-        self._io.send(
-            partial(self._send, sequence, self._support.wire_type.Request(data), now_ns())
-        )
+        self.io.send(partial(self._send, sequence, self._support.wire_type.Request(data), now_ns()))
         return sequence
 
     def _send(self, sequence: int, request: Any, source_ns: int) -> None:
@@ -283,10 +256,10 @@ class ClientHandle(Destroyable):
             # rclpy's clients wait for ever: no error reaches them.
             calls.pop(sequence, None)
             if error is not None:
-                logger.warning("%s: %s", self._name, error)
+                logger.warning("%s: %s", self.name, error)
 
-        if self._bare.servers:
-            call = self._bare.send(request, source_ns, reply, fail)
+        if self.bare.servers:
+            call = self.bare.send(request, source_ns, reply, fail)
             if call.open:
                 calls[sequence] = call
 
@@ -300,12 +273,6 @@ class ClientHandle(Destroyable):
         self._introspection.tell(RESPONSE_RECEIVED, self.endpoint.gid, sequence, response)
         return response
 
-    def configure_introspection(
-        self, clock: ClockHandle, qos_profile: Any, state: ServiceIntrospectionState
-    ) -> None:
-        """Tell of calls on ``<service>/_service_event``."""
-        self._introspection.configure(clock.clock, qos_profile, state)
-
     def forget(self, sequence: int) -> None:
         """Forget a request: the server need not begin with it, and its response is dropped."""
         self._replies.blocked.pop(sequence, None)
@@ -315,7 +282,7 @@ class ClientHandle(Destroyable):
             if call is not None:
                 call.cancel()
 
-        self._io.post(cancel)
+        self.io.post(cancel)
 
     def take_response(
         self, response_type: Any
@@ -330,7 +297,7 @@ class ClientHandle(Destroyable):
             try:
                 response = self.receive(sequence, data)
             except DecodeError as error:
-                logger.warning("%s: the response is unreadable: %s", self._name, error)
+                logger.warning("%s: the response is unreadable: %s", self.name, error)
                 continue
             request_id = rmw_request_id_t(sequence, self.endpoint.gid)
             return rmw_service_info_t(request_id, 0, received_ns), response
@@ -342,14 +309,4 @@ class ClientHandle(Destroyable):
             RCLError: the context is shut down.
         """
         self._node.context_handle.refuse_after_shutdown("failed to check service availability")
-        return self._io.call(lambda: self._bare.servers > 0)
-
-    def get_logger_name(self) -> str:
-        """Return the name of the node's logger."""
-        return self._node.logger_name()
-
-    def _destroy(self) -> None:
-        bare = getattr(self, "_bare", None)
-        if bare is not None:
-            self._introspection.close()
-            self._io.post(bare.destroy)
+        return self.io.call(lambda: self.bare.servers > 0)

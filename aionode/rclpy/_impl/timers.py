@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 from aionode.clock import Clock, ClockType, Duration, JumpThreshold
 from aionode.endpoints.timer._ticker import ClockedSchedule
@@ -17,20 +17,18 @@ __all__ = ["ClockHandle", "GuardConditionHandle", "TimerHandle"]
 ANY_JUMP = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1))
 
 
-class ClockHandle(Destroyable):
-    """A clock.
+class ClockHandle(Destroyable, Clock):
+    """A clock: aionode's, as a handle."""
 
-    Attributes:
-        clock: aionode's clock, which shows the time.
-    """
+    def __new__(cls, *_: Any, **__: Any) -> Self:
+        """Create one of this class, whatever it shows."""
+        return object.__new__(cls)
 
     def __init__(self, clock_type: int) -> None:
-        super().__init__()
-        self.clock = Clock(ClockType(clock_type))
+        Destroyable.__init__(self)
+        Clock.__init__(self, ClockType(clock_type))
 
-    def get_now(self) -> Any:
-        """Return the time, with an attribute `nanoseconds`."""
-        return self.clock.now()
+    get_now = Clock.now
 
 
 class GuardConditionHandle(Destroyable):
@@ -71,7 +69,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         context.refuse_if_over("timer")
         ClockedSchedule.__init__(
             self,
-            clock.clock,
+            clock,
             period_ns,
             autostart=autostart,
             jumps=ANY_JUMP,

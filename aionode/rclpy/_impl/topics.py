@@ -8,15 +8,15 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from aionode.bare_node import BareEndpoint, BarePublisher
 from aionode.clock import MachineTime
 from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.endpoints._qos.lifespan import expires_ns
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
-from aionode.rclpy._impl.destroyable import Destroyable
+from aionode.rclpy._impl.endpoint import EndpointHandle
 from aionode.rclpy._impl.errors import RCLError
-from aionode.rclpy._impl.qos import profile_of
 from aionode.rclpy._impl.typesupport import message_support
 from aionode.rclpy._rosidl import aionode_class
 from aionode.transport.base import SampleInfo
@@ -25,7 +25,6 @@ from aionode.wire import cdr
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.bare_node import BareEndpoint, BarePublisher
     from aionode.graph import EndpointInfo
     from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.node import NodeHandle
@@ -46,35 +45,23 @@ logger = logging.getLogger("aionode.rclpy")
 now_ns = MachineTime().system_ns
 
 
-class PublisherHandle(Destroyable):
+class PublisherHandle(EndpointHandle[BarePublisher]):
     """A publisher. `publish` encodes, and delivers to this context, in the calling thread."""
 
     def __init__(self, node: NodeHandle, msg_type: Any, topic: str, qos_profile: Any) -> None:
-        super().__init__(node.signal)
-        self._node = node
+        super().__init__(node, topic, qos_profile, "Failed to create publisher", is_service=False)
         self.msg_type = msg_type
         self._support = message_support(msg_type)
-        self.io = node.io
-        node.context_handle.refuse_after_shutdown("Failed to create publisher")
-        name = node.resolve(topic)
-        create = partial(
-            node.bare.create_publisher, self._support.wire_type, name, profile_of(qos_profile)
-        )
-        self.bare: BarePublisher = node.io.call(node.io.change_delivery, create)
         self.feed: Feed = []
         self.assertions: list[Callable[[bytes], None]] = []  # of subscriptions only
-
-    @property
-    def endpoint(self) -> EndpointInfo:
-        """The entry in the graph."""
-        return self.bare.endpoint
+        self._announce(node.bare.create_publisher, self._support.wire_type)
 
     def publish(self, msg: Any) -> None:
         """Send a message."""
         try:
             data = self._support.encode(msg)
         except MessageError as error:
-            error.add_note(f"published to {self.endpoint.name}")
+            error.add_note(f"published to {self.name}")
             raise
         self.publish_raw(data)
 
@@ -124,15 +111,11 @@ class PublisherHandle(Destroyable):
             RCLError: the context is shut down.
         """
         self.refuse_after_shutdown("failed to get subscription count")
-        return len(self.io.call(self.bare.matched))
+        return self._count_matched()
 
     def get_topic_name(self) -> str:
         """Return the full name of the topic."""
-        return self.endpoint.name
-
-    def get_logger_name(self) -> str:
-        """Return the name of the node's logger."""
-        return self._node.logger_name()
+        return self.name
 
     def assert_liveliness(self) -> None:
         """Show that the publisher is alive.
@@ -157,11 +140,6 @@ class PublisherHandle(Destroyable):
         self.refuse_after_shutdown("Failed to wait for all acknowledgements")
         self.io.call(lambda: None)
         return True
-
-    def _destroy(self) -> None:
-        bare = getattr(self, "bare", None)
-        if bare is not None:
-            self.io.post(partial(self.io.change_delivery, bare.destroy))
 
 
 class Inbox:
@@ -290,7 +268,7 @@ class Inbox:
             waiter()
 
 
-class SubscriptionHandle(Destroyable):
+class SubscriptionHandle(EndpointHandle[BareEndpoint]):
     """A subscription: messages wait in it until one is taken, the newest `depth` of them."""
 
     def __init__(
@@ -301,20 +279,15 @@ class SubscriptionHandle(Destroyable):
         qos_profile: Any,
         content_filter_options: Any = None,
     ) -> None:
-        super().__init__(node.signal)
-        self._node = node
-        node.context_handle.refuse_after_shutdown("Failed to create subscription")
-        self.io = node.io
+        failure = "Failed to create subscription"
+        super().__init__(node, topic, qos_profile, failure, is_service=False)
         self.msg_type = msg_type
         self._support = message_support(msg_type)
         self._filter_options = content_filter_options
-        profile = profile_of(qos_profile)
         limit_bytes = node.bare.context.network.queue_bytes
-        name = node.resolve(topic)
-        text = heavy_text(name, limit_bytes, "dropped, without another word")
-        self.inbox = Inbox(
-            profile, limit_bytes, node.messages, node.io.post, partial(logger.warning, text)
-        )
+        text = heavy_text(self.name, limit_bytes, "dropped, without another word")
+        on_heavy = partial(logger.warning, text)
+        self.inbox = Inbox(self.profile, limit_bytes, node.messages, node.io.post, on_heavy)
         self.feed = self.inbox.feed
         self.assertions = self.inbox.assertions
         if content_filter_options is not None:
@@ -322,18 +295,10 @@ class SubscriptionHandle(Destroyable):
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
-        create = partial(
-            node.bare.create_subscription, self._support.wire_type, name, profile, self.inbox
-        )
-        self.bare: BareEndpoint = node.io.call(node.io.change_delivery, create)
         self._lifespans: dict[bytes, int] = {}
         self._received = 0
         self._complained = False
-
-    @property
-    def endpoint(self) -> EndpointInfo:
-        """The entry in the graph."""
-        return self.bare.endpoint
+        self._announce(node.bare.create_subscription, self._support.wire_type, self.inbox)
 
     def ready(self) -> bool:
         """Return whether a message waits."""
@@ -389,7 +354,7 @@ class SubscriptionHandle(Destroyable):
         self.inbox.rejected += 1
         if not self._complained:
             self._complained = True
-            logger.warning("%s: not a message of this type: %s", self.endpoint.name, error)
+            logger.warning("%s: not a message of this type: %s", self.name, error)
 
     def _has_expired(self, sample_info: SampleInfo, arrived_ns: int) -> bool:
         """Whether the lifespan that the publisher gave its messages has passed."""
@@ -411,15 +376,11 @@ class SubscriptionHandle(Destroyable):
 
     def get_publisher_count(self) -> int:
         """Return how many publishers are matched."""
-        return len(self.io.call(self.bare.matched))
+        return self._count_matched()
 
     def get_topic_name(self) -> str:
         """Return the full name of the topic."""
-        return self.endpoint.name
-
-    def get_logger_name(self) -> str:
-        """Return the name of the node's logger."""
-        return self._node.logger_name()
+        return self.name
 
     # Content filters
 
@@ -461,9 +422,3 @@ class SubscriptionHandle(Destroyable):
         if not isinstance(self._filter_options, tuple):
             raise RCLError("Failed to get content filter: content filtered topic is not enabled")
         return self._filter_options
-
-    def _destroy(self) -> None:
-        bare = getattr(self, "bare", None)
-        if bare is not None:
-            self.io.post(partial(self.io.change_delivery, bare.destroy))
-        self.signal.notify()

@@ -44,17 +44,7 @@ AsyncTimer = Timer
 
 
 class AsyncClock(ROSClock):
-    """A clock of ROS time that can be awaited."""
-
-    async def sleep(self, duration_sec: float) -> None:
-        """Wait until a duration has passed on this clock.
-
-        Raises:
-            EntityDestroyedError: its node is destroyed (a RuntimeError).
-            TimeSourceChangedError: ROS time was switched on or off meanwhile.
-            CancelledError: its node was destroyed meanwhile.
-        """
-        await self._handle.clock.sleep(duration_sec)
+    """A clock of ROS time that can be awaited: ``await clock.sleep(1.0)``."""
 
 
 class AsyncClient(Client[Any, Any]):
@@ -198,7 +188,7 @@ class AsyncNode(Node):
         self._destroyed.set()
         for pump in list(self._pumps.values()):
             pump.cancel()
-        self._clock.handle.clock.destroy()
+        self._clock.destroy()
         super().destroy_node()
 
     async def wait_for_node(  # type: ignore[override] # awaited, and without a limit
