@@ -29,7 +29,6 @@ from aionode.rclpy._impl.qos import rmw_qos_profile_t
 from aionode.rclpy._impl.services import ClientHandle as Client
 from aionode.rclpy._impl.services import ServiceHandle as Service
 from aionode.rclpy._impl.services import rmw_request_id_t, rmw_service_info_t
-from aionode.rclpy._impl.signals import SignalHandlerOptions
 from aionode.rclpy._impl.timers import ClockHandle as Clock
 from aionode.rclpy._impl.timers import GuardConditionHandle as GuardCondition
 from aionode.rclpy._impl.timers import TimerHandle as Timer
@@ -37,6 +36,7 @@ from aionode.rclpy._impl.topics import PublisherHandle as Publisher
 from aionode.rclpy._impl.topics import SubscriptionHandle as Subscription
 from aionode.rclpy._impl.typesupport import message_support
 from aionode.rclpy._impl.wait_set import WaitSet
+from aionode.rclpy.signals import SignalHandlerOptions
 
 __all__ = [
     "RCL_DEFAULT_DOMAIN_ID",
