@@ -14,7 +14,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any, Final, TypeVar
 
 import msgspec
 
@@ -42,11 +42,15 @@ class Form:
         as_float: Returns a float.
         as_byte: Returns a `byte`, given as its number.
         truncate: Most elements of an array and characters of a string; None for all.
+        no_arr: Whether arrays are described, by type and length.
+        no_str: Whether strings are described, by their length.
     """
 
     as_float: Callable[[float], object] = float
     as_byte: Callable[[int], object] = int
     truncate: int | None = None
+    no_arr: bool = False
+    no_str: bool = False
 
     def converter(self, type_: FieldType) -> Callable[[Any], object] | None:
         """Return what converts each value of a type; None for those that have one form."""
@@ -56,10 +60,12 @@ class Form:
             return self.as_float
         if type_.kind == "byte":
             return self.as_byte
-        return self.cut if type_.kind in {"string", "wstring"} else None
+        return self.string if type_.kind in {"string", "wstring"} else None
 
-    def cut(self, text: str) -> str:
+    def string(self, text: str) -> str:
         """Return a string, with ``...`` in place of the characters beyond the limit."""
+        if self.no_str:
+            return f"<string length: <{len(text)}>>"
         if self.truncate is None or len(text) <= self.truncate:
             return text
         return f"{text[: self.truncate]}..."
@@ -183,11 +189,33 @@ def plain_value(type_: FieldType, value: Any, form: Form) -> object:
     convert = form.converter(type_)
     if type_.container == "single":
         return value if convert is None else convert(value[0] if type_.kind == "byte" else value)
+    if form.no_arr:
+        return described(type_, value)
     cut = form.truncate is not None and len(value) > form.truncate
     shown = value[: form.truncate] if cut else value
     items = shown.tolist() if type_.form == "ndarray" else list(shown)
     items = items if convert is None else list(map(convert, items))
     return [*items, "..."] if cut else items
+
+
+IDL_NAMES: Final = {
+    "float32": "float",
+    "float64": "double",
+    "byte": "octet",
+    "bool": "boolean",
+    "char": "uint8",
+}
+"""The names of types in IDL, where they differ from those in ``.msg`` files."""
+
+
+def described(type_: FieldType, value: Any) -> str:
+    """Return the description of an array: its type, as ros2 names it, and its length."""
+    nested = type_.nested
+    name = IDL_NAMES.get(type_.kind, type_.kind) if nested is None else type_name(nested)
+    if type_.container == "array":
+        return f"<array type: {name}[{type_.size}]>"
+    bound = f"[{type_.size}]" if type_.container == "bounded" else ""
+    return f"<sequence type: {name}{bound}, length: {len(value)}>"
 
 
 def message_from(cls: type[Message], data: object, path: str) -> Message:

@@ -27,16 +27,23 @@ VERBS = {
 
 def commands() -> list[tuple[str, click.Command]]:
     """Return every command with its words."""
-    found: list[tuple[str, click.Command]] = []
+    commands: list[tuple[str, click.Command]] = []
     context = click.Context(root)
     for noun in NOUNS:
-        made = root.get_command(context, noun)
-        assert made is not None
-        if isinstance(made, click.Group):
-            found += [(f"{noun} {verb}", one) for verb, one in made.commands.items()]
+        of_noun = root.get_command(context, noun)
+        assert of_noun is not None
+        if isinstance(of_noun, click.Group):
+            commands += [(f"{noun} {verb}", of_verb) for verb, of_verb in of_noun.commands.items()]
         else:
-            found.append((noun, made))
-    return found
+            commands.append((noun, of_noun))
+    return commands
+
+
+def group_of(noun: str) -> click.Group:
+    """Return the group of the commands of a noun."""
+    group = root.get_command(click.Context(root), noun)
+    assert isinstance(group, click.Group)
+    return group
 
 
 def test_every_verb_of_ros2_is_there() -> None:
@@ -71,8 +78,8 @@ def test_every_command_that_prints_data_has_json() -> None:
     """Only what runs programs, mends a bag, or prints code of other languages has no records."""
     without = {
         words
-        for words, one in commands()
-        if "--json" not in [name for parameter in one.params for name in parameter.opts]
+        for words, of_verb in commands()
+        if "--json" not in [name for parameter in of_verb.params for name in parameter.opts]
     }
 
     assert without == {"bag reindex", "completion", "gateway types", "run"}
@@ -130,7 +137,7 @@ def failing(monkeypatch: pytest.MonkeyPatch) -> Callable[[BaseException], None]:
         def packages(**_: object) -> None:
             raise error
 
-        monkeypatch.setattr("aionode.cli._nouns.interface.packages", packages)
+        monkeypatch.setattr(group_of("interface").commands["packages"], "callback", packages)
 
     return fail_with
 
@@ -227,9 +234,8 @@ def test_completion_prints_the_script_of_a_shell(
 def test_the_shell_is_offered_types(monkeypatch: pytest.MonkeyPatch) -> None:
     """First packages, then their types: all types together would be hundreds."""
     context = click.Context(root)
-    made = root.get_command(context, "interface")
-    assert isinstance(made, click.Group)
-    (argument,) = (p for p in made.commands["show"].params if p.name == "type_name")
+    show = group_of("interface").commands["show"]
+    (argument,) = (parameter for parameter in show.params if parameter.name == "type_name")
 
     packages = [item.value for item in argument.shell_complete(context, "std_s")]
     types = [item.value for item in argument.shell_complete(context, "std_srvs/srv/S")]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import pytest
 
-from aionode.cli._support.formatting import PrintOptions, yaml_text
+from aionode.cli._support.formatting import yaml_text
 from aionode.cli._support.yaml_messages import Filler, message_from_yaml
 from aionode.clock import Time
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import PoseStamped
 from aionode.interfaces.std_msgs.msg import String
+from aionode.message import to_builtins
 
 
 @pytest.mark.parametrize(
@@ -23,7 +24,7 @@ def test_braces_are_optional(text: str, data: str) -> None:
 
 def test_what_echo_prints_pub_reads() -> None:
     """``aionode topic echo /a --once | aionode topic pub /b … --stdin``."""
-    printed = f"{yaml_text(PrintOptions().message(String(data='hi')))}---\n"
+    printed = f"{yaml_text(to_builtins(String(data='hi')))}---\n"
 
     assert message_from_yaml(String, printed) == String(data="hi")
 

@@ -9,7 +9,7 @@ import click
 
 from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
-from aionode.cli._support.completion import complete_types_of, complete_values, name_argument
+from aionode.cli._support.completion import name_argument, values_parameters
 from aionode.cli._support.nouns import ACTION, with_types
 from aionode.cli._support.options import count_option, positive, read_values, types_option
 from aionode.cli._support.yaml_messages import message_from_yaml
@@ -37,9 +37,6 @@ STOP_S = CANCEL_S + ENDED_S + 1.5
 USERS = {"clients": EndpointKind.SUBSCRIPTION, "servers": EndpointKind.PUBLISHER}
 
 
-action_argument = name_argument("action")
-
-
 @click.group("action")
 def action_command() -> None:
     """Send goals; list and inspect actions."""
@@ -52,13 +49,13 @@ command(
     count_option("actions"),
     help="List the actions that have a server or a client.",
 )(ACTION.list_names)
-add_type_and_find(action_command, ACTION, "action")
+add_type_and_find(action_command, ACTION)
 
 
 @command(
     action_command,
     "info",
-    action_argument,
+    name_argument("action"),
     types_option,
     click.option("-c", "--count", is_flag=True, help="Print only how many there are."),
 )
@@ -101,12 +98,7 @@ def nodes_with(node: Node, name: str, kind: EndpointKind) -> list[dict[str, Any]
 @command(
     action_command,
     "send_goal",
-    action_argument,
-    click.argument("action_type", shell_complete=complete_types_of("action", "action")),
-    click.argument(
-        "values", metavar="[GOAL]", required=False, shell_complete=complete_values("action")
-    ),
-    click.option("--stdin", is_flag=True, help="Read the goal from standard input."),
+    *values_parameters("action", "goal"),
     click.option("-f", "--feedback", is_flag=True, help="Print the feedback."),
     click.option(
         "--timeout", metavar="N", type=positive, help="Wait at most N seconds for a server."
@@ -130,15 +122,6 @@ async def send_goal(
     Ctrl-C cancels the goal and prints its result. The exit status is 0 if the goal succeeded, or
     was canceled so.
 
-    Args:
-        node: The command's node.
-        action_name: Name of the action.
-        action_type: ROS name of its type.
-        output: Where to print.
-        values: The goal in YAML.
-        feedback: Whether feedback is printed.
-        timeout: Maximum time to wait for a server, in seconds; None is unlimited.
-
     Returns:
         The exit status: 0 if the goal succeeded, or if this was cancelled and the server agreed to
         cancel the goal, as with ros2; else 1.
@@ -151,7 +134,9 @@ async def send_goal(
     from aionode.action import ActionClient
 
     name = ACTION.resolve(node, action_name)
-    action_class = await class_of(node, name, action_type)
+    used = ACTION.types_by_name(node).get(name, [])
+    users = lookup.action_endpoints(node, name) if action_type in used else []
+    action_class = await lookup.class_of(node, "action", action_type, name, users, used)
     goal = message_from_yaml(action_class.Goal, values)
     client: ActionClient[Any, Any, Any] = ActionClient(node, action_class, name)
     output.progress("Waiting for an action server to become available...")
@@ -182,18 +167,6 @@ async def print_end(handle: ClientGoalHandle[Any, Any], output: Output) -> None:
             print_outcome(handle, await handle.result(), output)
     except TimeoutError:
         output.warn(f"The goal has not ended within {ENDED_S:g} s: it is still being canceled")
-
-
-async def class_of(node: Node, name: str, action_type: str) -> Any:
-    """Return the class for the action type that the user gave.
-
-    Raises:
-        CommandError: there is no such type, or the action has another one.
-    """
-    types = ACTION.types_by_name(node).get(name, [])
-    if action_type in types:
-        return await lookup.type_of_action(node, name, action_type)
-    return lookup.class_given("action", action_type, name, types)
 
 
 async def watch(

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import functools
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
+from aionode.cli._support.command import VerbT, command
 from aionode.cli._support.completion import complete_interfaces
 from aionode.cli._support.options import interfaces_option, json_option
 from aionode.cli._support.output import Output
@@ -30,30 +30,38 @@ def interface_command() -> None:
     """Show message, service and action types."""
 
 
-def kind_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command the options for kinds of types; its function gets the chosen kinds."""
+kind_options = (
+    click.option("-m", "--only-msgs", "msg", is_flag=True, help="Messages only."),
+    click.option("-s", "--only-srvs", "srv", is_flag=True, help="Services only."),
+    click.option("-a", "--only-actions", "action", is_flag=True, help="Actions only."),
+)
 
-    @click.option("-m", "--only-msgs", is_flag=True, help="Messages only.")
-    @click.option("-s", "--only-srvs", is_flag=True, help="Services only.")
-    @click.option("-a", "--only-actions", is_flag=True, help="Actions only.")
-    @json_option
-    @interfaces_option
-    @functools.wraps(command)
-    def with_kinds(
-        json: bool, only_msgs: bool, only_srvs: bool, only_actions: bool, **options: Any
-    ) -> Any:
-        chosen = {"msg": only_msgs, "srv": only_srvs, "action": only_actions}
-        kinds = tuple(kind for kind, wanted in chosen.items() if wanted) or tuple(KINDS)
-        return command(output=Output(json=json), kinds=kinds, **options)
 
-    return with_kinds
+def prepare_kinds(options: dict[str, Any]) -> None:
+    """Replace the options for kinds of types by the chosen ``kinds``, all of them by default."""
+    chosen = {kind: options.pop(kind) for kind in KINDS}
+    options["kinds"] = tuple(kind for kind in KINDS if chosen[kind]) or tuple(KINDS)
+
+
+def listing(name: str, *parameters: Callable[[Any], Any]) -> Callable[[VerbT], VerbT]:
+    """Return the decorator for a verb that prints names, of the kinds that its options choose."""
+    return command(
+        interface_command,
+        name,
+        *parameters,
+        *kind_options,
+        node=False,
+        interfaces=True,
+        prepare=prepare_kinds,
+    )
 
 
 # Names
 
 
+@listing("list")
 def list_interfaces(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
-    """Print the names of all types."""
+    """List all types."""
     from aionode.interfaces import interface_names
 
     names = interface_names()
@@ -63,48 +71,33 @@ def list_interfaces(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) ->
             output.item(f"    {name}", {"name": name, "kind": kind})
 
 
-@interface_command.command("list")
-@kind_options
-def list_command(output: Output, kinds: tuple[str, ...]) -> None:
-    """List all types."""
-    list_interfaces(output=output, kinds=kinds)
-
-
+@listing("package", click.argument("package_name", shell_complete=complete_interfaces()))
 def package(package_name: str, *, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
-    """Print the names of the types in one package."""
+    """List the types of one package.
+
+    Raises:
+        CommandError: there is no such package.
+    """
     from aionode.interfaces import interface_names
 
-    names = interface_names(package_name)
+    name = package_name.rstrip("/")  # completion offers it with a slash
+    names = interface_names(name)
     if not names:
         from aionode.cli._support.lookup import unknown
 
-        raise unknown("Unknown package", package_name, all_packages(), "interface packages")
-    for name in of_kinds(names, kinds):
-        output.item(name, {"name": name, "kind": name.split("/")[1]})
+        raise unknown("Unknown package", name, all_packages(), "interface packages")
+    for type_name in of_kinds(names, kinds):
+        output.item(type_name, {"name": type_name, "kind": type_name.split("/")[1]})
 
 
-@interface_command.command("package")
-@click.argument("package_name", shell_complete=complete_interfaces())
-@kind_options
-def package_command(output: Output, kinds: tuple[str, ...], package_name: str) -> None:
-    """List the types of one package."""
-    package(package_name.rstrip("/"), output=output, kinds=kinds)
-
-
+@listing("packages")
 def packages(*, output: Output, kinds: tuple[str, ...] = tuple(KINDS)) -> None:
-    """Print the names of the packages with types of these kinds."""
+    """List the packages."""
     from aionode.interfaces import interface_names
 
     for name in all_packages():
         if of_kinds(interface_names(name), kinds):
             output.item(name, {"name": name})
-
-
-@interface_command.command("packages")
-@kind_options
-def packages_command(output: Output, kinds: tuple[str, ...]) -> None:
-    """List the packages."""
-    packages(output=output, kinds=kinds)
 
 
 def all_packages() -> list[str]:
@@ -201,20 +194,22 @@ def proto_command(type_name: str, no_quotes: bool, json: bool) -> None:
     with_class(type_name, lambda cls, output: proto(cls, output=output, quotes=not no_quotes), json)
 
 
-@interface_command.command("generate")
-@click.argument("path", type=click.Path(exists=True, file_okay=False, path_type=Path))
-@click.option(
-    "-o",
-    "--out-dir",
-    required=True,
-    type=click.Path(file_okay=False, path_type=Path),
-    help="Output folder; created if needed.",
+@command(
+    interface_command,
+    "generate",
+    click.argument("path", type=click.Path(exists=True, file_okay=False, path_type=Path)),
+    click.option(
+        "-o",
+        "--out-dir",
+        required=True,
+        type=click.Path(file_okay=False, path_type=Path),
+        help="Output folder; created if needed.",
+    ),
+    node=False,
 )
-@json_option
-def generate_command(path: Path, out_dir: Path, json: bool) -> None:
+def generate(path: Path, out_dir: Path, *, output: Output) -> None:
     """Generate Python modules, with types and docstrings, from a folder of definitions."""
-    from aionode.idl import generate
+    from aionode.idl import generate as generate_modules
 
-    output = Output(json=json)
-    for file in generate(path, out_dir):
+    for file in generate_modules(path, out_dir):
         output.item(str(file), {"file": str(file)})

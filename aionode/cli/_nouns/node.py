@@ -34,16 +34,12 @@ async def list_nodes(
 ) -> None:
     """List the nodes on the network."""
     names = [info.fully_qualified_name for info in lookup.node_infos(node, hidden=hidden)]
-    if count:
-        output.item(str(len(names)), {"nodes": len(names)})
-        return
-    if len(set(names)) < len(names):
+    if len(set(names)) < len(names) and not count:
         output.warn(
             "WARNING: Be aware that there are nodes in the graph that share an exact name, which "
             "can have unintended side effects."
         )
-    for name in names:
-        output.item(name, {"name": name})
+    output.items([(name, {"name": name}) for name in names], count="nodes" * count)
 
 
 @command(

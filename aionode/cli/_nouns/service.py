@@ -8,7 +8,7 @@ import click
 
 from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
-from aionode.cli._support.completion import complete_types_of, complete_values, name_argument
+from aionode.cli._support.completion import name_argument, type_argument, values_parameters
 from aionode.cli._support.follow import Follower
 from aionode.cli._support.formatting import Printer, names_text
 from aionode.cli._support.nouns import SERVICE
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
 
 __all__ = ["call", "echo", "info", "service_command"]
 
-service_argument = name_argument("service")
-
 
 @click.group("service")
 def service_command() -> None:
@@ -51,10 +49,10 @@ command(
     hidden_option("--include-hidden-services", what="services"),
     help="List the services that have a server.",
 )(SERVICE.list_names)
-add_type_and_find(service_command, SERVICE, "srv")
+add_type_and_find(service_command, SERVICE)
 
 
-@command(service_command, "info", service_argument)
+@command(service_command, "info", name_argument("service"))
 async def info(node: Node, service_name: str, *, output: Output) -> None:
     """Print the type of a service, and the number of its clients and servers.
 
@@ -73,10 +71,7 @@ async def info(node: Node, service_name: str, *, output: Output) -> None:
 @command(
     service_command,
     "call",
-    service_argument,
-    click.argument("service_type", shell_complete=complete_types_of("service", "srv")),
-    click.argument("values", required=False, shell_complete=complete_values("service")),
-    click.option("--stdin", is_flag=True, help="Read the values from standard input."),
+    *values_parameters("service"),
     click.option("-r", "--rate", metavar="N", type=hertz, help="Repeat the call, in Hz."),
     click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds."),
     interfaces=True,
@@ -95,22 +90,16 @@ async def call(
 ) -> None:
     """Call a service with a request in YAML, such as '{a: 1, b: 2}'.
 
-    Args:
-        node: The command's node.
-        service_name: Name of the service.
-        service_type: ROS name of its type.
-        output: Where to print each response.
-        values: The request in YAML.
-        rate: Calls in a second; None makes one call.
-        timeout: Maximum time to wait for a server, and for each response, in seconds.
-
     Raises:
         CommandError: the service has another type, the request is invalid, or no server appeared.
         ServiceError: the server failed.
         RequestTimeoutError: the server did not answer within `timeout`.
     """
     name = SERVICE.resolve(node, service_name)
-    srv_type = await class_called(node, name, service_type)
+    servers = lookup.endpoints(node, EndpointKind.SERVER, name=name)
+    used = {server.type_name for server in servers}
+    servers = [server for server in servers if server.type_name == service_type]
+    srv_type = await lookup.class_of(node, "service", service_type, name, servers, used)
     request = message_from_yaml(srv_type.Request, values)
     client: Client[Any, Any] = node.create_client(srv_type, name)
     if not client.service_is_ready():
@@ -126,20 +115,6 @@ async def call(
         await ticks.sleep()
 
 
-async def class_called(node: Node, name: str, service_type: str) -> Any:
-    """Return the class for the service type that the user gave.
-
-    Raises:
-        CommandError: there is no such type, or the service has another one.
-    """
-    servers = lookup.endpoints(node, EndpointKind.SERVER, name=name)
-    of_type = [server for server in servers if server.type_name == service_type]
-    if of_type:
-        return await lookup.type_of(node, of_type)
-    used = sorted({server.type_name for server in servers})
-    return lookup.class_given("service", service_type, name, used)
-
-
 # Events
 
 DEPTH = 1000
@@ -151,10 +126,8 @@ ACTION_SERVICES = {"SendGoal": "SendGoalService", "GetResult": "GetResultService
 @command(
     service_command,
     "echo",
-    service_argument,
-    click.argument(
-        "service_type", required=False, shell_complete=complete_types_of("service", "srv")
-    ),
+    name_argument("service"),
+    type_argument("service", required=False),
     csv_option,
     *print_options,
     click.option("--once", is_flag=True, help="Print one event and end."),
@@ -176,15 +149,6 @@ async def echo(
 ) -> int:
     """Print each request and response of a service that is introspected.
 
-    Args:
-        node: The command's node.
-        service_name: Name of the service.
-        service_type: ROS name of its type; default: that of its servers and clients.
-        output: Where to print.
-        once: Whether the first event is the only one.
-        timeout: How long to print events, in seconds; None is unlimited.
-        printing: Passed on to `Printer`.
-
     Returns:
         The exit status.
 
@@ -203,7 +167,7 @@ async def echo(
     names = event_names()
 
     def on_event(event: Any, _: MessageInfo) -> None:
-        plain = printer.options.message(event)
+        plain = printer.plain(event)
         number = plain["info"]["event_type"]
         plain["info"]["event_type"] = names.get(number, number)
         printer.show_plain(plain)
@@ -241,15 +205,14 @@ async def class_watched(node: Node, name: str, given: str | None) -> Any:
         CommandError: the service is unknown, or has several types.
     """
     users = lookup.endpoints(node, *SERVICE_KINDS, name=name)
-    if given is not None:
-        users = [user for user in users if user.type_name == given]
-    service_type = lookup.only_type("service", name, users) if given is None else given
+    service_type = given or lookup.only_type("service", name, users)
     if service_type is None:
         raise SERVICE.unknown(node, name)
     action, _, part = service_type.rpartition("_")
     if "/action/" in service_type and part in ACTION_SERVICES:
-        action_type = await lookup.type_of_action(node, name.rpartition("/_action/")[0], action)
+        of = name.rpartition("/_action/")[0]
+        users = lookup.action_endpoints(node, of)
+        action_type = await lookup.class_of(node, "action", action, of, users)
         return getattr(action_type.Impl, ACTION_SERVICES[part])
-    if users:
-        return await lookup.type_of(node, users)
-    return lookup.interface_class("service", service_type)
+    users = [user for user in users if user.type_name == service_type]
+    return await lookup.class_of(node, "service", service_type, name, users)

@@ -11,7 +11,7 @@ from aionode.cli._nouns.topic_echo import echoing, name_option, qos_from, qos_op
 from aionode.cli._nouns.topic_measure import measuring
 from aionode.cli._support import lookup
 from aionode.cli._support.command import add_type_and_find, command
-from aionode.cli._support.completion import complete_types_of, complete_values, name_argument
+from aionode.cli._support.completion import name_argument, values_parameters
 from aionode.cli._support.follow import Follower
 from aionode.cli._support.formatting import endpoint_text, names_text
 from aionode.cli._support.nouns import TOPIC, with_types
@@ -40,15 +40,13 @@ if TYPE_CHECKING:
 
 __all__ = ["info", "list_topics", "pub", "topic_command"]
 
-topic_argument = name_argument("topic")
-
 
 @click.group("topic", commands={**echoing.commands, **measuring.commands})
 def topic_command() -> None:
     """List, print, publish and measure topics."""
 
 
-add_type_and_find(topic_command, TOPIC, "msg")
+add_type_and_find(topic_command, TOPIC)
 
 
 @command(
@@ -72,14 +70,11 @@ async def list_topics(
 ) -> None:
     """List the topics that have a publisher or a subscription."""
     types_by_name = TOPIC.types_by_name(node, hidden=hidden)
-    if count:
-        output.item(str(len(types_by_name)), {"topics": len(types_by_name)})
-        return
     numbers = {
         name: {kind: len(lookup.endpoints(node, kind, name=name)) for kind in TOPIC_KINDS}
         for name in types_by_name
     }
-    if verbose and not output.json:
+    if verbose and not (count or output.json):
         output.text(
             verbose_text("Published", "publisher", EndpointKind.PUBLISHER, types_by_name, numbers)
         )
@@ -101,7 +96,7 @@ async def list_topics(
         )
         for name, of in types_by_name.items()
     ]
-    output.items(items)
+    output.items(items, count="topics" * count)
 
 
 def verbose_text(
@@ -123,7 +118,7 @@ def verbose_text(
 @command(
     topic_command,
     "info",
-    topic_argument,
+    name_argument("topic"),
     click.option(
         "-v", "--verbose", is_flag=True, help="Print nodes, type hashes, GIDs and QoS too."
     ),
@@ -210,10 +205,7 @@ def prepare_pub(options: dict[str, Any]) -> None:
 @command(
     topic_command,
     "pub",
-    topic_argument,
-    click.argument("message_type", shell_complete=complete_types_of("topic", "msg")),
-    click.argument("values", required=False, shell_complete=complete_values("message")),
-    click.option("--stdin", is_flag=True, help="Read the values from standard input."),
+    *values_parameters("topic"),
     click.option(
         "-r",
         "--rate",
@@ -271,20 +263,6 @@ async def pub(
     """Publish messages given in YAML, such as '{data: hello}'.
 
     A Header given as auto and a Time given as now are set to the time of publishing.
-
-    Args:
-        node: The command's node.
-        topic_name: Name of the topic.
-        message_type: ROS name of its type.
-        output: Where to print.
-        values: The message in YAML.
-        rate: Publishing rate, in Hz.
-        print_nth: Print every n-th message; 0 prints none.
-        times: Number of messages; 0 publishes until cancelled.
-        wait_for: Number of subscriptions to wait for first.
-        max_wait_s: Maximum time to wait for them, in seconds; None is unlimited.
-        keep_alive_s: How long to keep the node alive after the last message, in seconds.
-        qos: Profile of the publisher.
 
     Raises:
         CommandError: the type or values are invalid, or too few subscriptions appeared.

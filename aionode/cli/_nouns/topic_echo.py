@@ -11,8 +11,8 @@ from aionode.cli._support.command import command
 from aionode.cli._support.completion import (
     beginning,
     class_named,
-    complete_types_of,
     name_argument,
+    type_argument,
     types_now,
 )
 from aionode.cli._support.follow import Follower, filter_from
@@ -158,9 +158,7 @@ def prepare_echo(options: dict[str, Any]) -> None:
     echoing,
     "echo",
     name_argument("topic"),
-    click.argument(
-        "message_type", required=False, shell_complete=complete_types_of("topic", "msg")
-    ),
+    type_argument("topic", required=False),
     *qos_options("sensor_data"),
     csv_option,
     click.option(
@@ -212,23 +210,6 @@ async def echo(
     **printing: Any,
 ) -> int:
     """Print each message of a topic, as YAML, CSV or JSON.
-
-    Args:
-        node: The command's node.
-        topic_name: Name of the topic.
-        message_type: ROS name of its type; default: that of its publishers and subscriptions.
-        output: Where to print.
-        qos: Profile of the subscription; default: the strongest that all current publishers offer.
-        field: Path of the only field to print.
-        no_lost_messages: Whether lost messages are not reported.
-        raw: Whether serialized bytes are printed.
-        filter_text: Python expression that is true of the messages to print.
-        content_filter: The content filter of the subscription.
-        once: Whether the first message is the only one.
-        timeout: How long to print messages, in seconds; None is unlimited.
-        with_info: Whether timestamps and sequence numbers are printed too.
-        clear: Whether the screen is cleared before each message.
-        printing: Passed on to `Printer`.
 
     Returns:
         The exit status.

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from aionode.cli._support.completion import complete_interfaces, complete_names
+from aionode.cli._support.completion import TYPES, complete_interfaces, complete_names
 from aionode.cli._support.nouns import ACTION, Noun
 from aionode.cli._support.options import (
     count_option,
@@ -17,14 +17,17 @@ from aionode.cli._support.options import (
     ros2_options,
     sim_time_option,
 )
+from aionode.cli._support.output import Output
 from aionode.cli._support.session import STOP_S, run_verb
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["add_type_and_find", "command"]
+__all__ = ["VerbT", "add_type_and_find", "command"]
 
-Verb = Callable[..., Coroutine[Any, Any, int | None]]
+Verb = Callable[..., Any]
+"""A coroutine that may return an exit status; for a command without a node, a function."""
+
 VerbT = TypeVar("VerbT", bound=Verb)
 
 SECTIONS = ("Args:", "Returns:", "Raises:")
@@ -35,6 +38,7 @@ def command(
     group: click.Group,
     name: str,
     *parameters: Callable[[Any], Any],
+    node: bool = True,
     interfaces: bool = False,
     sim_time: bool = False,
     prepare: Callable[[dict[str, Any]], None] = lambda _: None,
@@ -47,13 +51,15 @@ def command(
     """Return the decorator that makes a command of its verb, and leaves the verb as it is.
 
     The verb is called with the node, the values of its parameters by name, and ``output``. Its
-    docstring, up to the first section, is the command's help.
+    docstring, up to the first section, is the command's help; the help of its options says what
+    its arguments are.
 
     Args:
         group: The group of commands of the noun.
         name: The name of the command.
-        parameters: Its own arguments and options, as click declares them; ``--json`` and the
-            options without a meaning here, which existing scripts may use, are added.
+        parameters: Its own arguments and options, as click declares them; ``--json`` is added, and
+            to commands with a node the options without a meaning here, which scripts may use.
+        node: Whether the verb needs a node; without one, it is a function that gets the rest.
         interfaces: Whether it has the option ``--interfaces``.
         sim_time: Whether it has the option ``--use-sim-time``, for the time of its node.
         prepare: Changes the values of the parameters into those that the verb gets. It runs before
@@ -65,6 +71,7 @@ def command(
         settings: Passed on to click.
     """
     shared = [json_option]
+    unused = [ros2_options] if node else []
     if sim_time:
         shared.append(sim_time_option)
     if interfaces:
@@ -73,10 +80,13 @@ def command(
     def declare(verb: VerbT) -> VerbT:
         def run(json: bool, **values: Any) -> None:
             prepare(values)
+            if not node:
+                verb(output=Output(json=json), **values)
+                return
             node_name = values.pop("own_name", None)
             use_sim_time = values.pop("use_sim_time", False)
             run_verb(
-                lambda node, output: verb(node, output=output, **values),
+                lambda own_node, output: verb(own_node, output=output, **values),
                 json=json,
                 node_name=node_name,
                 use_sim_time=use_sim_time,
@@ -87,7 +97,7 @@ def command(
             )
 
         decorated: Callable[..., None] = run
-        for add in reversed((*parameters, *shared, ros2_options)):
+        for add in reversed((*parameters, *shared, *unused)):
             decorated = add(decorated)
         group.command(name, **{"help": help_of(verb), **settings})(decorated)
         return verb
@@ -105,16 +115,10 @@ def help_of(verb: Verb) -> str:
     return "\n".join(lines)
 
 
-def add_type_and_find(group: click.Group, noun: Noun, kind: str) -> None:
-    """Add the commands ``type`` and ``find``.
-
-    Args:
-        group: The group of commands of the noun.
-        noun: Topics, services or actions.
-        kind: The kind of their types: ``msg``, ``srv`` or ``action``.
-    """
+def add_type_and_find(group: click.Group, noun: Noun) -> None:
+    """Add the commands ``type`` and ``find`` to the group of a noun."""
     word = noun.word
-    type_word = "message" if kind == "msg" else word
+    type_word, kind = TYPES[word]
     command(
         group,
         "type",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Iterable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import click
 
@@ -15,16 +15,24 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 __all__ = [
+    "TYPES",
     "beginning",
     "class_named",
     "complete_interfaces",
     "complete_names",
     "complete_of_node",
-    "complete_types_of",
-    "complete_values",
     "name_argument",
+    "type_argument",
     "types_now",
+    "values_parameters",
 ]
+
+TYPES: Final = {
+    "topic": ("message", "msg"),
+    "service": ("service", "srv"),
+    "action": ("action", "action"),
+}
+"""For each noun, the word for its types, and the part of their names that tells them."""
 
 AnswerT = TypeVar("AnswerT")
 
@@ -56,13 +64,37 @@ def name_argument(what: str, *, required: bool = True) -> Callable[[CommandT], C
     return click.argument(f"{what}_name", required=required, shell_complete=complete_names(what))
 
 
-def complete_types_of(what: str, kind: str) -> Completer:
+def type_argument(what: str, *, required: bool = True) -> Callable[[CommandT], CommandT]:
+    """Return the argument for the type after the name of a ``topic``, ``service`` or ``action``."""
+    name = f"{TYPES[what][0]}_type"
+    return click.argument(name, required=required, shell_complete=complete_types_of(what))
+
+
+def values_parameters(
+    what: str, word: str = "values"
+) -> tuple[Callable[[CommandT], CommandT], ...]:
+    """Return the parameters for the name of a ``topic``, its type and values for it, in YAML.
+
+    They suit ``service`` and ``action`` as well. `read_values` reads the values.
+    """
+    completer = complete_values(TYPES[what][0])
+    return (
+        name_argument(what),
+        type_argument(what),
+        click.argument(
+            "values", metavar=f"[{word.upper()}]", required=False, shell_complete=completer
+        ),
+        click.option("--stdin", is_flag=True, help=f"Read the {word} from standard input."),
+    )
+
+
+def complete_types_of(what: str) -> Completer:
     """Return the completer for the type after the name of a ``topic``, ``service`` or ``action``.
 
-    It offers the types that the name has on the network. If none of them matches, it offers all of
-    a kind (``msg``, ``srv``, ``action``).
+    It offers the types that the name has on the network. If none of them matches, it offers all
+    types that such a name can have.
     """
-    any_type = complete_interfaces(kind)
+    any_type = complete_interfaces(TYPES[what][1])
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
         name = ctx.params.get(f"{what}_name")

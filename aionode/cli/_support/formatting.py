@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from aionode.errors import CommandError
 from aionode.message import Message, fields, type_name
+from aionode.message._conversion import Form, plain, plain_value
 from aionode.qos import HistoryPolicy
 
 if TYPE_CHECKING:
@@ -20,7 +19,6 @@ if TYPE_CHECKING:
     from aionode.message import FieldType
 
 __all__ = [
-    "PrintOptions",
     "Printer",
     "csv_line",
     "endpoint_text",
@@ -28,80 +26,6 @@ __all__ = [
     "names_text",
     "yaml_text",
 ]
-
-
-@dataclass(frozen=True, slots=True)
-class PrintOptions:
-    """The extent to which a message is printed.
-
-    Attributes:
-        limit: Maximum elements of an array and characters of a string; None prints all.
-        no_arr: Whether arrays are described instead of printed.
-        no_str: Whether strings are described instead of printed.
-        as_byte: Returns a `byte` as it is printed, given its number.
-    """
-
-    limit: int | None = None
-    no_arr: bool = False
-    no_str: bool = False
-    as_byte: Callable[[int], object] = int
-
-    def message(self, msg: Message) -> dict[str, Any]:
-        """Return a message as plain values."""
-        return {
-            field.name: self.value(getattr(msg, field.name), field.type)
-            for field in fields(type(msg))
-        }
-
-    def value(self, value: Any, type_: FieldType | None = None) -> Any:
-        """Return a value as plain values; `type_` is for the description of arrays."""
-        if isinstance(value, Message):
-            return self.message(value)
-        if isinstance(value, str):
-            return self._string(value)
-        if isinstance(value, bytes) and type_ is not None and type_.container == "single":
-            return self.as_byte(value[0])
-        if isinstance(value, bool | int | float):
-            return value
-        return self._many(value, type_)
-
-    def _string(self, text: str) -> str:
-        if self.no_str:
-            return f"<string length: <{len(text)}>>"
-        if self.limit is not None and len(text) > self.limit:
-            return f"{text[: self.limit]}..."
-        return text
-
-    def _many(self, values: Any, type_: FieldType | None) -> Any:
-        if self.no_arr and type_ is not None:
-            return described(values, type_)
-        cut = self.limit is not None and len(values) > self.limit
-        shown = values[: self.limit] if cut else values
-        plain = shown.tolist() if hasattr(shown, "tolist") else list(shown)
-        if type_ is not None and type_.kind == "byte":
-            plain = list(map(self.as_byte, plain))
-        plain = [v if type(v) in {int, float, bool, bytes} else self.value(v) for v in plain]
-        return [*plain, "..."] if cut else plain
-
-
-IDL_NAMES = {
-    "float32": "float",
-    "float64": "double",
-    "byte": "octet",
-    "bool": "boolean",
-    "char": "uint8",
-}
-"""The names of types in IDL, where they differ from those in ``.msg`` files."""
-
-
-def described(values: Any, type_: FieldType) -> str:
-    """Return the description of an array: its type, as ros2 names it, and its length."""
-    nested = type_.nested
-    name = IDL_NAMES.get(type_.kind, type_.kind) if nested is None else type_name(nested)
-    if type_.container == "array":
-        return f"<array type: {name}[{type_.size}]>"
-    bound = f"[{type_.size}]" if type_.container == "bounded" else ""
-    return f"<sequence type: {name}{bound}, length: {len(values)}>"
 
 
 def yaml_text(plain: object, *, flow_style: bool = False) -> str:
@@ -155,8 +79,6 @@ class Printer:
         no_str: Whether strings are described instead of printed.
         field: The path of the only field to print.
 
-    Attributes:
-        options: How messages become plain values.
     """
 
     def __init__(
@@ -176,11 +98,11 @@ class Printer:
         self._field = field
         # ros2 prints a `byte` as a character, in CSV and as a single field as bytes.
         as_byte = chr if not (csv or field) else lambda number: bytes((number,))
-        self.options = PrintOptions(
-            None if output.json else truncate_length,
+        self._form = Form(
+            as_byte=int if output.json else as_byte,
+            truncate=None if output.json else truncate_length,
             no_arr=no_arr,
             no_str=no_str,
-            as_byte=int if output.json else as_byte,
         )
 
     def part_of(self, msg: Any) -> Any:
@@ -191,9 +113,7 @@ class Printer:
         """Print one message, or its bytes, after `info` if given."""
         if isinstance(msg, Message):
             part, type_ = self._part_and_type(msg)
-            self.show_plain(
-                self.options.value(part, type_), info, as_yaml=isinstance(part, Message)
-            )
+            self.show_plain(self.plain(part, type_), info, as_yaml=isinstance(part, Message))
         elif self._output.json:
             self.show_plain(bytes(msg), info)  # as Base64
         else:
@@ -201,6 +121,14 @@ class Printer:
                 self._output.text("---Got new message, message info:---")
                 self._output.text(f"{info}\n---Message data:---")
             self._output.text(f"{bytes(msg)!r}\n---")
+
+    def plain(self, part: Any, type_: FieldType | None = None) -> Any:
+        """Return a message, or the part of one that has a type, as plain values."""
+        if isinstance(part, Message):
+            return plain(part, self._form)
+        if type_ is None or isinstance(part, int):  # such as an element of a byte array
+            return part
+        return plain_value(type_, part, self._form)
 
     def show_plain(
         self, plain: Any, info: Mapping[str, int] | None = None, *, as_yaml: bool = True

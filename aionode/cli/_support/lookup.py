@@ -6,32 +6,30 @@ import difflib
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import CommandError, InterfaceNotFoundError
-from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.graph import TOPIC_KINDS
 from aionode.names import is_hidden
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable
+    from collections.abc import Collection, Iterable, Sequence
 
-    from aionode.graph import EndpointInfo, NodeInfo
+    from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
     from aionode.message import Message
     from aionode.node import Node
 
 __all__ = [
     "ALIKE",
     "absolute",
+    "action_endpoints",
     "actions_and_types",
-    "class_given",
+    "class_of",
     "close_to",
     "endpoints",
-    "interface_class",
     "is_own",
     "likeness",
     "names_and_types",
     "node_infos",
     "only_type",
     "topic_type",
-    "type_of",
-    "type_of_action",
     "unknown",
 ]
 
@@ -130,52 +128,56 @@ def unknown(text: str, name: str, names: Iterable[str], shows: str) -> CommandEr
 # Types
 
 
-def interface_class(kind: str, name: str) -> Any:
-    """Return the class for the type name that the user gave.
+async def class_of(
+    node: Node,
+    kind: str,
+    type_name: str,
+    name: str,
+    users: Sequence[EndpointInfo] = (),
+    used: Collection[str] = (),
+) -> Any:
+    """Return the class of a type: as the nodes of its users describe it, or as it is known here.
 
     Args:
+        node: The command's node.
         kind: ``message``, ``service`` or ``action``.
-        name: Its ROS name.
+        type_name: The type.
+        name: Full name of the topic, service or action.
+        users: Its endpoints of that type.
+        used: All types that the name has on the network, if it must have the type.
 
     Raises:
-        CommandError: there is no such type.
+        CommandError: there is no such type, no node describes it, or the name has another one.
     """
     from aionode import interfaces
 
-    get = {
+    known = {
         "message": interfaces.get_message,
         "service": interfaces.get_service,
         "action": interfaces.get_action,
-    }[kind]
+    }
     try:
-        return get(name)
+        if users:
+            return await node.find_type(type_name, endpoints=users)
+        interface: Any = known[kind](type_name)
     except InterfaceNotFoundError as error:
+        if users:
+            raise CommandError(
+                f"Type of '{name}': {error.problem}; give a folder with its definition: "
+                "--interfaces PATH (in Python: aionode.idl.load_interfaces)"
+            ) from error
         hint = "" if error.suggestions else "; `--interfaces PATH` loads definitions of your own"
         raise CommandError(f"The passed {kind} type is invalid: {error}{hint}") from error
-
-
-def class_given(kind: str, given: str, name: str, used: Collection[str]) -> Any:
-    """Return the class for the type that the user gave for a name on the network.
-
-    Args:
-        kind: ``service`` or ``action``.
-        given: The type that the user gave.
-        name: Full name of the service or action.
-        used: The types that the name has on the network; empty if it is not there.
-
-    Raises:
-        CommandError: there is no such type, or the name has another one.
-    """
-    interface = interface_class(kind, given)
     if used and interface.__ros_type__ not in used:
         raise CommandError(
-            f"The passed {kind} type is invalid: '{name}' has type {', '.join(used)}, not {given}"
+            f"The passed {kind} type is invalid: '{name}' has type {', '.join(sorted(used))}, not "
+            f"{type_name}"
         )
     return interface
 
 
 async def topic_type(node: Node, topic: str, given: str | None = None) -> type[Message] | None:
-    """Return the class of a topic's messages according to its endpoints; None if it has none.
+    """Return the class of a topic's messages; None if no type is given and it has no endpoints.
 
     Args:
         node: The command's node.
@@ -186,15 +188,12 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
         CommandError: the endpoints have several types, or the type cannot be determined.
     """
     users = endpoints(node, *TOPIC_KINDS, name=topic)
-    if given is not None:
-        users = [user for user in users if user.type_name == given]
-        if not users:
-            given_type: type[Message] = interface_class("message", given)
-            return given_type
-    if only_type("topic", topic, users) is None:
+    type_name = given or only_type("topic", topic, users)
+    if type_name is None:
         return None
-    learned: type[Message] = await type_of(node, users)
-    return learned
+    users = [user for user in users if user.type_name == type_name]
+    msg_type: type[Message] = await class_of(node, "message", type_name, topic, users)
+    return msg_type
 
 
 def only_type(word: str, name: str, users: Iterable[EndpointInfo]) -> str | None:
@@ -217,37 +216,10 @@ def only_type(word: str, name: str, users: Iterable[EndpointInfo]) -> str | None
     return types[0] if types else None
 
 
-async def type_of(node: Node, users: list[EndpointInfo]) -> Any:
-    """Return the class for endpoints that all have the same type.
-
-    Raises:
-        CommandError: the type is not known here, and no node describes it.
-    """
-    return await described(node, users[0].type_name, users[0].name, users)
-
-
-async def type_of_action(node: Node, name: str, type_name: str) -> Any:
-    """Return the class of the type of an action.
-
-    Raises:
-        CommandError: the type is not known here, and no node describes it.
-    """
+def action_endpoints(node: Node, name: str) -> list[EndpointInfo]:
+    """Return the endpoints of the hidden topics and services of an action."""
     hidden = f"{name}/_action/"
-    users = [
-        endpoint for endpoint in endpoints(node, *EndpointKind) if endpoint.name.startswith(hidden)
-    ]
-    return await described(node, type_name, name, users)
-
-
-async def described(node: Node, type_name: str, name: str, users: list[EndpointInfo]) -> Any:
-    """Return the class of a type that some endpoints use, if need be as their nodes describe it."""
-    try:
-        return await node.find_type(type_name, endpoints=users)
-    except InterfaceNotFoundError as error:
-        raise CommandError(
-            f"Type of '{name}': {error.problem}; give a folder with its definition: "
-            "--interfaces PATH (in Python: aionode.idl.load_interfaces)"
-        ) from error
+    return [endpoint for endpoint in endpoints(node) if endpoint.name.startswith(hidden)]
 
 
 def absolute(node_name: str) -> str:
