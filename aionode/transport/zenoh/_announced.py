@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from aionode.transport.zenoh._defects.crowd import is_crowd
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Container
 
 __all__ = ["AnnouncedLimit"]
 
@@ -34,6 +34,8 @@ class AnnouncedLimit:
 
     Args:
         limit_bytes: The limit in all; a token counts its text, and `TOKEN_BYTES`.
+        connected: The participants that are connected now; the others may be behind routers, or
+            invented.
 
     Attributes:
         left_out: How many tokens were left out since the graph was last filled up; those that come
@@ -42,13 +44,13 @@ class AnnouncedLimit:
         on_crowded: Called when that has changed.
     """
 
-    def __init__(self, limit_bytes: int) -> None:
+    def __init__(self, limit_bytes: int, connected: Container[str] = ()) -> None:
         self.left_out = 0
         self.is_crowded = False
         self.on_crowded: list[Callable[[], None]] = []
         self._count = 0
         self._is_told = False
-        self._connected: set[str] = set()
+        self._connected = connected
         self._limit_bytes = limit_bytes
         self._used_bytes = 0
         self._of: Counter[str] = Counter()  # by participant
@@ -85,18 +87,10 @@ class AnnouncedLimit:
         self.left_out = 0
         self._judge()
 
-    def note_connected(self, participant: str, *, is_so: bool) -> None:
-        """Note who is connected; the others may be behind routers, or invented."""
-        if is_so:
-            self._connected.add(participant)
-        else:
-            self._connected.discard(participant)
-
     def clear(self) -> None:
         """Begin anew: nothing is kept any more."""
         self._used_bytes = self._count = 0
         self._of.clear()
-        self._connected.clear()
         self._judge()
 
     def _judge(self) -> None:

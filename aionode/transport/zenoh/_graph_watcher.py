@@ -18,6 +18,7 @@ from aionode.wire._liveliness import PREFIX, is_node_token, node_token, parse_to
 
 if TYPE_CHECKING:
     from aionode.clock import Alarm
+    from aionode.transport.zenoh._connections import ConnectionChange
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["NodeDeclaration", "Watcher"]
@@ -140,8 +141,7 @@ class Watcher:
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._asking = SendThread("aionode-graph", state.waker)
         self._queue = state.queue(self._take)
-        self._changes = state.queue(self._take_change)
-        self._listener: zenoh.TransportEventsListener[None] | None = None
+        state.connections.on_change.append(self._take_change)
 
     def start(self, session: zenoh.Session) -> None:
         """Subscribe to the tokens; existing ones arrive at once."""
@@ -150,24 +150,17 @@ class Watcher:
             self._subscriber = session.liveliness().declare_subscriber(
                 f"{PREFIX}/**", direct(self._hand_over), history=True
             )
-            self._listener = session.info.declare_transport_events_listener(
-                direct(self._changes.put), history=True
-            )
 
     def stop(self) -> None:
         """Unsubscribe, and forget all tokens."""
         if self._subscriber is not None:
             self._subscriber.undeclare()
             self._subscriber = None
-        if self._listener is not None:
-            self._listener.undeclare()
-            self._listener = None
         if self._filling is not None:
             self._filling.cancel()
             self._filling = None
         self._asking.abandon()
         self._queue.clear()
-        self._changes.clear()
         self._state.announced.clear()
         self._check = None
         self._missing = set()
@@ -265,12 +258,10 @@ class Watcher:
             if not item.answered.done():
                 item.answered.set_result(item.complete)
 
-    def _take_change(self, event: zenoh.TransportEvent) -> None:
-        """Note who is connected; with a router, the tokens of everyone behind it go as well."""
-        lost = event.kind == zenoh.SampleKind.DELETE
-        self._state.announced.note_connected(str(event.transport.zid), is_so=not lost)
+    def _take_change(self, change: ConnectionChange) -> None:
+        """Record the loss of a router: the tokens of everyone behind it go as well."""
         graph = self._state.graph
-        if lost and event.transport.whatami == zenoh.WhatAmI.ROUTER and graph is not None:
+        if not change.is_made and change.kind == zenoh.WhatAmI.ROUTER and graph is not None:
             graph.router_lost_ns = perf_ns()
 
     def _end_check(self, check: Check) -> None:
@@ -279,17 +270,15 @@ class Watcher:
         self._check = None
         for key in check.found - check.changed:
             self._add(key)
-        session = self._state.session
-        if check.failed or session is None:
+        if check.failed or self._state.session is None:
             return
         if not self._state.own_tokens() <= check.found | check.changed:
             if check.attempt < ATTEMPTS:
                 self.check(check.attempt + 1)
             return
         missing = self._known.keys() - check.found - check.changed
-        connected = {str(transport.zid) for transport in session.info.transports()}
         for key in missing & self._missing:
-            if key.split("/", 3)[2] not in connected:
+            if key.split("/", 3)[2] not in self._state.connections.kinds:
                 self._remove(key)
         self._missing = missing
 

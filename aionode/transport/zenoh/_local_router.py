@@ -24,12 +24,13 @@ from aionode.transport._network import is_near
 from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._config import LOOPBACK, load_config, open_look
 from aionode.transport.zenoh._defects.lingering import SocketOptions
-from aionode.transport.zenoh._handlers import direct, reason, translated
+from aionode.transport.zenoh._handlers import reason
 from aionode.transport.zenoh._session import answering_ports, close_session, run_in_own_thread
 from aionode.transport.zenoh._settings import router_settings
 
 if TYPE_CHECKING:
     from aionode.transport._network import Network
+    from aionode.transport.zenoh._connections import ConnectionChange
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["LocalRouter"]
@@ -64,8 +65,7 @@ class LocalRouter:
         self._network = network
         self._router: zenoh.Session | None = None
         self._closed = True
-        self._changes = state.queue(self._take_change)
-        self._listener: zenoh.TransportEventsListener[None] | None = None
+        state.connections.on_change.append(self._take_change)
         self._timer: asyncio.TimerHandle | None = None
         # Held while a router is opened, so that `close` finds it.
         self._opening = threading.Lock()
@@ -81,27 +81,14 @@ class LocalRouter:
         self._closed = False
         await run_in_own_thread(self._open)
 
-    def start(self, session: zenoh.Session) -> None:
-        """Watch the router of another process, so as to take its place when it ends."""
-        if self._closed:
-            return
-        with translated("the router of this machine"):
-            self._listener = session.info.declare_transport_events_listener(
-                direct(self._changes.put)
-            )
-
     async def close(self) -> None:
         """Close the router, if this process has it."""
         if self._closed:
             return
         self._closed = True
-        listener, self._listener = self._listener, None
-        if listener is not None:
-            listener.undeclare()
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-        self._changes.clear()
         router = await run_in_own_thread(self._give_up)
         if router is not None:
             await close_session(router)
@@ -112,9 +99,9 @@ class LocalRouter:
             router, self._router = self._router, None
         return router
 
-    def _take_change(self, event: zenoh.TransportEvent) -> None:
-        is_end = event.kind == zenoh.SampleKind.DELETE
-        if not is_end or not str(event.transport.zid).startswith(ROUTER_IDS) or self._closed:
+    def _take_change(self, change: ConnectionChange) -> None:
+        """Take the place of the router of another process when that has ended."""
+        if change.is_made or not change.zid.startswith(ROUTER_IDS) or self._closed:
             return
         if self._timer is None:
             delay_s = TAKE_OVER_S * int(self._state.participant[-4:], 16) / 0x10000

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
+    from aionode.transport.zenoh._connections import ConnectionChange
     from aionode.transport.zenoh._router_matching import RouterMatching
     from aionode.transport.zenoh._session_state import SessionState
 
@@ -78,16 +79,16 @@ class ZenohPeerDirectory:
         self._first_filters = state.queue(self._take_first_filter)
         self._tokens = state.queue(self._take_token)
         self._nodes = state.queue(self._take_node)
-        self._changes = state.queue(self._take_change)
+        self._connected = state.connections.kinds
+        state.connections.on_change.append(self._take_change)
         self._retransmits = state.queue(self._take_retransmit)
         # The tokens of each session that has announced itself. A connected session stays here
         # without any: a context announces its subscriptions, with a node or without.
         self._known: dict[str, set[str]] = {}
         # Contexts that have announced unannounced peers that only they see.
         self._hosts: set[str] = set()
-        self._connected: dict[str, zenoh.WhatAmI] = {}
-        # Those of them that are routers, and those that have announced nothing, as a router. To
-        # look for them at each token would be quadratic.
+        # The connected routers, and the connected sessions that have announced nothing, as a
+        # router. To look for them at each token would be quadratic.
         self._routers: set[str] = set()
         self._unknown: set[str] = set()
         self._declared: list[Any] = []
@@ -129,7 +130,6 @@ class ZenohPeerDirectory:
                 liveliness.declare_subscriber(
                     f"{ROS_PREFIX}/*/*/*/*/NN/**", direct(self._nodes.put), history=True
                 ),
-                session.info.declare_transport_events_listener(direct(self._changes.put)),
             ]
             if self.advertisement is not None:
                 retransmits = self._retransmit_key(self._state.participant)
@@ -140,9 +140,8 @@ class ZenohPeerDirectory:
                     ),
                     liveliness.declare_token(self._prefix + self.advertisement),
                 ]
-        self._connected.clear()
-        for transport in session.info.transports():
-            self._connect(str(transport.zid), transport.whatami)
+        for zid, kind in self._connected.items():
+            self._connect(zid, kind)
         self._update()
 
     def stop(self) -> None:
@@ -161,14 +160,12 @@ class ZenohPeerDirectory:
             self._first_filters,
             self._tokens,
             self._nodes,
-            self._changes,
             self._retransmits,
             self._queries,
         ):
             queue.clear()
         self._known.clear()
         self._hosts.clear()
-        self._connected.clear()
         self._routers.clear()
         self._unknown.clear()
         self._router_matching.stop()
@@ -317,9 +314,8 @@ class ZenohPeerDirectory:
         if zid not in self._connected and not self._known.get(zid, True):
             del self._known[zid]
 
-    def _connect(self, zid: str, whatami: zenoh.WhatAmI) -> None:
-        self._connected[zid] = whatami
-        if whatami == zenoh.WhatAmI.ROUTER:
+    def _connect(self, zid: str, kind: zenoh.WhatAmI) -> None:
+        if kind == zenoh.WhatAmI.ROUTER:
             self._routers.add(zid)
         self._classify(zid)
 
@@ -330,16 +326,15 @@ class ZenohPeerDirectory:
         else:
             self._unknown.discard(zid)
 
-    def _take_change(self, event: zenoh.TransportEvent) -> None:
-        # `transports()` may still list one whose end is being reported.
-        zid = str(event.transport.zid)
-        if event.kind == zenoh.SampleKind.PUT:
-            self._connect(zid, event.transport.whatami)
+    def _take_change(self, change: ConnectionChange) -> None:
+        if self._session is None:
+            return
+        if change.is_made:
+            self._connect(change.zid, change.kind)
         else:
-            self._connected.pop(zid, None)
-            self._routers.discard(zid)
-            self._forget(zid)
-            self._classify(zid)
+            self._routers.discard(change.zid)
+            self._forget(change.zid)
+            self._classify(change.zid)
         self._update()
 
     def _update(self) -> None:

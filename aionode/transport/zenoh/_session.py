@@ -10,7 +10,7 @@ import socket
 import threading
 from contextlib import ExitStack, closing, suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Final, NamedTuple, TypeVar
 
 import zenoh
 
@@ -21,7 +21,7 @@ from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._config import LOOPBACK, load_config, near, probed_ports
 from aionode.transport.zenoh._defects.closing import cut_unanswered
 from aionode.transport.zenoh._defects.lingering import SocketOptions
-from aionode.transport.zenoh._handlers import direct, reason
+from aionode.transport.zenoh._handlers import reason
 from aionode.transport.zenoh._local_sessions import announce, listed, reserve_port
 from aionode.transport.zenoh._settings import (
     Neighbours,
@@ -34,11 +34,9 @@ from aionode.transport.zenoh._turns import one_at_a_time
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from aionode.transport._loop_waker import ThreadsafeQueue
     from aionode.transport._network import Network
 
 __all__ = [
-    "ConnectionWatcher",
     "answering_ports",
     "close_session",
     "open_router",
@@ -59,16 +57,6 @@ SPEAK_S = 2.0
 A process of aionode may take longer where many start at once. Other programs mostly answer or close
 the connection at once.
 """
-
-FIRST_LINK_S = 1.0
-"""Time for which `open` waits for the first peer that accepts connections, in seconds; a frozen
-peer never answers."""
-
-NEXT_LINK_S = 0.3
-"""Time for which `open` waits for each further peer, in seconds."""
-
-QUIET_S = 0.015
-"""All peers are taken to be connected after so long without a new one."""
 
 CLOSE_S = 0.8
 """Limit of the time that `close` takes, in seconds. With a frozen peer it goes on in a thread."""
@@ -357,49 +345,3 @@ async def close_session(session: zenoh.Session) -> None:
     with suppress(TimeoutError):
         async with asyncio.timeout(CLOSE_S):
             await run_in_own_thread(work)
-
-
-class ConnectionWatcher:
-    """Waits for the first connections of a session."""
-
-    def __init__(self, session: zenoh.Session, queue: Callable[..., ThreadsafeQueue[Any]]) -> None:
-        self._session = session
-        self._changed = asyncio.Event()
-        self._queue = queue(lambda _: self._changed.set(), 1)
-        self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
-
-    def close(self) -> None:
-        """Stop watching."""
-        self._listener.undeclare()
-
-    async def wait_until_connected(self, expected: int) -> None:
-        """Wait until `expected` peers, and others that are dialled meanwhile, are connected.
-
-        Give up if they do not connect in time, after about a second.
-        """
-        if expected == 0:
-            return
-        try:
-            while (count := self._count()) < expected:
-                async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
-                    await self._next()
-            async with asyncio.timeout(FIRST_LINK_S):
-                while True:
-                    async with asyncio.timeout(QUIET_S):
-                        await self._next()
-        except TimeoutError:
-            return
-
-    async def wait_longer(self, expected: int, limit_s: float) -> None:
-        """Wait until `expected` peers are connected, `limit_s` at most."""
-        with suppress(TimeoutError):
-            async with asyncio.timeout(limit_s):
-                while self._count() < expected:
-                    await self._next()
-
-    def _count(self) -> int:
-        return len(self._session.info.transports())
-
-    async def _next(self) -> None:
-        self._changed.clear()
-        await self._changed.wait()

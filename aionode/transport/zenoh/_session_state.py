@@ -24,6 +24,7 @@ from aionode.transport.zenoh._acknowledgements import Acknowledgements
 from aionode.transport.zenoh._announced import AnnouncedLimit
 from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
+from aionode.transport.zenoh._connections import Connections
 from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._outlet import Outlet
 from aionode.transport.zenoh._peer_senders import PeerSenders
@@ -104,6 +105,7 @@ class SessionState:
         session: The session while it is open, else None.
         graph: The graph of the context while the session is open, else None.
         waker: Wakes the event loop from Zenoh's threads.
+        connections: The sessions that it is connected with.
         bulk: The thread that sends large messages.
         send_threads: All threads that send messages, `bulk` included.
         outlet: Where the loop puts what is no message.
@@ -137,13 +139,14 @@ class SessionState:
         graph_bytes: int = GRAPH_BYTES,
     ) -> None:
         self.queue_bytes = queue_bytes
-        self.announced = AnnouncedLimit(graph_bytes)
         self.request_room = RequestRoom(queue_bytes)
         self.participant = participant
         self.domain_id = domain_id
         self.session: zenoh.Session | None = None
         self.graph: Graph | None = None
         self.waker = LoopWaker() if waker is None else waker
+        self.connections = Connections(self.waker)
+        self.announced = AnnouncedLimit(graph_bytes, self.connections.kinds)
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
         self.outlet = Outlet(self.bulk, queue_bytes)

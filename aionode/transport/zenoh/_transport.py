@@ -22,7 +22,6 @@ from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._router_matching import RouterMatching
 from aionode.transport.zenoh._services import ZenohRequester, ZenohServer
 from aionode.transport.zenoh._session import (
-    ConnectionWatcher,
     close_session,
     open_session,
     run_in_own_thread,
@@ -144,37 +143,29 @@ class ZenohTransport(Transport):
         # Before waiting for others, so that peers that connect meanwhile see everything. After a
         # failure from here on, `close` closes the session.
         self._state.connect(session, graph)
-        links = ConnectionWatcher(session, self._state.queue)
-        try:
-            self._socket_options = SocketOptions(session)
-            self._watcher.start(session)
-            self.peer_directory.start(session)
-            self._recovery.start(session)
-            self._stale_transports.start(session)
-            self._local_router.start(session)
-            await links.wait_until_connected(expected)
-            # Configured peers may be absent, so they are not expected.
-            self._expected = expected - bool(self.network.near_peers or self.network.config_file)
-            answered = self._ask(session)
-            with suppress(TimeoutError):
-                async with asyncio.timeout(KNOWN_S):
-                    await asyncio.shield(answered)
-            self._watcher.note_domains()
-            self._state.graph_is_known()
-        finally:
-            links.close()
+        self._state.connections.start(session)
+        self._socket_options = SocketOptions(session)
+        self._watcher.start(session)
+        self.peer_directory.start(session)
+        self._recovery.start(session)
+        self._stale_transports.start(session)
+        await self._state.connections.wait_until_connected(expected)
+        # Configured peers may be absent, so they are not expected.
+        self._expected = expected - bool(self.network.near_peers or self.network.config_file)
+        answered = self._ask(session)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(KNOWN_S):
+                await asyncio.shield(answered)
+        self._watcher.note_domains()
+        self._state.graph_is_known()
 
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until the tokens of all reachable peers are in the graph."""
         session, graph = self._state.session, self._state.graph
         if session is None or graph is None:
             return False
-        if not self._is_connected(session):  # on a busy machine that takes longer than `open` waits
-            links = ConnectionWatcher(session, self._state.queue)
-            try:
-                await links.wait_longer(self._expected, quiet_s)
-            finally:
-                links.close()
+        if not self._is_connected():  # on a busy machine that takes longer than `open` waits
+            await self._state.connections.wait_longer(self._expected, quiet_s)
             self._ask(session)
         if not await self._has_answers(session, quiet_s):
             return False
@@ -182,7 +173,7 @@ class ZenohTransport(Transport):
         # that sees tells of them.
         missing = await self._missing_nodes(session, quiet_s)
         if not missing:
-            return missing is not None and self._is_connected(session)
+            return missing is not None and self._is_connected()
         quiet_ns = int(quiet_s * 1e9)
         ends_ns = perf_ns() + NAMED_NS
         while missing:
@@ -198,11 +189,11 @@ class ZenohTransport(Transport):
                 return False
             missing = left
         self._ask(session)  # the tokens of these peers are complete after that
-        return await self._has_answers(session, quiet_s) and self._is_connected(session)
+        return await self._has_answers(session, quiet_s) and self._is_connected()
 
-    def _is_connected(self, session: zenoh.Session) -> bool:
+    def _is_connected(self) -> bool:
         """Return whether all peers that accept connections have been connected."""
-        return len(session.info.transports()) >= self._expected
+        return len(self._state.connections.kinds) >= self._expected
 
     async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
         """Return the nodes that an introducer sees and the graph has not; None without answer."""
@@ -252,6 +243,7 @@ class ZenohTransport(Transport):
         if self._socket_options is not None:
             self._socket_options.close()
             self._socket_options = None
+        self._state.connections.stop()
         self._recovery.stop()
         self._stale_transports.stop()
         self.peer_directory.stop()

@@ -49,10 +49,9 @@ def test_the_size_of_a_token_counts() -> None:
 
 def test_a_connected_participant_keeps_its_place() -> None:
     """Invented names, which are unlimited in number, take the rest only."""
-    limit = AnnouncedLimit(LIMIT)
+    limit = AnnouncedLimit(LIMIT, {"robot"})
     for number in range(100):
         taken(limit, f"invented{number}", 100)
-    limit.note_connected("robot", is_so=True)
 
     assert taken(limit, "late", 1) == 0
     assert taken(limit, "robot", 100) == 100

@@ -271,7 +271,7 @@ async def test_nothing_is_declared_without_an_advertisement() -> None:
 
             # That it acknowledges messages has nothing to do with links.
             assert keys == [f"@aionode/{DOMAIN_ID}/a1/reliable/2"]
-        assert (peer_directory._declared, peer_directory._connected, told.told) == ([], {}, [])
+        assert (peer_directory._declared, peer_directory._unknown, told.told) == ([], set(), [])
 
 
 async def test_closing_leaves_nothing_behind() -> None:

@@ -617,13 +617,14 @@ async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None
     put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
     async with context("a1") as first:
         watch = first._stale_transports
-        watch._take_change(change(put, "new"))
-        watch._take_change(change(delete, "b2"))
+        take = first._state.connections._take
+        take(change(put, "new"))
+        take(change(delete, "b2"))
         assert not watch._returned
-        watch._take_change(change(put, "b2"))
+        take(change(put, "b2"))
         assert watch._returned == {"b2"}
         assert watch._check is not None
-        watch._take_change(change(delete, "b2"))
+        take(change(delete, "b2"))
         assert not watch._returned
 
 
@@ -646,10 +647,9 @@ def test_tokens_may_take_longer_where_there_are_many_participants(
     connected: int, limit_s: float
 ) -> None:
     """On a busy machine all had lost each other, and each cut the others again and again."""
-    session = SimpleNamespace(info=SimpleNamespace(transports=lambda: [None] * connected))
     state = SessionState("a1", DOMAIN_ID)
+    state.connections.kinds |= {str(number): zenoh.WhatAmI.PEER for number in range(connected)}
     with_many = StaleTransports(state, network_from({}))
-    with_many._session = session  # type: ignore[assignment]  # as far as it is used
 
     assert with_many._declared_s() == limit_s
 

@@ -33,7 +33,6 @@ from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._config import introducers, open_look
 from aionode.transport.zenoh._defects._switch import is_mended
 from aionode.transport.zenoh._defects.incomplete_answers import ANSWER_S, tokens
-from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._sockets import connections, cut, pair_of, split_locator
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
 
@@ -42,11 +41,12 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from aionode.transport._network import Network
+    from aionode.transport.zenoh._connections import ConnectionChange
     from aionode.transport.zenoh._graph_watcher import Watcher
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.transport.zenoh._sockets import Address
 
-__all__ = ["REMEMBERED", "Recovery", "nodes_at_introducer"]
+__all__ = ["Recovery", "nodes_at_introducer"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
@@ -68,9 +68,6 @@ SURE_S: Final = 0.3
 
 NODES_S: Final = 3.0
 """The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
-
-REMEMBERED: Final = 10_000
-"""Number of lost sessions that are remembered: others may open and close any number."""
 
 ATTEMPTS: Final = 4
 """Number of cuts for one participant; some participants are visible, but not reachable."""
@@ -105,17 +102,13 @@ class Recovery:
         self._network = network
         self._watcher = watcher
         self._checks = 0
-        self._changes = state.queue(self._take_change)
         self._looks = state.queue(self._take_look)
-        self._listener: zenoh.TransportEventsListener[None] | None = None
+        state.connections.on_change.append(self._take_change)
         self._session: zenoh.Session | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._looking = False
         self._until_s = 0.0
         self._changing_since_s = 0.0  # when the first change was seen after the last look
-        # Participants whose connection was lost and not made anew. A router may forward what they
-        # send meanwhile, but not always what this session sends.
-        self._lost: set[str] = set()
         # Those that were missing in the last look; used by its thread only.
         self._suspected: set[str] = set()
         # Number of cuts for each missing participant.
@@ -123,44 +116,28 @@ class Recovery:
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
-        if not (introducers(self._network) and is_mended("forgotten_peers")):
-            return  # no endpoint is dialled again
-        self._session = session
-        with translated("connections"):
-            self._listener = session.info.declare_transport_events_listener(
-                direct(self._changes.put)
-            )
+        if introducers(self._network) and is_mended("forgotten_peers"):
+            self._session = session  # else no endpoint is dialled again
 
     def stop(self) -> None:
         """Stop watching; a look that is under way ends by itself."""
         self._session = None
-        listener, self._listener = self._listener, None
-        if listener is not None:
-            listener.undeclare()
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-        for queue in (self._changes, self._looks):
-            queue.clear()
+        self._looks.clear()
         self._looking = False
         self._until_s = 0.0
         self._attempts.clear()
-        self._lost.clear()
 
-    def _take_change(self, event: zenoh.TransportEvent) -> None:
-        if event.transport.whatami == zenoh.WhatAmI.CLIENT:
-            return  # it dials by itself
+    def _take_change(self, change: ConnectionChange) -> None:
+        if self._session is None or change.kind == zenoh.WhatAmI.CLIENT:
+            return  # a client dials by itself
         now_s = asyncio.get_running_loop().time()
-        zid = str(event.transport.zid)
-        if event.kind == zenoh.SampleKind.DELETE:
-            if now_s >= self._until_s or len(self._lost) >= REMEMBERED:
-                self._lost.clear()  # the looks for those have ended, or they are too many
+        if not change.is_made:
             self._until_s = now_s + WATCH_S
-            self._lost.add(zid)
-        else:
-            self._lost.discard(zid)
-            if now_s >= self._until_s:
-                return  # nothing was lost
+        elif now_s >= self._until_s:
+            return  # nothing was lost
         self._checks = CHECKS
         if self._timer is None:
             self._changing_since_s = now_s
@@ -186,7 +163,9 @@ class Recovery:
         self._looking = start_thread(
             threading.Thread(
                 target=self._look_in_thread,
-                args=(session, set(self._lost), known),
+                # Of those that are lost, a router may forward what they send, but not always what
+                # this session sends.
+                args=(session, self._state.connections.lost.copy(), known),
                 name="aionode-zenoh",
             )
         )

@@ -26,13 +26,14 @@ import zenoh
 
 from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._config import introducers
+from aionode.transport.zenoh._connections import REMEMBERED
 from aionode.transport.zenoh._defects._switch import is_mended
-from aionode.transport.zenoh._defects.forgotten_peers import ATTEMPTS, POSTPONED_S, REMEMBERED
-from aionode.transport.zenoh._handlers import direct, translated
+from aionode.transport.zenoh._defects.forgotten_peers import ATTEMPTS, POSTPONED_S
 from aionode.transport.zenoh._sockets import connections, cut
 
 if TYPE_CHECKING:
     from aionode.transport._network import Network
+    from aionode.transport.zenoh._connections import ConnectionChange
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["StaleTransports"]
@@ -61,13 +62,10 @@ class StaleTransports:
     def __init__(self, state: SessionState, network: Network) -> None:
         self._state = state
         self._network = network
-        self._changes = state.queue(self._take_change)
-        self._listener: zenoh.TransportEventsListener[None] | None = None
+        state.connections.on_change.append(self._take_change)
         self._session: zenoh.Session | None = None
         self._check: asyncio.TimerHandle | None = None
         self._changed_s = 0.0  # when a connection was made or lost last
-        # Participants whose connection was lost and not made anew.
-        self._lost: set[str] = set()
         # Participants whose connection was made anew, until it is known that they have declared.
         self._returned: set[str] = set()
         # Number of cuts of the connection to each participant that declared nothing.
@@ -75,47 +73,31 @@ class StaleTransports:
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
-        if not (introducers(self._network) and is_mended("stale_transports")):
-            return  # no endpoint is dialled again
-        self._session = session
-        with translated("connections"):
-            self._listener = session.info.declare_transport_events_listener(
-                direct(self._changes.put)
-            )
+        if introducers(self._network) and is_mended("stale_transports"):
+            self._session = session  # else no endpoint is dialled again
 
     def stop(self) -> None:
         """Stop watching."""
         self._session = None
-        listener, self._listener = self._listener, None
-        if listener is not None:
-            listener.undeclare()
         if self._check is not None:
             self._check.cancel()
             self._check = None
-        self._changes.clear()
         self._cuts.clear()
-        self._lost.clear()
         self._returned.clear()
 
-    def _take_change(self, event: zenoh.TransportEvent) -> None:
-        if event.transport.whatami == zenoh.WhatAmI.CLIENT:
-            return  # it dials by itself
+    def _take_change(self, change: ConnectionChange) -> None:
+        if self._session is None or change.kind == zenoh.WhatAmI.CLIENT:
+            return  # a client dials by itself
         self._changed_s = asyncio.get_running_loop().time()
-        zid = str(event.transport.zid)
-        if event.kind == zenoh.SampleKind.DELETE:
-            if len(self._lost) >= REMEMBERED:
-                self._lost.clear()
-            self._lost.add(zid)
-            self._returned.discard(zid)
-        elif zid in self._lost:
-            self._lost.discard(zid)
-            self._returned.add(zid)
+        if not change.is_made:
+            self._returned.discard(change.zid)
+        elif change.is_return:
+            self._returned.add(change.zid)
             self._check_in(self._declared_s())
 
     def _declared_s(self) -> float:
         """Return how long the tokens of a participant that has returned may take."""
-        count = 0 if self._session is None else len(self._session.info.transports())
-        return DECLARED_S * max(count / PEERS_PER_SECOND, 1)
+        return DECLARED_S * max(len(self._state.connections.kinds) / PEERS_PER_SECOND, 1)
 
     def _check_in(self, delay_s: float) -> None:
         if self._check is None:
