@@ -242,7 +242,8 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
         return None
     value = getattr(parameter_value, FIELDS[type_])
     if type_ is ParameterType.BYTE_ARRAY:
-        return [bytes([number]) for number in bytes(value)]
+        # rosidl's classes have a list of bytes here, aionode's have bytes.
+        return [item if isinstance(item, bytes) else bytes([item]) for item in value]
     if hasattr(value, "tolist"):
         return value.tolist()  # numpy's numbers are not int and float
     return list(value) if type_ >= ParameterType.BYTE_ARRAY else value

@@ -10,7 +10,9 @@ from typing import Any, Generic, TypeVar
 import yaml
 
 from aionode import parameter as core
+from aionode.parameter import PARAMETER_SEPARATOR_STRING, parameter_value_to_python
 from aionode.rclpy._impl import messages as msg
+from aionode.rclpy._rosidl import from_aionode
 
 __all__ = [
     "PARAMETER_SEPARATOR_STRING",
@@ -20,8 +22,6 @@ __all__ = [
     "parameter_dict_from_yaml_file",
     "parameter_value_to_python",
 ]
-
-PARAMETER_SEPARATOR_STRING = "."
 
 AllowableParameterValue = Any
 AllowableParameterValueT = TypeVar("AllowableParameterValueT")
@@ -145,41 +145,8 @@ class Parameter(core.Parameter, Generic[AllowableParameterValueT]):
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """Return the value in a text, in the syntax of YAML, as a message."""
-    try:
-        value = yaml.safe_load(string_value)
-    except yaml.parser.ParserError:
-        value = string_value
-    message = msg.ParameterValue()
-    type_ = Type.STRING
-    if isinstance(value, bool | int | float):
-        type_ = Type.from_parameter_value(value)
-    elif isinstance(value, list):
-        try:
-            type_ = Type.from_parameter_value(value) if value else Type.BOOL_ARRAY
-        except TypeError:
-            value = string_value
-    elif value is None:
-        value = string_value
-    message.type = int(type_)
-    setattr(message, field_of(type_), value)
-    return message
-
-
-def parameter_value_to_python(parameter_value: Any) -> Any:
-    """Return the value in a message; arrays as lists.
-
-    Raises:
-        RuntimeError: its type is unknown.
-    """
-    try:
-        type_ = Type(parameter_value.type)
-    except ValueError:
-        raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
-    if type_ is Type.NOT_SET:
-        return None
-    value = getattr(parameter_value, field_of(type_))
-    return list(value) if type_ >= Type.BYTE_ARRAY else value
+    """Return the value in a text, in the syntax of YAML, as a message; other texts are strings."""
+    return from_aionode(core.get_parameter_value(string_value))
 
 
 def parameter_dict_from_yaml_file(
@@ -229,14 +196,14 @@ def key_of(node_name: str, content: dict[str, Any]) -> str | None:
 
 def messages_of(values: dict[str, Any], namespace: str = "") -> dict[str, Any]:
     """Return the parameters in nested dicts as messages, by their full names."""
-    found: dict[str, Any] = {}
+    parameters: dict[str, Any] = {}
     prefix = f"{namespace}{PARAMETER_SEPARATOR_STRING}" if namespace else ""
     for name, value in values.items():
         full_name = prefix + name
         if isinstance(value, dict):
-            found.update(messages_of(value, full_name))
+            parameters.update(messages_of(value, full_name))
         else:
             message = msg.Parameter(name=full_name)
             message.value = get_parameter_value(str(value))
-            found[full_name] = message
-    return found
+            parameters[full_name] = message
+    return parameters

@@ -14,7 +14,7 @@ from typing import Any
 
 import action_scenarios  # noqa: F401  # its scenes
 import rclpy
-from rcl_interfaces.msg import Log, LoggerLevel
+from rcl_interfaces.msg import Log, LoggerLevel, ParameterValue
 from rcl_interfaces.srv import GetLoggerLevels, ListParameters, SetLoggerLevels
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import (
@@ -27,9 +27,11 @@ from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.guard_condition import GuardCondition
+from rclpy.lifecycle import LifecycleState
+from rclpy.lifecycle.managed_entity import SimpleManagedEntity
 from rclpy.logging import LoggingSeverity, get_logger
 from rclpy.node import Node
-from rclpy.parameter import Parameter
+from rclpy.parameter import Parameter, get_parameter_value, parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.parameter_event_handler import ParameterEventHandler
 from rclpy.qos import (
@@ -629,6 +631,40 @@ def names_that_public_programs_take_from_modules(trace: Trace) -> None:
         volatile = DurabilityPolicy.RMW_QOS_POLICY_DURABILITY_VOLATILE
     trace("former names", kept is HistoryPolicy.KEEP_LAST, volatile.name)
     trace("warnings", [each.category.__name__ for each in caught])
+
+
+@scene
+def texts_that_stand_for_parameters(trace: Trace) -> None:
+    texts = "1|1.5|true|yes|null|~||abc|'5'|[1,2]|[1.5,2]|[1,2.5]|[true,false]|[a,b]|[a,1]|[]|[[1]]"
+    for text in [*texts.split("|"), "0x10", ".inf", "1e3", "!!str 5", "[1, true]", "[1, 2", " 5 "]:
+        message = get_parameter_value(text)
+        trace(text, message.type, repr(parameter_value_to_python(message)))
+    for value in ([b"a", b"\x00"], [1, 2], [0.5], ["a"], [True], None):
+        message = Parameter("name", value=value).get_parameter_value()
+        trace(repr(value), message.type, repr(parameter_value_to_python(message)))
+        message = Parameter("name", value=value).to_parameter_msg()
+        trace(repr(list(Parameter.from_parameter_msg(message).value or ())))
+    unknown = ParameterValue(type=99)
+    attempt(trace, "unknown type", lambda: parameter_value_to_python(unknown))
+
+
+@scene
+def methods_of_managed_entities(trace: Trace) -> None:
+    class Entity(SimpleManagedEntity):
+        @SimpleManagedEntity.when_enabled
+        def work(self, number: int) -> int:
+            trace("work", number)
+            return number
+
+        @SimpleManagedEntity.when_enabled(when_not_enabled=lambda: trace("no work"))
+        def other_work(self, *, number: int) -> int:
+            trace("other work", number)
+            return number
+
+    entity = Entity()
+    for change in (entity.on_configure, entity.on_activate, entity.on_deactivate, entity.on_error):
+        trace(change(LifecycleState("inactive", 2)).name, entity.is_activated)
+        trace("result", entity.work(1), entity.other_work(number=2))
 
 
 if __name__ == "__main__":

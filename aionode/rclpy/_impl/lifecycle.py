@@ -69,18 +69,18 @@ class LifecycleStateMachine:
         """
         return self._possible(self.machine.find(label), label).transition_id
 
-    def trigger_transition_by_id(self, transition_id: int, publish: bool) -> None:
-        """Change the state.
+    def trigger_transition_by_id(self, transition_id: int, publish: bool) -> Transition:
+        """Change the state; return the transition.
 
         Raises:
             RCLError: the transition is not possible now.
         """
-        found = self.machine.find(transition_id=transition_id)
-        transition = self._possible(found, transition_id)
+        transition = self._possible(self.machine.find(transition_id=transition_id), transition_id)
         self.machine.state = transition.goal
         if publish:
             event = fill_event(msg.TransitionEvent(), transition.start, transition.goal)
             self._events.publish(event)
+        return transition
 
     def trigger_transition_by_label(self, label: str, publish: bool) -> None:
         """Change the state.

@@ -26,18 +26,6 @@ __all__ = [
     "TransitionCallbackReturn",
 ]
 
-CALLBACKS = {
-    "configuring": "on_configure",
-    "cleaningup": "on_cleanup",
-    "shuttingdown": "on_shutdown",
-    "activating": "on_activate",
-    "deactivating": "on_deactivate",
-    "errorprocessing": "on_error",
-}
-"""By the state between two others: the callback that decides which one follows."""
-
-SHUTDOWNS = {"unconfigured": 5, "inactive": 6, "active": 7}
-
 
 class LifecycleState(NamedTuple):
     """A state of a managed node."""
@@ -137,10 +125,10 @@ class LifecycleNodeMixin(ManagedEntity):
         Raises:
             RCLError: it is shut down, or in a transition.
         """
-        _, label = self._state_machine.current_state
-        if label not in SHUTDOWNS:
+        transition = self._state_machine.machine.find("shutdown")
+        if transition is None:
             raise RCLError("Shutdown transtion not possible")
-        return self._change_state(SHUTDOWNS[label])
+        return self._change_state(transition.transition_id)
 
     def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
         self._check_is_initialized()
@@ -148,30 +136,28 @@ class LifecycleNodeMixin(ManagedEntity):
         number, label = machine.current_state
         before = LifecycleState(label=label, state_id=number)
         try:
-            machine.trigger_transition_by_id(transition_id, True)
+            transition = machine.trigger_transition_by_id(transition_id, True)
         except RCLError:
             self.get_logger().error(
                 f"Unable to start transition {transition_id} from current state "
                 f"{machine.current_state}"
             )
             return TransitionCallbackReturn.ERROR
-        outcome = self._execute_callback(before)
+        outcome = self._execute_callback(f"on_{transition.label}", before)
         machine.trigger_transition_by_label(outcome.to_label(), True)
         if outcome is TransitionCallbackReturn.ERROR:
-            machine.trigger_transition_by_label(self._execute_callback(before).to_label(), True)
+            after_error = self._execute_callback("on_error", before)
+            machine.trigger_transition_by_label(after_error.to_label(), True)
         return outcome
 
-    def _execute_callback(self, before: LifecycleState) -> TransitionCallbackReturn:
-        """Call the callback of the present state; an exception counts as an error."""
-        _, label = self._state_machine.current_state
-        callback: Callable[[LifecycleState], TransitionCallbackReturn] = getattr(
-            self, CALLBACKS[label]
-        )
+    def _execute_callback(self, name: str, before: LifecycleState) -> TransitionCallbackReturn:
+        """Call the callback that decides which state follows; an exception counts as an error."""
+        callback: Callable[[LifecycleState], TransitionCallbackReturn] = getattr(self, name)
         try:
             return callback(before)
         except Exception as error:  # noqa: BLE001  # as rclpy; the state machine goes on with an error
             self.get_logger().error(  # rclpy's loggers have no exception()
-                f"{CALLBACKS[label]}() raised {type(error).__name__}: {error}\n{format_exc()}"
+                f"{name}() raised {type(error).__name__}: {error}\n{format_exc()}"
             )
             return TransitionCallbackReturn.ERROR
 
