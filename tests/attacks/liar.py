@@ -18,10 +18,11 @@ from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.message import type_name
 from aionode.qos import QoSProfile
 from aionode.transport._content_filters import filter_token
-from aionode.wire import _acknack as acknack
+from aionode.transport._reliability import submessage as acknack
+from aionode.transport._reliability.submessage import SubmessageKind
+from aionode.transport.zenoh._acknowledgements import submessage_key
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
-from aionode.wire._acknack import SubmessageKind
 from aionode.wire._key_expression import Side, data_key
 from aionode.wire._liveliness import endpoint_token, gid_of, node_token, parse_token
 from aionode.wire.typehash import type_hash
@@ -217,8 +218,8 @@ class Liar:
         """Return the key on which a writer or reader of a topic would send one."""
         key = data_key(self.domain, writer.name, writer.type_name, writer.type_hash)
         if kind is SubmessageKind.ACKNACK:
-            return acknack.submessage_key(key, Side.SUBSCRIPTIONS, writer.node.participant)
-        return acknack.submessage_key(key, Side.PUBLISHERS, reader.node.participant)
+            return submessage_key(key, Side.SUBSCRIPTIONS, writer.node.participant)
+        return submessage_key(key, Side.PUBLISHERS, reader.node.participant)
 
     def post(self, reader: EndpointInfo, batch: bytes) -> None:
         """Send frames to a context, as what a link could not deliver."""

@@ -33,7 +33,7 @@ from aionode.interfaces.type_description_interfaces.msg import (
 )
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.qos import QoSProfile
-from aionode.wire._acknack import SubmessageKind, pack_ranges
+from aionode.transport._reliability.submessage import SubmessageKind, pack_ranges
 from tests.attacks.liar import Liar
 
 __all__ = ["LIES", "describe", "nested_type"]

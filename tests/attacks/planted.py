@@ -13,8 +13,8 @@ from typing import Any
 from aionode import content_filter
 from aionode.message import fields
 from aionode.transport import _content_filters as content_filters
-from aionode.transport.zenoh import _writer_proxy as writer_proxy
-from aionode.transport.zenoh._reliability import NEVER
+from aionode.transport._reliability import writer_proxy
+from aionode.transport._reliability.limits import NEVER
 from aionode.wire import _described_type as described_type
 from aionode.wire.cdr import _layout as layout
 from tests.faults import process
@@ -67,7 +67,7 @@ def plant_submessages() -> None:
     """Let a HEARTBEAT or GAP move a reader as far as it likes, and never back."""
     planted: Any = writer_proxy.WriterProxy
     planted._start_anew = planted._start_at = lambda *_: None
-    setattr(writer_proxy, "BELIEVED", MANY * NEVER)  # noqa: B010 - a constant
+    setattr(writer_proxy, "BELIEVED", NEVER)  # noqa: B010 - a constant
 
 
 DEFECTS: dict[str, Callable[[], None]] = {

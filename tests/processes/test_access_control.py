@@ -16,8 +16,8 @@ import trustme
 import zenoh  # noqa: TID251  # plays all participants, without aionode
 
 from aionode.transport._content_filters import filter_token
+from aionode.transport.zenoh._acknowledgements import submessage_key
 from aionode.transport.zenoh._handlers import direct
-from aionode.wire._acknack import submessage_key
 from aionode.wire._key_expression import Side, side_key
 from tests.processes.test_security import CONFIGS, router, write
 from tests.support.peers import free_ports

@@ -12,27 +12,23 @@ on one topic speaks for no other.
 from __future__ import annotations
 
 import asyncio
-import logging
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Hashable
 from typing import TYPE_CHECKING, Final, Protocol
 
 import zenoh
 
 from aionode.transport._loop_waker import ThreadsafeQueue
-from aionode.transport.zenoh._handlers import LOOP_PRIORITY, direct, reason, translated
-from aionode.wire import _acknack as acknack
-from aionode.wire._acknack import Submessage, SubmessageKind
-from aionode.wire._key_expression import Side
+from aionode.transport._reliability.submessage import VERSION, Submessage, SubmessageKind, unpack
+from aionode.transport.zenoh._control_messages import ControlSubscribers
+from aionode.transport.zenoh._handlers import direct, translated
+from aionode.wire._key_expression import Side, side_key
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
     from aionode.transport.zenoh._announced import AnnouncedLimit
-    from aionode.transport.zenoh._outlet import Outlet
+    from aionode.transport.zenoh._control_messages import ControlMessages
 
-__all__ = ["Acknowledgements", "StatefulReader", "StatefulWriter"]
-
-logger = logging.getLogger("aionode.transport.zenoh")
+__all__ = ["AcknowledgedWriter", "Acknowledgements", "AcknowledgingReader", "submessage_key"]
 
 PREFIX: Final = "@aionode"
 
@@ -54,10 +50,10 @@ LONGEST_ID: Final = 32
 """Number of characters that the id of a Zenoh session has at most."""
 
 
-class StatefulWriter(Protocol):
+class AcknowledgedWriter(Protocol):
     """A publisher that keeps messages until they are acknowledged."""
 
-    def take_acknack(self, submessage: Submessage) -> None:
+    def receive_acknack(self, submessage: Submessage) -> None:
         """Handle an ACKNACK of one of its readers."""
 
     def tick(self) -> bool:
@@ -67,31 +63,14 @@ class StatefulWriter(Protocol):
         """Ask readers for an answer; return whether to call again."""
 
 
-class StatefulReader(Protocol):
+class AcknowledgingReader(Protocol):
     """A subscription that acknowledges messages."""
 
-    def take_submessage(self, submessage: Submessage) -> None:
+    def receive_submessage(self, submessage: Submessage) -> None:
         """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
 
     def tick(self) -> bool:
         """Do what is due; return whether to call again."""
-
-
-class Listening:
-    """A subscriber for what one side of a topic tells this context.
-
-    Attributes:
-        key: That of the topic.
-        side: Who tells it.
-        subscriber: The subscriber.
-        users: How many endpoints need it.
-    """
-
-    def __init__(self, key: str, side: Side, subscriber: zenoh.Subscriber[None]) -> None:
-        self.key = key
-        self.side = side
-        self.subscriber = subscriber
-        self.users = 1
 
 
 class Repeater:
@@ -140,13 +119,11 @@ class Acknowledgements:
         note_malformed: Called with the key of a malformed sample, and what it should be.
         on_participant: Called when another context is known to acknowledge.
         announced: Limits how many contexts are kept; the others count as ones that do not.
-        outlet: Where submessages are put.
+        control_messages: Puts submessages.
 
     Attributes:
         participants: The other contexts that acknowledge, the last `GONE` that have gone included.
         present: Those of them whose tokens are there.
-        writers: The publishers of this context that want acknowledgements, by key and gid.
-        readers: The subscriptions of this context that acknowledge, by key and gid.
     """
 
     def __init__(
@@ -157,32 +134,36 @@ class Acknowledgements:
         note_malformed: Callable[[str, str], None],
         on_participant: Callable[[str], None],
         announced: AnnouncedLimit,
-        outlet: Outlet,
+        control_messages: ControlMessages,
     ) -> None:
         self.participants: set[str] = set()
         self._gone: dict[str, None] = {}  # in order
         self._announced = announced
         self.present: set[str] = set()
-        self.writers: dict[tuple[str, bytes], StatefulWriter] = {}
-        self.readers: dict[tuple[str, bytes], StatefulReader] = {}
-        # The subscriptions, by the whole key.
-        self._listening: dict[str, Listening] = {}
+        # By gid below the key of their topic: a submessage counts for no endpoint of another.
+        self._writers: ControlSubscribers[AcknowledgedWriter] = ControlSubscribers(
+            waker, self._receive_acknack, LIMIT
+        )
+        self._readers: ControlSubscribers[AcknowledgingReader] = ControlSubscribers(
+            waker, self._receive_submessage, LIMIT
+        )
         self._participant = participant
         self._note_malformed = note_malformed
         self._on_participant = on_participant
-        self._outlet = outlet
+        self._control_messages = control_messages
         self._prefix = f"{PREFIX}/{domain_id}/"
-        self._suffix = f"/reliable/{acknack.VERSION}"
-        self._session: zenoh.Session | None = None
+        self._suffix = f"/reliable/{VERSION}"
+        self._is_open = False
         self._declared: list[zenoh.Subscriber[None] | zenoh.LivelinessToken] = []
-        self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take, LIMIT)
-        self._tokens: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take_token)
+        self._tokens: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._receive_token)
         self._ticks = Repeater(TICK_S)
         self._probes = Repeater(PROBE_S)
 
     def start(self, session: zenoh.Session) -> None:
         """Declare the token. To be called before any endpoint is declared."""
-        self._session = session
+        self._is_open = True
+        self._writers.start(session)
+        self._readers.start(session)
         liveliness = session.liveliness()
         own = self.token_of(self._participant)
         with translated("acknowledgements"):
@@ -195,13 +176,12 @@ class Acknowledgements:
 
     def stop(self) -> None:
         """Undeclare everything."""
-        self._session = None
+        self._is_open = False
+        self._writers.stop()
+        self._readers.stop()
         declared, self._declared = self._declared, []
-        declared += [each.subscriber for each in self._listening.values()]
-        self._listening.clear()
         for declaration in reversed(declared):
             declaration.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
-        self._queue.clear()
         self._tokens.clear()
         self.participants.clear()
         self.present.clear()
@@ -211,87 +191,76 @@ class Acknowledgements:
 
     def tokens(self) -> set[str]:
         """Return the tokens of this context and of those that are present."""
-        return {self.token_of(each) for each in (self._participant, *self.present)}
+        return {self.token_of(participant) for participant in (self._participant, *self.present)}
 
     def token_of(self, participant: str) -> str:
         """Return the token of a context that acknowledges."""
         return self._prefix + participant + self._suffix
 
-    def listen(self, key: str, side: Side) -> None:
-        """Hear what one side of a topic tells this context, until `unlisten` was called as often.
+    def add_writer(self, key: str, gid: bytes, writer: AcknowledgedWriter) -> None:
+        """Give a publisher of a topic the ACKNACKs of its readers; twice is the same as once."""
+        self._writers.listen(
+            submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid, writer
+        )
 
-        One subscriber for each topic, as a rule for one topic would refuse one for all of them.
+    def remove_writer(self, key: str, gid: bytes) -> None:
+        """Give a publisher no more of them."""
+        self._writers.unlisten(submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid)
+
+    def add_reader(self, key: str, gid: bytes, reader: AcknowledgingReader) -> None:
+        """Give a subscription to a topic what its writers say; twice is the same as once."""
+        self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, reader)
+
+    def remove_reader(self, key: str, gid: bytes) -> None:
+        """Give a subscription no more of it."""
+        self._readers.unlisten(submessage_key(key, Side.PUBLISHERS, self._participant), gid)
+
+    def send(self, key: str, side: Side, participant: str, data: bytes) -> None:
+        """Send a submessage to a context; it may be lost. Any thread may call.
+
+        Args:
+            key: That of the topic.
+            side: Which side of the topic sends it.
+            participant: The context that gets it.
+            data: The submessage.
         """
-        session, whole_key = self._session, acknack.submessage_key(key, side, self._participant)
-        listening = self._listening.get(whole_key)
-        if listening is not None:
-            listening.users += 1
-        elif session is not None:
-            with translated(key):
-                subscriber = session.declare_subscriber(whole_key, direct(self._queue.put))
-            self._listening[whole_key] = Listening(key, side, subscriber)
+        self._control_messages.put(submessage_key(key, side, participant), data)
 
-    def unlisten(self, key: str, side: Side) -> None:
-        """Hear it no more, unless another endpoint does."""
-        whole_key = acknack.submessage_key(key, side, self._participant)
-        listening = self._listening.get(whole_key)
-        if listening is not None:
-            listening.users -= 1
-            if not listening.users:
-                del self._listening[whole_key]
-                listening.subscriber.undeclare()
-
-    def send(self, key: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
-        """Send a submessage; it may be lost. Large ones go from a thread."""
-        if self._outlet.is_crowded:
-            self._outlet.send(partial(self.send_now, key, data, priority), len(data))
-        else:
-            self.send_now(key, data, priority)
-
-    def send_now(self, key: str, data: bytes, priority: zenoh.Priority = LOOP_PRIORITY) -> None:
-        """Send a submessage from the calling thread."""
-        session = self._session
-        if session is None:
-            return
-        try:
-            session.put(
-                key,
-                data,
-                congestion_control=zenoh.CongestionControl.DROP,
-                priority=priority,
-                allowed_destination=zenoh.Locality.REMOTE,
-            )
-        except zenoh.ZError as error:
-            logger.debug("%s: not sent: %s", key, reason(error))
-
-    def watch(self, endpoint: StatefulWriter | StatefulReader) -> None:
+    def watch(self, endpoint: AcknowledgedWriter | AcknowledgingReader) -> None:
         """Call `endpoint.tick` from now on until it returns False."""
-        if self._session is not None:
+        if self._is_open:
             self._ticks.add(endpoint.tick)
 
-    def probe(self, writer: StatefulWriter) -> None:
+    def probe(self, writer: AcknowledgedWriter) -> None:
         """Call `writer.probe` from now on until it returns False."""
-        if self._session is not None:
+        if self._is_open:
             self._probes.add(writer.probe)
 
-    def _take(self, sample: zenoh.Sample) -> None:
-        whole_key = str(sample.key_expr)
-        listening = self._listening.get(whole_key)
-        if listening is None:  # its last endpoint was just closed
-            return
-        submessage = acknack.unpack(sample.payload.to_bytes())
-        if submessage is None:
-            self._note_malformed(whole_key, "an acknowledgement")
-        elif submessage.kind is SubmessageKind.ACKNACK:
-            writer = self.writers.get((listening.key, submessage.writer))
-            if writer is not None and listening.side is Side.SUBSCRIPTIONS:
-                writer.take_acknack(submessage)
-        else:
-            reader = self.readers.get((listening.key, submessage.reader))
-            if reader is not None and listening.side is Side.PUBLISHERS:
-                reader.take_submessage(submessage)
+    def _receive_acknack(
+        self, sample: zenoh.Sample, writers: dict[Hashable, AcknowledgedWriter]
+    ) -> None:
+        submessage = self._unpack(sample)
+        if submessage is not None and submessage.kind is SubmessageKind.ACKNACK:
+            writer = writers.get(submessage.writer)
+            if writer is not None:
+                writer.receive_acknack(submessage)
 
-    def _take_token(self, sample: zenoh.Sample) -> None:
+    def _receive_submessage(
+        self, sample: zenoh.Sample, readers: dict[Hashable, AcknowledgingReader]
+    ) -> None:
+        submessage = self._unpack(sample)
+        if submessage is not None and submessage.kind is not SubmessageKind.ACKNACK:
+            reader = readers.get(submessage.reader)
+            if reader is not None:
+                reader.receive_submessage(submessage)
+
+    def _unpack(self, sample: zenoh.Sample) -> Submessage | None:
+        submessage = unpack(sample.payload.to_bytes())
+        if submessage is None:
+            self._note_malformed(str(sample.key_expr), "an acknowledgement")
+        return submessage
+
+    def _receive_token(self, sample: zenoh.Sample) -> None:
         key = str(sample.key_expr)
         participant = key.removeprefix(self._prefix).removesuffix(self._suffix)
         if participant == self._participant or len(participant) > LONGEST_ID:
@@ -315,3 +284,14 @@ class Acknowledgements:
         if participant not in self.participants:
             self.participants.add(participant)
             self._on_participant(participant)
+
+
+def submessage_key(key: str, side: Side, participant: str) -> str:
+    """Return the key of submessages to one context.
+
+    Args:
+        key: That of the topic.
+        side: Which side sends them: subscriptions send ACKNACK, publishers everything else.
+        participant: The context that gets them.
+    """
+    return side_key(key, side, f"reliable/{VERSION}/{participant}")

@@ -7,20 +7,18 @@ part.
 
 from __future__ import annotations
 
-from functools import partial
 from typing import TYPE_CHECKING
 
-import zenoh
-
-from aionode.transport._loop_waker import ThreadsafeQueue
-from aionode.transport.zenoh._handlers import LOOP_PRIORITY, direct
+from aionode.transport.zenoh._control_messages import ControlSubscribers
 from aionode.wire._key_expression import Side, side_key
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Hashable
+
+    import zenoh
 
     from aionode.transport._loop_waker import LoopWaker
-    from aionode.transport.zenoh._outlet import Outlet
+    from aionode.transport.zenoh._control_messages import ControlMessages
 
 __all__ = ["Assertions"]
 
@@ -34,73 +32,39 @@ class Assertions:
     """The assertions that this context sends and receives."""
 
     def __init__(
-        self, waker: LoopWaker, note_malformed: Callable[[str, str], None], outlet: Outlet
+        self,
+        waker: LoopWaker,
+        note_malformed: Callable[[str, str], None],
+        control_messages: ControlMessages,
     ) -> None:
-        self._waker = waker
-        self._outlet = outlet
+        self._control_messages = control_messages
         self._note_malformed = note_malformed
-        # By the key of the topic.
-        self._listeners: dict[str, dict[Callable[[bytes], None], None]] = {}
-        self._subscribers: dict[str, zenoh.Subscriber[None]] = {}
-        self._session: zenoh.Session | None = None
-
-    def start(self, session: zenoh.Session) -> None:
-        """Begin to send, and to receive for those who listen."""
-        self._session = session
-        for key in self._listeners:
-            self._update(key)
-
-    def stop(self) -> None:
-        """Send and receive nothing more."""
-        self._session = None
-        for key in self._listeners:
-            self._update(key)
+        self._subscribers: ControlSubscribers[Callable[[bytes], None]] = ControlSubscribers(
+            waker, self._receive, LIMIT
+        )
+        self.start = self._subscribers.start
+        self.stop = self._subscribers.stop
 
     def listen(self, key: str, listener: Callable[[bytes], None]) -> None:
         """Call `listener` with the gid of each publisher of a topic that asserts its liveliness."""
-        self._listeners.setdefault(key, {})[listener] = None
-        self._update(key)
+        self._subscribers.listen(key_of(key), listener, listener)
 
     def unlisten(self, key: str, listener: Callable[[bytes], None]) -> None:
         """Call `listener` no more, if it is known."""
-        listeners = self._listeners.get(key, {})
-        listeners.pop(listener, None)
-        self._update(key)
-        if not listeners:
-            self._listeners.pop(key, None)
+        self._subscribers.unlisten(key_of(key), listener)
 
     def send(self, key: str, gid: bytes) -> None:
         """Assert the liveliness of a publisher of this context."""
-        self._outlet.send(partial(self._send, key, gid), len(gid))
+        self._control_messages.put(key_of(key), gid)
 
-    def _send(self, key: str, gid: bytes) -> None:
-        session = self._session
-        if session is not None:
-            session.put(
-                key_of(key),
-                gid,
-                congestion_control=zenoh.CongestionControl.DROP,
-                priority=LOOP_PRIORITY,
-                allowed_destination=zenoh.Locality.REMOTE,
-            )
-
-    def _update(self, key: str) -> None:
-        """Subscribe while there are listeners of a topic and a session."""
-        if self._session is not None and self._listeners.get(key):
-            if key not in self._subscribers:
-                queue = ThreadsafeQueue(self._waker, partial(self._take, key), LIMIT)
-                self._subscribers[key] = self._session.declare_subscriber(
-                    key_of(key), direct(queue.put), allowed_origin=zenoh.Locality.REMOTE
-                )
-        elif key in self._subscribers:
-            self._subscribers.pop(key).undeclare()
-
-    def _take(self, key: str, sample: zenoh.Sample) -> None:
+    def _receive(
+        self, sample: zenoh.Sample, listeners: dict[Hashable, Callable[[bytes], None]]
+    ) -> None:
         gid = sample.payload.to_bytes()
         if len(gid) != GID_SIZE:
-            self._note_malformed(key_of(key), "an assertion of liveliness")
+            self._note_malformed(str(sample.key_expr), "an assertion of liveliness")
             return
-        for listener in tuple(self._listeners.get(key, ())):
+        for listener in tuple(listeners.values()):
             listener(gid)
 
 

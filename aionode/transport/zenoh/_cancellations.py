@@ -10,19 +10,18 @@ The name of the service is a chunk of the key, as in the tokens of ROS, so that 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import partial
 from typing import TYPE_CHECKING
 
 import zenoh
 
 from aionode.transport._loop_waker import ThreadsafeQueue
-from aionode.transport.zenoh._handlers import LOOP_PRIORITY, direct
+from aionode.transport.zenoh._handlers import direct
 from aionode.wire import _attachment as attachment
 from aionode.wire._key_expression import demangle, mangle
 
 if TYPE_CHECKING:
     from aionode.transport._loop_waker import LoopWaker
-    from aionode.transport.zenoh._outlet import Outlet
+    from aionode.transport.zenoh._control_messages import ControlMessages
 
 __all__ = ["Cancellations"]
 
@@ -44,20 +43,18 @@ class Cancellations:
         domain_id: int,
         waker: LoopWaker,
         note_malformed: Callable[[str, str], None],
-        outlet: Outlet,
+        control_messages: ControlMessages,
     ) -> None:
         self.listeners: dict[str, dict[Callable[[bytes, int], None], None]] = {}
         self._participant = participant
         self._domain_id = domain_id
         self._note_malformed = note_malformed
-        self._outlet = outlet
-        self._session: zenoh.Session | None = None
+        self._control_messages = control_messages
         self._subscriber: zenoh.Subscriber[None] | None = None
-        self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._take, LIMIT)
+        self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._receive, LIMIT)
 
     def start(self, session: zenoh.Session) -> None:
         """Subscribe."""
-        self._session = session
         self._subscriber = session.declare_subscriber(
             self._prefix(self._participant) + "*", direct(self._queue.put)
         )
@@ -65,7 +62,6 @@ class Cancellations:
     def stop(self) -> None:
         """Unsubscribe."""
         subscriber, self._subscriber = self._subscriber, None
-        self._session = None
         if subscriber is not None:
             subscriber.undeclare()
 
@@ -85,23 +81,12 @@ class Cancellations:
         extra = attachment.pack(sequence, 0, gid)
         for participant in participants:
             key = self._prefix(participant) + mangle(service)
-            self._outlet.send(partial(self._send, key, extra), len(extra))
-
-    def _send(self, key: str, extra: bytes) -> None:
-        session = self._session
-        if session is not None:
-            session.put(
-                key,
-                b"",
-                attachment=extra,
-                congestion_control=zenoh.CongestionControl.DROP,
-                priority=LOOP_PRIORITY,
-            )
+            self._control_messages.put(key, b"", extra)
 
     def _prefix(self, participant: str) -> str:
         return f"@aionode/{self._domain_id}/{participant}/cancel/"
 
-    def _take(self, sample: zenoh.Sample) -> None:
+    def _receive(self, sample: zenoh.Sample) -> None:
         extra = sample.attachment
         request = None if extra is None else attachment.unpack(extra.to_bytes())
         if request is None:

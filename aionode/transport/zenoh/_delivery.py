@@ -10,7 +10,7 @@ import zenoh
 from aionode.qos import DurabilityPolicy, ReliabilityPolicy
 from aionode.transport.base import SampleInfo
 from aionode.transport.zenoh._defects.blocked_sends import BLOCK_US
-from aionode.transport.zenoh._handlers import BULK_PRIORITY, reason
+from aionode.transport.zenoh._handlers import BULK_PRIORITY, DROP, reason
 from aionode.transport.zenoh._settings import FLUSH_S
 from aionode.wire._attachment import unpack_fields
 
@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from aionode.qos import QoSProfile
 
 __all__ = [
-    "BLOCK",
-    "BULK_BYTES",
-    "DROP",
     "FLUSH_NS",
     "GIVEN_UP_NS",
     "STILL_NS",
@@ -39,9 +36,6 @@ logger = logging.getLogger("aionode.transport.zenoh")
 UNKNOWN_GID = bytes(16)
 """The gid of a message without a valid attachment."""
 
-BULK_BYTES = 60_000
-"""From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
-
 FLUSH_NS = int(FLUSH_S * 1e9)
 """Time for which a destroyed publisher waits for acknowledgements while there is progress."""
 
@@ -50,10 +44,6 @@ STILL_NS = 500_000_000
 
 GIVEN_UP_NS = BLOCK_US * 900
 """Duration from which on a send was given up by Zenoh."""
-
-BLOCK = zenoh.CongestionControl.BLOCK
-
-DROP = zenoh.CongestionControl.DROP
 
 
 def is_reliable(qos: QoSProfile) -> bool:

@@ -11,8 +11,11 @@ import zenoh
 from aionode.errors import TransportError
 
 __all__ = [
+    "BLOCK",
+    "BULK_BYTES",
     "BULK_PRIORITY",
     "CALL_PRIORITY",
+    "DROP",
     "LOOP_PRIORITY",
     "PATIENT_PRIORITY",
     "RETRANSMIT_PRIORITY",
@@ -38,8 +41,17 @@ CALL_PRIORITY = zenoh.Priority.INTERACTIVE_LOW
 BULK_PRIORITY = zenoh.Priority.DATA_LOW
 """Of large messages, sent from a thread with DROP; each fragment may wait."""
 
+BULK_BYTES = 60_000
+"""From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
+
 PATIENT_PRIORITY = zenoh.Priority.BACKGROUND
 """Of reliable messages for readers that do not acknowledge, sent from threads with BLOCK."""
+
+DROP = zenoh.CongestionControl.DROP
+"""Drops a message, after a moment at most, for which Zenoh's queue has no room."""
+
+BLOCK = zenoh.CongestionControl.BLOCK
+"""Waits for room, with the queue locked: only threads may."""
 
 T = TypeVar("T")
 

@@ -8,6 +8,7 @@ import zenoh
 from zenoh import ext
 
 from aionode.transport.zenoh._defects.heartbeats import miss_detection
+from aionode.transport.zenoh._handlers import BLOCK, DROP
 from aionode.wire import _attachment as attachment
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ def declare_plain(
     """Declare a publisher that keeps nothing; the arguments are as in `declare_keeping`."""
     return session.declare_publisher(
         key,
-        congestion_control=zenoh.CongestionControl.BLOCK if waits else zenoh.CongestionControl.DROP,
+        congestion_control=BLOCK if waits else DROP,
         priority=priority,
         reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
         allowed_destination=zenoh.Locality.REMOTE,
@@ -53,7 +54,7 @@ def declare_keeping(
     return ext.declare_advanced_publisher(
         session,
         key,
-        congestion_control=zenoh.CongestionControl.BLOCK if waits else zenoh.CongestionControl.DROP,
+        congestion_control=BLOCK if waits else DROP,
         priority=priority,
         reliability=zenoh.Reliability.RELIABLE if reliable else zenoh.Reliability.BEST_EFFORT,
         allowed_destination=zenoh.Locality.REMOTE,

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo, Graph
-    from aionode.transport.zenoh._reliability import WriterHistory
+    from aionode.transport._reliability.stateful_writer import StatefulWriter
     from aionode.transport.zenoh._session_state import SessionState
 
 __all__ = ["MatchedReaders"]
@@ -62,7 +62,7 @@ class MatchedReaders:
                 self._mute.discard(reader.gid)
 
     def wanted(
-        self, history: WriterHistory | None, msg_type: type[Any]
+        self, history: StatefulWriter | None, msg_type: type[Any]
     ) -> Callable[[Any], bool] | None:
         """Return whether any reader wants a message; None if all messages have to be sent."""
         filters = self._state.content_filters

@@ -12,8 +12,9 @@ from aionode.transport import _content_filters
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import LinkStatus
 from aionode.transport.zenoh._config import is_look
-from aionode.transport.zenoh._delivery import BLOCK, DROP
 from aionode.transport.zenoh._handlers import (
+    BLOCK,
+    DROP,
     LOOP_PRIORITY,
     RETRANSMIT_PRIORITY,
     direct,

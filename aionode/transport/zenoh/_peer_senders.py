@@ -73,7 +73,7 @@ class PeerSenders:
             were written to it so far; None if that is not known.
 
     Attributes:
-        is_crowded: Whether threads send everything, as `Outlet.is_crowded`.
+        is_crowded: Whether threads send everything, as `ControlMessages.is_crowded`.
     """
 
     def __init__(self, waker: LoopWaker, look: Callable[[str], tuple[bool, int] | None]) -> None:

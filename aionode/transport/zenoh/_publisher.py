@@ -14,12 +14,12 @@ from zenoh import ext
 from aionode.clock import SilenceAlarm, perf_ns
 from aionode.errors import TransportError
 from aionode.qos import depth_of, is_unlimited, keeps_all
+from aionode.transport._reliability.stateful_writer import MUTE_TICKS, StatefulWriter
 from aionode.transport._send_thread import SendQueue, SendThread
 from aionode.transport.base import Writer
 from aionode.transport.zenoh._acknowledgements import TICK_S
 from aionode.transport.zenoh._defects import history_lock
 from aionode.transport.zenoh._delivery import (
-    BULK_BYTES,
     FLUSH_NS,
     GIVEN_UP_NS,
     STILL_NS,
@@ -29,33 +29,29 @@ from aionode.transport.zenoh._delivery import (
     withdraw,
 )
 from aionode.transport.zenoh._handlers import (
+    BULK_BYTES,
     BULK_PRIORITY,
     LOOP_PRIORITY,
     PATIENT_PRIORITY,
     direct,
     reason,
 )
-from aionode.transport.zenoh._kept_history import (
-    declare_keeping,
-    declare_plain,
-    unless_expired,
-)
+from aionode.transport.zenoh._kept_history import declare_keeping, declare_plain, unless_expired
 from aionode.transport.zenoh._matched_readers import MatchedReaders
-from aionode.transport.zenoh._reliability import MUTE_TICKS, WriterHistory
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.transport.zenoh._stop import ZenohStop
-from aionode.transport.zenoh._submessages import SubmessageSender
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
+from aionode.wire._key_expression import Side
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.graph import EndpointInfo
+    from aionode.transport._reliability.reader_proxy import ReaderProxy
+    from aionode.transport._reliability.submessage import Submessage
     from aionode.transport.base import StopSender
-    from aionode.transport.zenoh._reliability import ReaderProxy
     from aionode.transport.zenoh._session_state import SessionState
-    from aionode.wire._acknack import Submessage
 
 __all__ = ["ZenohWriter"]
 
@@ -69,7 +65,7 @@ MORE_DEPTH = "A greater depth keeps more of them, KEEP_ALL and `await drain()` a
 DRAIN = "`await drain()` before the end waits for readers that still take them"
 
 
-class ZenohWriter(SubmessageSender, Declaration, Writer):
+class ZenohWriter(Declaration, Writer):
     """A publisher for the subscriptions of other contexts.
 
     A message is sent in one of three ways, each with a priority and so a queue of its own in Zenoh:
@@ -115,14 +111,15 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         self._early: deque[tuple[int, bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = keeps_all(qos)
-        # A transient local KEEP_LAST publisher has none: Zenoh repeats its lost messages, except
-        # those whose repetition was under way when a connection was lost.
-        self._history: WriterHistory | None = None
+        # A transient local KEEP_LAST publisher has none: Zenoh repeats its lost messages, if no
+        # connection is lost meanwhile.
+        self._history: StatefulWriter | None = None
         if self._reliable and self.recovers and (self.bounded or not self._transient):
-            self._history = WriterHistory(
-                self._depth, state.queue_bytes, keep_all=self.bounded, side=self, now_ns=perf_ns
+            self._history = StatefulWriter(
+                *(self.gid, state.participant, self, self._depth, state.queue_bytes),
+                keep_all=self.bounded,
+                now_ns=perf_ns,
             )
-            state.acknowledgements.writers[self._key, self.gid] = self
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, self._depth, keep_all=False)
         # Whether any reader wants a message; None if one wants all, or may be there unseen.
@@ -133,7 +130,8 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         self._patient: SendQueue | None = None
         self._patient_sender = SendThread("aionode-patient", state.waker)
         self._patient_publisher: zenoh.Publisher | None = None
-        self._drained: list[asyncio.Future[None]] = []
+        # Clear while `drain` waits for acknowledgements.
+        self._drained = asyncio.Event()
         self._dropped = 0
         self._given_up = state.queue(self.lost)
         self._closed = False
@@ -146,8 +144,9 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         state.add(self)
 
     def _send_queue(self, send_thread: SendThread, limit: int, *, keep_all: bool) -> SendQueue:
-        lost = self.lost if self._reliable else self._count_lost
-        return send_thread.send_queue(limit, self.state.queue_bytes, keep_all=keep_all, lost=lost)
+        return send_thread.send_queue(
+            limit, self.state.queue_bytes, keep_all=keep_all, lost=self.lost
+        )
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the publisher, and send what was published before."""
@@ -232,14 +231,14 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         if matching is not None:
             matching.undeclare()
         self._withdraw()
-        self._wake()
+        self._drained.set()
         self._update()
         if self._closed:
             self._forget()
 
     def _withdraw(self) -> None:
         """Undeclare, in the thread that may be using the publisher: Zenoh locks it meanwhile."""
-        self.unlisten()
+        self.state.acknowledgements.remove_writer(self._key, self.gid)
         publisher, self._publisher = self._publisher, None
         patient, self._patient_publisher = self._patient_publisher, None
         if self._patient is not None:
@@ -288,21 +287,21 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
-    def _update_readers(self, history: WriterHistory, gid: bytes | None) -> None:
+    def _update_readers(self, history: StatefulWriter, gid: bytes | None) -> None:
         """Add new and returned readers to the history, and remove those that have vanished.
 
         All of them, or the one with this gid.
         """
-        found = self._matched.acknowledging
+        acknowledging = self._matched.acknowledging
         for vanished in list(history.readers) if gid is None else (gid,):
-            if vanished not in found:
+            if vanished not in acknowledging:
                 history.remove(vanished)
         if not self._closed:
-            for each in found if gid is None else found.keys() & {gid}:
-                reader = history.readers.get(each)
+            for known in acknowledging if gid is None else acknowledging.keys() & {gid}:
+                reader = history.readers.get(known)
                 if reader is None or reader.away_until_ns:
-                    self.listen()
-                    history.add(each, found[each])
+                    self.state.acknowledgements.add_writer(self._key, self.gid, self)
+                    history.add(known, acknowledging[known])
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(self)
         self._progress()
@@ -379,7 +378,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         Returns whether one does; else the loop may put it at once.
         """
         size = len(payload)
-        is_crowded = self.state.outlet.is_crowded
+        is_crowded = self.state.control_messages.is_crowded
         self.used_bulk = self.used_bulk or size >= BULK_BYTES or is_crowded
         self._is_large_used = bool(len(self._large))
         if is_crowded or not self._is_large_used:
@@ -413,7 +412,7 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
             self._patient is not None
             or self._needs_thread
             or self._may_not_drop
-            or self.state.outlet.is_crowded
+            or self.state.control_messages.is_crowded
         )
 
     def note_crowd(self) -> None:
@@ -476,10 +475,9 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
     async def drain(self) -> None:
         """Wait until there is room and all messages were handed to Zenoh."""
         while self._history is not None and (self._history.unsent or not self.has_room()):
-            waiter = asyncio.get_running_loop().create_future()
-            self._drained.append(waiter)
+            self._drained.clear()
             self._watch()
-            await waiter
+            await self._drained.wait()
         if self._patient is not None:
             await self._patient.drain()
         await self._large.drain()
@@ -487,23 +485,26 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
     def _progress(self) -> None:
         """Wake `drain` if there is room now."""
         history = self._history
-        if self._drained and (history is None or not (history.unsent or not history.has_room())):
-            self._wake()
-
-    def _wake(self) -> None:
-        drained, self._drained = self._drained, []
-        for waiter in drained:
-            if not waiter.done():
-                waiter.set_result(None)
+        if history is None or not (history.unsent or not history.has_room()):
+            self._drained.set()
 
     # Submessages
 
-    def take_acknack(self, submessage: Submessage) -> None:
+    def send(self, participant: str, submessage: bytes) -> None:
+        """Send a submessage to the context of a reader; any thread may."""
+        self.state.acknowledgements.send(self._key, Side.PUBLISHERS, participant, submessage)
+
+    def source_ns(self, extra: bytes) -> int:
+        """Return when a message was published, in nanoseconds since 1970."""
+        fields = attachment.unpack_fields(extra)
+        return 0 if fields is None else fields[1]
+
+    def receive_acknack(self, submessage: Submessage) -> None:
         """Handle an ACKNACK of one of its readers."""
         if self._matched.note_heard(submessage.reader):
             self._update()
         if self._history is not None:
-            self._history.acknack(submessage.reader, submessage.first, submessage.ranges())
+            self._history.acknack(submessage)
             self._progress()
             if self in self.state.lingering and self.is_done():
                 self.finish()
@@ -555,17 +556,14 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
         return self._history is not None and self._history.probe()
 
     def lost(self, count: int) -> None:
-        """Count dropped messages; the first are logged."""
-        if not self._dropped:
+        """Count dropped messages; the first of a reliable publisher are logged."""
+        if self._reliable and not self._dropped:
             logger.warning(
                 "%s: %d of the messages published here were dropped before every reader had them: "
                 "one is too slow, hangs or has gone; more of them are only counted, in the "
                 "publisher's stats.dropped. %s",
                 *(self.endpoint.name, count, DRAIN if self.bounded else MORE_DEPTH),
             )
-        self._dropped += count
-
-    def _count_lost(self, count: int) -> None:
         self._dropped += count
 
     @property
@@ -593,7 +591,6 @@ class ZenohWriter(SubmessageSender, Declaration, Writer):
 
     def _forget(self) -> None:
         self.state.own_gids.discard(self.gid)
-        self.state.acknowledgements.writers.pop((self._key, self.gid), None)
         updates = self.state.on_reader.get(self.endpoint.name, {})
         updates.pop(self._update, None)
         if not updates:

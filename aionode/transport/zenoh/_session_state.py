@@ -25,8 +25,8 @@ from aionode.transport.zenoh._announced import AnnouncedLimit
 from aionode.transport.zenoh._assertions import Assertions
 from aionode.transport.zenoh._cancellations import Cancellations
 from aionode.transport.zenoh._connections import Connections
+from aionode.transport.zenoh._control_messages import ControlMessages
 from aionode.transport.zenoh._handlers import translated
-from aionode.transport.zenoh._outlet import Outlet
 from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.transport.zenoh._request_room import RequestRoom
 from aionode.transport.zenoh._settings import FLUSH_S
@@ -108,7 +108,7 @@ class SessionState:
         connections: The sessions that it is connected with.
         bulk: The thread that sends large messages.
         send_threads: All threads that send messages, `bulk` included.
-        outlet: Where the loop puts what is no message.
+        control_messages: Puts acknowledgements, assertions and cancellations.
         peer_senders: Send requests and replies.
         burst: Limits what the loop puts at once for readers that do not acknowledge.
         acknowledgements: The acknowledgements between contexts of aionode.
@@ -149,7 +149,7 @@ class SessionState:
         self.announced = AnnouncedLimit(graph_bytes, self.connections.kinds)
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
-        self.outlet = Outlet(self.bulk, queue_bytes)
+        self.control_messages = ControlMessages(self.bulk, queue_bytes)
         self._calm: asyncio.TimerHandle | None = None  # ends a crowd
         self.announced.on_crowded.append(self.note_crowd)
         self.peer_senders = PeerSenders(self.waker, self._look)
@@ -157,16 +157,16 @@ class SessionState:
         self.acknowledgements = Acknowledgements(
             *(participant, domain_id, self.waker, self.note_malformed, self._acknowledges),
             self.announced,
-            self.outlet,
+            self.control_messages,
         )
         self.lingering: dict[LingeringWriter, None] = {}
         self.malformed: Counter[str] = Counter()
         self.lies: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(
-            participant, domain_id, self.waker, self.note_malformed, self.outlet
+            participant, domain_id, self.waker, self.note_malformed, self.control_messages
         )
-        self.assertions = Assertions(self.waker, self.note_malformed, self.outlet)
+        self.assertions = Assertions(self.waker, self.note_malformed, self.control_messages)
         self.time_base = MachineTime() if time_base is None else time_base
         self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, dict[ReaderListener, None]] = {}
@@ -236,6 +236,7 @@ class SessionState:
 
     def _start_submessages(self, session: zenoh.Session) -> None:
         """Begin to talk to the other contexts of aionode."""
+        self.control_messages.start(session)
         self.acknowledgements.start(session)
         self.cancellations.start(session)
         self.assertions.start(session)
@@ -293,7 +294,7 @@ class SessionState:
             for publisher in list(self.lingering):
                 publisher.finish()
         self.peer_senders.clear()
-        self.outlet.clear()
+        self.control_messages.stop()
         self.cancellations.stop()
         self.assertions.stop()
         self.acknowledgements.stop()
@@ -350,7 +351,7 @@ class SessionState:
             self._calm = loop.call_later(CALM_S, self._set_crowded, False)
 
     def _set_crowded(self, is_crowded: bool) -> None:
-        self.outlet.is_crowded = self.peer_senders.is_crowded = is_crowded
+        self.control_messages.is_crowded = self.peer_senders.is_crowded = is_crowded
         for declaration in list(self._declarations):
             declaration.note_crowd()
 

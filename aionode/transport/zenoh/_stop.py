@@ -10,8 +10,7 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.transport.base import StopSender
-from aionode.transport.zenoh._delivery import BULK_BYTES
-from aionode.transport.zenoh._handlers import reason
+from aionode.transport.zenoh._handlers import BULK_BYTES, reason
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 
@@ -21,8 +20,8 @@ if TYPE_CHECKING:
     from zenoh import ext
 
     from aionode.clock import SilenceAlarm
+    from aionode.transport._reliability.stateful_writer import StatefulWriter
     from aionode.transport._send_thread import SendQueue, SendThread
-    from aionode.transport.zenoh._reliability import ReaderProxy, WriterHistory
 
 __all__ = ["ZenohStop"]
 
@@ -44,13 +43,12 @@ class StoppableWriter(Protocol):
     _stop: ZenohStop | None
     _key: str
     _publisher: zenoh.Publisher | ext.AdvancedPublisher | None
-    _history: WriterHistory | None
+    _history: StatefulWriter | None
     _expiry: SilenceAlarm | None
     _large: SendQueue
     _patient: SendQueue | None
     _patient_sender: SendThread
 
-    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None: ...
     def _keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None: ...
     def _abandon_queues(self) -> None: ...
     def _has_unacknowledging(self) -> bool: ...
@@ -159,9 +157,7 @@ class ZenohStop(StopSender):
             keep = partial(writer._send_patiently, writer._publisher, self._payload, self._extra)
             writer._patient_sender.submit_past_loop(keep)
         if writer._history is not None:
-            for reader in list(writer._history.readers.values()):
-                if not reader.away_until_ns:
-                    writer.heartbeat(reader, sequence, sequence)
+            writer._history.announce_only(sequence)
 
     def repeat(self) -> None:
         """Put it at once, with the priority of the messages before it."""

@@ -14,6 +14,8 @@ from aionode.errors import DecodeError
 from aionode.graph import EndpointKind
 from aionode.qos import depth_of, is_unlimited, keeps_all
 from aionode.transport._content_filters import filter_token, text_of_filter
+from aionode.transport._reliability.limits import NEVER, OVERHEAD_BYTES
+from aionode.transport._reliability.stateful_reader import StatefulReader
 from aionode.transport.base import NOT_INLINE_NS, ReaderRegistration, SampleInfo
 from aionode.transport.zenoh._delivery import (
     UNKNOWN_GID,
@@ -21,12 +23,8 @@ from aionode.transport.zenoh._delivery import (
     is_transient,
 )
 from aionode.transport.zenoh._handlers import direct, translated
-from aionode.transport.zenoh._reliability import NEVER, OVERHEAD_BYTES
 from aionode.transport.zenoh._session_state import Declaration
-from aionode.transport.zenoh._writer_proxy import WriterProxy
-from aionode.wire import _acknack as acknack
 from aionode.wire import cdr
-from aionode.wire._acknack import SubmessageKind
 from aionode.wire._attachment import unpack_fields
 from aionode.wire._key_expression import Side, buffer_key
 from aionode.wire._liveliness import CPU_BACKEND
@@ -36,9 +34,10 @@ if TYPE_CHECKING:
 
     from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
+    from aionode.transport._reliability.submessage import Submessage
+    from aionode.transport._reliability.writer_proxy import WriterProxy
     from aionode.transport.base import Reader
     from aionode.transport.zenoh._session_state import SessionState
-    from aionode.wire._acknack import Submessage
 
 __all__ = ["ZenohReader"]
 
@@ -56,15 +55,6 @@ flow control: 512 of them with a full window."""
 
 SPAN = 1_000
 """At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
-
-REMEMBERED_WRITERS = 1_024
-"""Number of publishers whose state a subscription remembers."""
-
-GONE_TICKS = 300
-"""After so many ticks, 15 s, the messages of a publisher that is not in the graph will not come.
-
-Ticks, and no time: while this process is frozen or stalled, nothing that others announce is seen.
-"""
 
 
 class ZenohReader(Declaration, ReaderRegistration):
@@ -103,10 +93,13 @@ class ZenohReader(Declaration, ReaderRegistration):
             self._take, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
         )
         self._dropped = 0
-        self._span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
-        self._proxies: dict[bytes, WriterProxy] = {}
-        # The last sequence number of each publisher without a proxy.
-        self._last: dict[bytes, int] = {}
+        self._stateful: StatefulReader | None = None
+        if reliable and token and self.recovers:
+            span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
+            self._stateful = StatefulReader(
+                self.gid, self, perf_ns, span, has_history=self._transient
+            )
+        self._proxies = {} if self._stateful is None else self._stateful.proxies
         # Messages for which a KEEP_ALL subscription has no room yet.
         self._full: deque[tuple[bytes, SampleInfo, WriterProxy | None]] = deque()
         self._full_bytes = 0
@@ -120,16 +113,13 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
         if self._has_lease:
             state.assertions.listen(self._key, reader.note_alive)
-        self._acknowledges = reliable and bool(token) and self.recovers
-        if self._acknowledges:
-            state.acknowledgements.readers[self._key, self.gid] = self
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
         self._announce_filter(session)
-        if self._acknowledges:
-            self.state.acknowledgements.listen(self._key, Side.PUBLISHERS)
+        if self._stateful is not None:
+            self.state.acknowledgements.add_reader(self._key, self.gid, self)
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -157,14 +147,15 @@ class ZenohReader(Declaration, ReaderRegistration):
     def undeclare_data(self) -> None:
         """Undeclare the subscriber."""
         self._announce_filter(None)
-        if self._acknowledges:
-            self.state.acknowledgements.unlisten(self._key, Side.PUBLISHERS)
+        if self._stateful is not None:
+            self.state.acknowledgements.remove_reader(self._key, self.gid)
         subscribers, self._subscribers = self._subscribers, []
         for subscriber in subscribers:
             subscriber.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
         self._queue.clear()
         self._full.clear()
-        self._proxies.clear()
+        if self._stateful is not None:
+            self._stateful.clear()
 
     def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
         """Announce which messages are wanted."""
@@ -187,7 +178,6 @@ class ZenohReader(Declaration, ReaderRegistration):
 
     def close(self) -> None:
         """Undeclare the subscription for good."""
-        self.state.acknowledgements.readers.pop((self._key, self.gid), None)
         if self._has_lease:
             self.state.assertions.unlisten(self._key, self._reader.note_alive)
         super().close()
@@ -201,17 +191,15 @@ class ZenohReader(Declaration, ReaderRegistration):
         payload = sample.payload.to_bytes()
         proxy = self._proxies.get(gid)
         if proxy is None:
-            if self._acknowledges:
-                if self._transient and 0 < sequence <= self._last.get(gid, 0):
-                    return  # its publisher has sent it again
-                self._note_last(gid, sequence)
+            if self._stateful is not None and not self._stateful.receive_early(gid, sequence):
+                return  # its publisher has sent it again
             if self._keep_all:
                 self._accept_or_wait(payload, self._held(gid, sequence, source_ns), None)
                 return
         elif sequence == proxy.expected and (
             not self._keep_all or (not self._full and self._has_room(len(payload)))
         ):
-            proxy.note_in_order(len(payload))
+            proxy.receive_expected(len(payload))
         else:
             sample_info = self._held(gid, sequence, source_ns)
             # The history of a transient local publisher may come again.
@@ -237,13 +225,6 @@ class ZenohReader(Declaration, ReaderRegistration):
     def _held(self, gid: bytes, sequence: int, source_ns: int) -> SampleInfo:
         """Return what is known of a message that may wait here, with the time of its arrival."""
         return SampleInfo(gid, sequence, source_ns, self.state.time_base.system_ns())
-
-    def _note_last(self, gid: bytes, sequence: int) -> None:
-        """Record the last message of a publisher without a proxy."""
-        last = self._last
-        if gid not in last and len(last) >= REMEMBERED_WRITERS:
-            del last[next(iter(last))]
-        last[gid] = sequence
 
     def _note_dropped(self, count: int) -> None:
         """Count messages that were dropped as too many bytes of them waited for the loop."""
@@ -278,8 +259,8 @@ class ZenohReader(Declaration, ReaderRegistration):
         is_resent: bool = False,
     ) -> None:
         item, size = (payload, sample_info), len(payload) + OVERHEAD_BYTES
-        proxy.take(sample_info.sequence, item, size, is_resent=is_resent)
-        if proxy.next <= proxy.last:
+        proxy.receive(sample_info.sequence, item, size, is_resent=is_resent)
+        if proxy.lacks:
             self.state.acknowledgements.watch(self)
 
     def accept(self, item: tuple[bytes, SampleInfo], proxy: WriterProxy) -> bool:
@@ -362,102 +343,46 @@ class ZenohReader(Declaration, ReaderRegistration):
 
     # Submessages
 
-    def take_submessage(self, submessage: Submessage) -> None:
+    def receive_submessage(self, submessage: Submessage) -> None:
         """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
-        proxy = self._proxies.get(submessage.writer)
-        if submessage.kind is SubmessageKind.HEARTBEAT:
-            if self._transient:
-                proxy = self._leave_to_history(proxy, submessage)
-            if proxy is None:
-                proxy = self._add_proxy(submessage)
-                if proxy is None:
-                    return
-            elif proxy.participant.encode() != submessage.rest:
-                proxy.participant = self._participant_of(submessage) or proxy.participant
-            if submessage.first > proxy.next:  # what is older may be here, in the other queue
-                self._queue.take_all()
-            # While messages wait in the queue, it cannot be told which ones are missing.
-            proxy.heartbeat(submessage.first, submessage.last, ask=not len(self._queue))
-        elif proxy is None:
-            return
-        elif submessage.kind is SubmessageKind.GAP:
-            proxy.gap(submessage.first, submessage.last)
-        else:
-            sample_info = self._held(submessage.writer, submessage.first, submessage.last)
-            self._take_in_order(proxy, submessage.rest, sample_info, is_resent=True)
-            return
-        if proxy.next <= proxy.last:
+        if self._stateful is not None and self._stateful.receive(submessage):
             self.state.acknowledgements.watch(self)
-
-    def _leave_to_history(
-        self, proxy: WriterProxy | None, heartbeat: Submessage
-    ) -> WriterProxy | None:
-        """Return the proxy of a writer, unless the writer has forgotten this subscription.
-
-        Then what was published meanwhile comes as it does to a late subscription, from Zenoh.
-        """
-        if proxy is None or proxy.next >= heartbeat.first or proxy.lacks:
-            return proxy
-        del self._proxies[proxy.gid]
-        self._note_last(proxy.gid, proxy.taken)
-        return None
-
-    def _add_proxy(self, heartbeat: Submessage) -> WriterProxy | None:
-        """Return a new proxy for the sender of a HEARTBEAT; None if that is malformed."""
-        if self._transient and self._last.get(heartbeat.writer, 0) < heartbeat.first - 1:
-            return None  # the history is still to come
-        participant = self._participant_of(heartbeat)
-        if not participant:
-            self.state.note_malformed(self._key, "an acknowledgement")
-            return None
-        if len(self._proxies) >= REMEMBERED_WRITERS:  # forget the one that was silent for longest
-            del self._proxies[min(self._proxies, key=lambda gid: self._proxies[gid].heard_ns)]
-        gid = heartbeat.writer
-        taken = self._last.pop(gid, 0)
-        first = max(heartbeat.first, taken + 1)
-        proxy = WriterProxy(gid, participant, first, self, perf_ns, self._span, taken)
-        self._proxies[gid] = proxy
-        return proxy
-
-    def _participant_of(self, heartbeat: Submessage) -> str:
-        """Return the context of the sender of a HEARTBEAT; empty if that is malformed.
-
-        The graph knows better: else a lie would keep a publisher waiting for acknowledgements.
-        """
-        publisher = self._find(heartbeat.writer)
-        if publisher is not None:
-            return publisher.node.participant
-        participant = heartbeat.rest.decode(errors="replace")
-        return participant if participant.isalnum() else ""  # it becomes part of a key
 
     def tick(self) -> bool:
         """Ask again for what is missing; return whether to call again."""
-        again = False
-        for proxy in list(self._proxies.values()):
-            if proxy.next > proxy.last:
-                proxy.absent_ticks = 0
-                continue
-            if self.state.graph is None or self._find(proxy.gid) is not None:
-                proxy.absent_ticks = 0
-            else:
-                proxy.absent_ticks += 1
-                if proxy.absent_ticks >= GONE_TICKS:
-                    proxy.give_up()
-                    continue
-            again = True
-            if not len(self._queue):
-                proxy.remind()
-        return again
+        return self._stateful is not None and self._stateful.tick()
 
-    def _find(self, gid: bytes) -> EndpointInfo | None:
-        """Return a publisher of the topic, if it is in the graph."""
+    def send(self, participant: str, submessage: bytes) -> None:
+        """Send a submessage to the context of a publisher."""
+        self.state.acknowledgements.send(self._key, Side.SUBSCRIPTIONS, participant, submessage)
+
+    def item_of(self, submessage: Submessage) -> tuple[bytes, SampleInfo]:
+        """Return a message that was sent again, as `accept` gets it."""
+        return submessage.rest, self._held(submessage.writer, submessage.first, submessage.last)
+
+    def has_arrivals(self) -> bool:
+        """Return whether messages wait for the loop."""
+        return bool(len(self._queue))
+
+    def receive_arrivals(self) -> None:
+        """Take the messages that wait for the loop."""
+        self._queue.take_all()
+
+    def participant_of(self, writer: bytes) -> str:
+        """Return the context of a publisher of the topic; empty if it is not in the graph."""
         graph = self.state.graph
         if graph is None:
-            return None
-        publishers = graph.endpoints(EndpointKind.PUBLISHER, name=self.endpoint.name)
-        return next((each for each in publishers if each.gid == gid), None)
+            return ""
+        for publisher in graph.endpoints(EndpointKind.PUBLISHER, name=self.endpoint.name):
+            if publisher.gid == writer:
+                return publisher.node.participant
+        return ""
 
-    def refused(self, proxy: WriterProxy, last: int) -> None:  # noqa: ARG002  # of the protocol
+    def malformed(self) -> None:
+        """Count a submessage that names no context to answer."""
+        self.state.note_malformed(self._key, "an acknowledgement")
+
+    def refused(self, last: int) -> None:
         """Say once that something was said in a publisher's name that it cannot have said."""
         self.state.note_lie(
             self.endpoint.name,
@@ -465,18 +390,10 @@ class ZenohReader(Declaration, ReaderRegistration):
             "so many",
         )
 
-    def started_anew(self, proxy: WriterProxy, first: int) -> None:  # noqa: ARG002  # as above
+    def started_anew(self, first: int) -> None:
         """Say once that messages come that should not have come."""
         self.state.note_lie(
             self.endpoint.name,
             f"messages from number {first} on are taken, although it was said that they would not "
             "come",
         )
-
-    def acknack(self, proxy: WriterProxy, first: int, ranges: list[tuple[int, int]]) -> None:
-        """Send a writer an ACKNACK."""
-        data = acknack.pack(
-            SubmessageKind.ACKNACK, proxy.gid, self.gid, first, 0, acknack.pack_ranges(ranges)
-        )
-        key = acknack.submessage_key(self._key, Side.SUBSCRIPTIONS, proxy.participant)
-        self.state.acknowledgements.send(key, data)

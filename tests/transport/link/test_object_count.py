@@ -61,7 +61,13 @@ async def test_a_linked_subscription_is_made_of_few_objects() -> None:
     async with two_nodes() as nodes:
         found = await linked_subscription(nodes)
 
-    over_zenoh = {"ZenohReader": 1, "MessageArrivals": 1, "WriterProxy": 1, "ReaderStub": 1}
+    over_zenoh = {
+        "ZenohReader": 1,
+        "MessageArrivals": 1,
+        "StatefulReader": 1,
+        "WriterProxy": 1,
+        "ReaderStub": 1,
+    }
     assert found - Counter(over_zenoh) == {
         "Subscription": 1,
         "EndpointInfo": 1,

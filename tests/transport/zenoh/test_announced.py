@@ -65,7 +65,7 @@ def test_contexts_that_acknowledge_are_limited_present_or_gone() -> None:
 
     def take(participant: str, kind: zenoh.SampleKind) -> None:
         key = acknowledgements.token_of(participant)
-        acknowledgements._take_token(SimpleNamespace(key_expr=key, kind=kind))  # type: ignore[arg-type]  # a stand-in
+        acknowledgements._receive_token(SimpleNamespace(key_expr=key, kind=kind))  # type: ignore[arg-type]  # a stand-in
 
     take("f" * 33, zenoh.SampleKind.PUT)  # no Zenoh session has such an id
     for number in range(3000):

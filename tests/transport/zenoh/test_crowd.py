@@ -21,9 +21,9 @@ from aionode.transport.zenoh import _session_state as session_state
 from aionode.transport.zenoh._announced import AnnouncedLimit
 from aionode.transport.zenoh._defects import crowd
 from aionode.transport.zenoh._defects.crowd import CROWDED
-from aionode.transport.zenoh._handlers import LOOP_PRIORITY
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._session_state import SessionState
+from aionode.wire._key_expression import Side
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until
 
@@ -60,7 +60,7 @@ async def state() -> AsyncIterator[SessionState]:
     state.waker.open(asyncio.get_running_loop())
     state.announced.left_out = 1
     state.announced.take("other", "one more")
-    assert state.outlet.is_crowded
+    assert state.control_messages.is_crowded
     yield state
     await state.bulk.flush()
     state.waker.close()
@@ -125,7 +125,7 @@ async def test_messages_wait_for_zenoh_in_a_thread_and_stay_in_order(
 @pytest.mark.parametrize(
     "put",
     [
-        lambda state: state.acknowledgements.send("key", b"ack", LOOP_PRIORITY),
+        lambda state: state.acknowledgements.send("key", Side.PUBLISHERS, "other", b"ack"),
         lambda state: state.assertions.send("key", bytes(16)),
         lambda state: state.cancellations.tell(["other"], "/service", bytes(16), 1),
         lambda state: state.peer_senders.send(["other"], 1, lambda: None),

@@ -11,7 +11,8 @@ Seen in:
     1.8.0, 1.9.0, 1.10.2
 Mend:
     While others have announced more than `is_crowd` allows, the event loop puts nothing:
-    `AnnouncedLimit` counts, and `_outlet`, `_peer_senders` and `_publisher` have threads put.
+    `AnnouncedLimit` counts, and `_control_messages`, `_peer_senders` and `_publisher` have threads
+    put.
 """
 
 from __future__ import annotations

@@ -50,9 +50,9 @@ class SharedToken:
 class Unacknowledged(Acknowledgements):
     """No acknowledgements: nothing behind a bridge sends any."""
 
-    def start(self, session: zenoh.Session) -> None:
+    def start(self, session: zenoh.Session) -> None:  # noqa: ARG002  # nothing is declared
         """Call `tick` of publishers from now on."""
-        self._session = session
+        self._is_open = True
 
 
 class BridgeState(SessionState):
@@ -81,7 +81,7 @@ class BridgeState(SessionState):
         self.acknowledgements = Unacknowledged(
             *(participant, domain_id, waker, self.note_malformed, lambda _: None),
             self.announced,
-            self.outlet,
+            self.control_messages,
         )
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()

@@ -1,12 +1,11 @@
-"""Acknowledgements between publishers and subscriptions of aionode over Zenoh: their format.
+"""The submessages of the protocol, which are those of RTPS, and their binary form.
 
-The submessages are those of RTPS. Each is one Zenoh sample for one context, on a key below that of
-its topic; ROS nodes get none::
+Each is for one context. Its bytes are::
 
     version u8 | kind u8 | zero u16 | writer 16 bytes | reader 16 bytes | first i64 | last i64 |
     rest
 
-A receiver ignores samples of an unknown version or kind.
+A receiver ignores submessages of an unknown version or kind.
 """
 
 from __future__ import annotations
@@ -16,8 +15,6 @@ import struct
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
-from aionode.wire._key_expression import Side, side_key
-
 __all__ = [
     "MAX_RANGES",
     "VERSION",
@@ -25,15 +22,18 @@ __all__ = [
     "SubmessageKind",
     "pack",
     "pack_ranges",
-    "submessage_key",
     "unpack",
 ]
 
 VERSION: Final = 2
-"""Of the format and of its keys; contexts of different versions do not acknowledge."""
+"""Contexts of different versions do not acknowledge each other's messages."""
 
 MAX_RANGES: Final = 64
 """Most ranges of missing messages that one ACKNACK names."""
+
+LARGEST: Final = 2**63 - 2**20
+"""The largest number that is accepted: a reader counts on from it, and its answer has to hold the
+result."""
 
 HEADER: Final = struct.Struct("<BBH16s16sqq")
 RANGE: Final = struct.Struct("<qq")
@@ -74,17 +74,6 @@ class Submessage(NamedTuple):
         return list(RANGE.iter_unpack(self.rest[:size]))
 
 
-def submessage_key(key: str, side: Side, participant: str) -> str:
-    """Return the key of submessages to one context.
-
-    Args:
-        key: That of the topic.
-        side: Who sends them: subscriptions send ACKNACK, publishers everything else.
-        participant: The context that gets them.
-    """
-    return side_key(key, side, f"reliable/{VERSION}/{participant}")
-
-
 def pack(
     kind: SubmessageKind, writer: bytes, reader: bytes, first: int, last: int, rest: bytes = b""
 ) -> bytes:
@@ -98,10 +87,13 @@ def pack_ranges(ranges: Sequence[tuple[int, int]]) -> bytes:
 
 
 def unpack(data: bytes) -> Submessage | None:
-    """Return the submessage in `data`, or None if its form is unknown."""
+    """Return the submessage in `data`, or None if its form is unknown.
+
+    Numbers beyond `LARGEST` are unknown as well.
+    """
     if len(data) < HEADER.size:
         return None
     version, kind, _, writer, reader, first, last = HEADER.unpack_from(data)
-    if version != VERSION or kind not in KINDS:
+    if version != VERSION or kind not in KINDS or max(abs(first), abs(last)) > LARGEST:
         return None
     return Submessage(KINDS[kind], writer, reader, first, last, data[HEADER.size :])

@@ -3,7 +3,7 @@
 A writer keeps what its readers have not acknowledged, and sends at most one window ahead of them,
 so that no queue on the way to them fills up. A KEEP_ALL writer waits for its slowest reader; a
 KEEP_LAST writer waits only while all of them lag, keeps its last messages, and counts what it
-drops. The reader's end is `_writer_proxy`.
+drops. The reader's end is `stateful_reader`.
 
 The loss of the last message of a burst is detected by heartbeats: a writer that has been idle for a
 moment announces its last sequence number, and repeats this at growing intervals until it is
@@ -19,44 +19,30 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections import deque
 from operator import itemgetter
-from typing import TYPE_CHECKING, Final, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Final, Protocol, TypeAlias
 
-from aionode.wire._acknack import MAX_RANGES
+from aionode.transport._reliability.limits import (
+    NEVER,
+    OVERHEAD_BYTES,
+    QUIET_NS,
+    WINDOW_BYTES,
+    WINDOW_MESSAGES,
+)
+from aionode.transport._reliability.reader_proxy import ReaderProxy
+from aionode.transport._reliability.submessage import MAX_RANGES, SubmessageKind, pack
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = [
-    "FLAPPING_NS",
-    "NEVER",
-    "OVERHEAD_BYTES",
-    "QUIET_NS",
-    "RETURN_NS",
-    "WINDOW_BYTES",
-    "WINDOW_MESSAGES",
-    "Entry",
-    "ReaderProxy",
-    "WriterHistory",
-    "WriterSide",
-]
+    from aionode.transport._reliability.submessage import Submessage
 
-WINDOW_BYTES: Final = 512 * 1024
-"""Bytes that a writer sends ahead of a reader's acknowledgement."""
-
-WINDOW_MESSAGES: Final = 4
-"""Number of messages that may be unacknowledged whatever their size."""
-
-OVERHEAD_BYTES: Final = 128
-"""Bytes that a message takes besides its payload, approximately."""
+__all__ = ["MUTE_TICKS", "StatefulWriter", "WriterOutput"]
 
 RESEND_BYTES: Final = 128 * 1024
 """Bytes that are sent again for one acknowledgement."""
 
 RESEND_NS: Final = 50_000_000
 """A message is not sent again more often than this, as the last copy may still be on its way."""
-
-QUIET_NS: Final = 50_000_000
-"""A writer that has sent nothing for so long sends a heartbeat."""
 
 HEARTBEAT_NS: Final = 1_000_000_000
 """The interval of heartbeats to a reader that does not answer, and while the writer is busy."""
@@ -84,40 +70,25 @@ MUTE_TICKS: Final = 200
 """A reader that has never answered, and lacked messages at so many ticks, about ten seconds, does
 not acknowledge. Ticks are counted, not time: those of a writer that stood still are late too."""
 
-NEVER: Final = 1 << 62
+
+Entry: TypeAlias = tuple[int, bytes, bytes, int]
+"""One message of a writer: its sequence number, payload and attachment, and its end. That is the
+bytes of all messages of this writer up to and including this one, with `OVERHEAD_BYTES` for each.
+
+A message costs one append and one popleft, so this is a plain tuple: a NamedTuple costs more."""
 
 
-class Entry(NamedTuple):
-    """One message of a writer.
-
-    Attributes:
-        sequence: Its sequence number.
-        payload: Its bytes.
-        attachment: Its attachment.
-        end: The bytes of all messages of this writer up to and including this one, with
-            `OVERHEAD_BYTES` for each.
-    """
-
-    sequence: int
-    payload: bytes
-    attachment: bytes
-    end: int
-
-
-class WriterSide(Protocol):
-    """The output of a `WriterHistory`."""
+class WriterOutput(Protocol):
+    """The output of a `StatefulWriter`."""
 
     def put(self, payload: bytes, extra: bytes) -> None:
         """Send a message to every reader."""
 
-    def resend(self, reader: ReaderProxy, entry: Entry) -> None:
-        """Send a message again to one reader."""
+    def send(self, participant: str, submessage: bytes) -> None:
+        """Send a submessage to the context of one reader; it may be lost. Any thread may call."""
 
-    def heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Announce the available sequence numbers to one reader, which answers with an ACKNACK."""
-
-    def gap(self, reader: ReaderProxy, first: int, last: int) -> None:
-        """Announce to one reader that a range will not be sent."""
+    def source_ns(self, extra: bytes) -> int:
+        """Return when the message with an attachment was published, in nanoseconds since 1970."""
 
     def lost(self, count: int) -> None:
         """Count messages that were dropped before every reader had them."""
@@ -126,66 +97,20 @@ class WriterSide(Protocol):
         """Take note that a reader, which is removed, has never answered."""
 
 
-class ReaderProxy:
-    """A reader, as its writer sees it.
-
-    Attributes:
-        gid: Its id.
-        participant: Its context.
-        acked: It has acknowledged everything up to this sequence number.
-        end: The `Entry.end` of the last acknowledged message.
-        answered: Whether it has ever sent an ACKNACK.
-        heard_ns: When it last sent an ACKNACK.
-        asked_ticks: At how many ticks it lacked messages before it sent its first ACKNACK.
-        heartbeat_ns: When the last heartbeat was sent to it.
-        interval_ns: The time from one heartbeat to the next while it does not answer.
-        away_until_ns: Until when its return is waited for; 0 while it is present.
-        returned_ns: When it came back after it had vanished; 0 if it never vanished.
-        resent: When each missing message was sent again.
-    """
-
-    __slots__ = (
-        "acked",
-        "answered",
-        "asked_ticks",
-        "away_until_ns",
-        "end",
-        "gid",
-        "heard_ns",
-        "heartbeat_ns",
-        "interval_ns",
-        "participant",
-        "resent",
-        "returned_ns",
-    )
-
-    def __init__(self, gid: bytes, participant: str, acked: int, end: int, now_ns: int) -> None:
-        self.gid = gid
-        self.participant = participant
-        self.acked = acked
-        self.end = end
-        self.heard_ns = now_ns
-        self.heartbeat_ns = now_ns
-        self.interval_ns = QUIET_NS
-        self.answered = False
-        self.asked_ticks = 0
-        self.away_until_ns = 0
-        self.returned_ns = 0
-        self.resent: dict[int, int] = {}
-
-
-class WriterHistory:
-    """The messages of one writer that some reader has not acknowledged.
+class StatefulWriter:
+    """The messages of one writer that some reader has not acknowledged; the word is that of RTPS.
 
     Args:
+        gid: The id of the writer.
+        participant: The id of its context, to which readers answer.
+        output: What sends.
         depth: How many messages are kept at most.
         limit_bytes: How many bytes of messages are kept at most; the newest is, whatever its size.
         keep_all: Whether nothing may be dropped.
-        side: The output.
         now_ns: A monotonic clock with an arbitrary zero.
 
     Attributes:
-        entries: The messages as plain tuples with the fields of `Entry`, in order of sequence.
+        entries: The messages, in order of sequence.
         readers: The readers that acknowledge, by gid; those that may return stay in it.
         sent: The sequence number of the last message that was sent.
         has_other_readers: Whether there are readers that do not acknowledge.
@@ -193,15 +118,18 @@ class WriterHistory:
 
     def __init__(
         self,
+        gid: bytes,
+        participant: str,
+        output: WriterOutput,
         depth: int,
         limit_bytes: int = NEVER,
         *,
         keep_all: bool,
-        side: WriterSide,
         now_ns: Callable[[], int],
     ) -> None:
-        # A message costs one append and one popleft, so these are tuples: a NamedTuple costs more.
-        self.entries: deque[tuple[int, bytes, bytes, int]] = deque()
+        self._gid = gid
+        self._participant = participant.encode()
+        self.entries: deque[Entry] = deque()
         self.readers: dict[bytes, ReaderProxy] = {}
         self.sent = 0
         self.has_other_readers = False
@@ -209,8 +137,8 @@ class WriterHistory:
         self._keep_all = keep_all
         self._limit = NEVER if keep_all else depth  # of `entries`
         self._limit_bytes = limit_bytes
-        self._side = side
-        self._put = side.put
+        self._output = output
+        self._put = output.put
         self._now_ns = now_ns
         self._last = 0  # the last sequence number that was written
         self._end = 0  # of the last message that was written, as `Entry.end`
@@ -223,8 +151,35 @@ class WriterHistory:
         self._jumped_to = 0
         # Ranges that were reported as lost, so that none is counted twice.
         self._lost: list[tuple[int, int]] = []
-        self._unsent: deque[tuple[int, bytes, bytes, int]] = deque()  # the end of `entries`
+        self._unsent: deque[Entry] = deque()  # the end of `entries`
         self._pumping = False
+
+    # Submessages
+
+    def _heartbeat(self, reader: ReaderProxy, first: int, last: int) -> None:
+        self._send(SubmessageKind.HEARTBEAT, reader, first, last, self._participant)
+
+    def _gap(self, reader: ReaderProxy, first: int, last: int) -> None:
+        self._send(SubmessageKind.GAP, reader, first, last)
+
+    def _send_again(self, reader: ReaderProxy, entry: Entry) -> None:
+        sequence, payload, extra, _ = entry
+        self._send(SubmessageKind.DATA, reader, sequence, self._output.source_ns(extra), payload)
+
+    def _send(
+        self, kind: SubmessageKind, reader: ReaderProxy, first: int, last: int, rest: bytes = b""
+    ) -> None:
+        data = pack(kind, self._gid, reader.gid, first, last, rest)
+        self._output.send(reader.participant, data)
+
+    def announce_only(self, sequence: int) -> None:
+        """Have present readers wait for nothing before a message, which is sent elsewhere.
+
+        Another thread than the writer's may call this.
+        """
+        for reader in list(self.readers.values()):
+            if not reader.away_until_ns:
+                self._heartbeat(reader, sequence, sequence)
 
     # Readers
 
@@ -244,7 +199,7 @@ class WriterHistory:
         reader.heartbeat_ns = now_ns
         reader.interval_ns = QUIET_NS
         self._window_end = -1
-        self._side.heartbeat(reader, reader.acked + 1, self.sent)
+        self._heartbeat(reader, reader.acked + 1, self.sent)
 
     def participants(self) -> dict[bytes, str]:
         """Return the contexts of all readers, by gid."""
@@ -301,7 +256,7 @@ class WriterHistory:
             self._jumped_to = sequence + 1
             self._put(payload, extra)
 
-    def _write_slowly(self, entry: tuple[int, bytes, bytes, int]) -> None:
+    def _write_slowly(self, entry: Entry) -> None:
         """Send a message after a jump of sequence numbers, or as the window allows."""
         sequence = entry[0]
         readers_changed = self._window_end < 0
@@ -310,7 +265,7 @@ class WriterHistory:
         if sequence != self._last + 1:
             self._jumped_to = sequence
             for reader in self.readers.values():
-                self._side.gap(reader, self._last + 1, sequence - 1)
+                self._gap(reader, self._last + 1, sequence - 1)
         self._last = sequence
         self._end = entry[3]
         self.entries.append(entry)
@@ -349,7 +304,7 @@ class WriterHistory:
         if sequence != self.sent + 1:
             self._jumped_to = sequence
             for reader in self.readers.values():
-                self._side.gap(reader, self.sent + 1, sequence - 1)
+                self._gap(reader, self.sent + 1, sequence - 1)
         end = self._end + len(payload) + OVERHEAD_BYTES
         self._last = self.sent = sequence
         self._sent_ns = self._now_ns()
@@ -376,9 +331,9 @@ class WriterHistory:
                 begin, end = min(begin, lost[0]), max(end, lost[1])
         self._lost = [*disjoint, (begin, end)]
         if count:
-            self._side.lost(count)
+            self._output.lost(count)
 
-    def _admits(self, entry: tuple[int, bytes, bytes, int]) -> bool:
+    def _admits(self, entry: Entry) -> bool:
         """Return whether the window is open for the next message."""
         if self.has_other_readers and not self._keep_all:
             return True
@@ -434,17 +389,12 @@ class WriterHistory:
 
     # Acknowledgements
 
-    def acknack(self, gid: bytes, first: int, ranges: list[tuple[int, int]]) -> None:
-        """Handle an ACKNACK.
-
-        Args:
-            gid: The reader.
-            first: It has every message before this one.
-            ranges: The missing messages, as first and last of each range.
-        """
-        reader = self.readers.get(gid)
+    def acknack(self, submessage: Submessage) -> None:
+        """Handle an ACKNACK of a reader, if that is known."""
+        reader = self.readers.get(submessage.reader)
         if reader is None:
             return
+        first, ranges = submessage.first, submessage.ranges()
         reader.answered = True
         now_ns = reader.heard_ns = self._now_ns()
         if self.sent >= first - 1 > reader.acked:
@@ -495,21 +445,20 @@ class WriterHistory:
                     ):
                         return  # it was sent again before it was dropped, and may be on its way
                     self._lose(max(first, self._jumped_to), absent)
-                    self._side.gap(reader, first, absent)
+                    self._gap(reader, first, absent)
                 first = absent + 1
             number, index = first, self._index(first)
             while number <= last:
                 following = entries[index][0] if index < len(entries) else NEVER
                 if following != number:  # sequence numbers jumped here
                     after = min(following, last + 1)
-                    self._side.gap(reader, number, after - 1)
+                    self._gap(reader, number, after - 1)
                     number = after
                     continue
                 if now_ns - reader.resent.get(number, -RESEND_NS) >= RESEND_NS:
                     reader.resent[number] = now_ns
-                    entry = Entry(*entries[index])
-                    self._side.resend(reader, entry)
-                    left -= len(entry.payload) + OVERHEAD_BYTES
+                    self._send_again(reader, entries[index])
+                    left -= len(entries[index][1]) + OVERHEAD_BYTES
                     if left <= 0:
                         return
                 number += 1
@@ -541,7 +490,7 @@ class WriterHistory:
                 if not reader.answered:
                     reader.asked_ticks += 1
                     if reader.asked_ticks > MUTE_TICKS:
-                        self._side.mute(reader)
+                        self._output.mute(reader)
                         self._give_up(reader)
                         continue
                 waited_ns = now_ns - reader.heartbeat_ns
@@ -553,7 +502,7 @@ class WriterHistory:
                         self.readers[reader.gid] = self.readers.pop(reader.gid)  # others are next
                     reader.heartbeat_ns = now_ns
                     reader.interval_ns = min(reader.interval_ns * 2, HEARTBEAT_NS)
-                    self._side.heartbeat(reader, reader.acked + 1, self.sent)
+                    self._heartbeat(reader, reader.acked + 1, self.sent)
         return bool(self.entries) or any(reader.away_until_ns for reader in self.readers.values())
 
     def _give_up(self, reader: ReaderProxy) -> None:
@@ -577,7 +526,7 @@ class WriterHistory:
                 and reader.acked >= self.sent
                 and now_ns - reader.heard_ns >= UNHEARD_NS
             ):
-                self._side.heartbeat(reader, reader.acked + 1, self.sent)
+                self._heartbeat(reader, reader.acked + 1, self.sent)
         return bool(self.readers)
 
     def give_up(self) -> int:

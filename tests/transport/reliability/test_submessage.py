@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.wire._acknack import MAX_RANGES, Submessage, SubmessageKind, pack, pack_ranges, unpack
+from aionode.transport._reliability.submessage import (
+    LARGEST,
+    MAX_RANGES,
+    Submessage,
+    SubmessageKind,
+    pack,
+    pack_ranges,
+    unpack,
+)
 
-NUMBERS = st.integers(-(2**63), 2**63 - 1)
+NUMBERS = st.integers(-LARGEST, LARGEST)
 GIDS = st.binary(min_size=16, max_size=16)
 
 
@@ -42,3 +51,11 @@ def test_ranges_that_were_cut_are_left_out() -> None:
     )
     assert said is not None
     assert said.ranges() == [(1, 2)]
+
+
+@pytest.mark.parametrize("kind", SubmessageKind)
+@pytest.mark.parametrize("number", [LARGEST + 1, 2**63 - 1, -(2**63)])
+def test_numbers_that_no_writer_reaches_are_malformed(kind: SubmessageKind, number: int) -> None:
+    """A reader that was led there could not pack its next ACKNACK, and the loop got an error."""
+    assert unpack(pack(kind, bytes(16), bytes(16), number, 0)) is None
+    assert unpack(pack(kind, bytes(16), bytes(16), 0, number)) is None

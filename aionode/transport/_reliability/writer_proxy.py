@@ -1,6 +1,6 @@
-"""The reader's end of reliable delivery over a lossy transport. A state machine without I/O.
+"""One writer, as one of its readers sees it; the word is that of RTPS. A state machine without I/O.
 
-The writer's end is `_reliability`, which describes both.
+`stateful_writer` describes the protocol.
 
 Whoever may publish on the topic can send a HEARTBEAT or GAP in the name of a writer. So neither
 moves a reader further past the messages that have come than a writer may send ahead. What says more
@@ -13,19 +13,19 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
-from aionode.transport.zenoh._reliability import (
+from aionode.transport._reliability.limits import (
     NEVER,
     OVERHEAD_BYTES,
     QUIET_NS,
     WINDOW_BYTES,
     WINDOW_MESSAGES,
 )
-from aionode.wire._acknack import MAX_RANGES
+from aionode.transport._reliability.submessage import MAX_RANGES, SubmessageKind, pack, pack_ranges
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["ReaderSide", "WriterProxy"]
+__all__ = ["ProxyOutput", "WriterProxy"]
 
 ACK_BYTES: Final = 64 * 1024
 """A reader acknowledges unasked after so many bytes."""
@@ -58,19 +58,19 @@ a wrong number has moved it. What was only overtaken comes in less time."""
 NOT_NOW: Final = -1
 
 
-class ReaderSide(Protocol):
+class ProxyOutput(Protocol):
     """The output of a `WriterProxy`."""
 
     def accept(self, item: Any, proxy: WriterProxy) -> bool:
         """Take the next message; return whether it is used, or else waits for room."""
 
-    def acknack(self, proxy: WriterProxy, first: int, ranges: list[tuple[int, int]]) -> None:
-        """Send an ACKNACK to the writer."""
+    def send(self, participant: str, submessage: bytes) -> None:
+        """Send a submessage to the context of a writer; it may be lost."""
 
-    def refused(self, proxy: WriterProxy, last: int) -> None:
+    def refused(self, last: int) -> None:
         """Take note of a HEARTBEAT or GAP up to `last` that the writer cannot have sent."""
 
-    def started_anew(self, proxy: WriterProxy, first: int) -> None:
+    def started_anew(self, first: int) -> None:
         """Take note that messages from `first` on are taken that were said not to come."""
 
 
@@ -80,12 +80,12 @@ class WriterProxy:
     Args:
         gid: Its id.
         participant: Its context.
-        first: The sequence number of the first message for this reader, as the writer says.
-        side: The output; each message is given to it once and in order.
+        reader: The id of the reader.
+        output: Each message is given to it once and in order.
         now_ns: A monotonic clock with any zero.
-        span: How many messages later ones wait for at most; more are skipped, as a KEEP_LAST reader
-            would drop them anyway.
-        taken: The last message of this writer that the reader has taken already.
+        first: The sequence number of the first message for this reader, as the writer says.
+        span: How many messages later ones wait for at most.
+        delivered: The last message of this writer that the reader has already.
 
     Attributes:
         participant: Its context.
@@ -99,17 +99,18 @@ class WriterProxy:
     __slots__ = (
         "_claim",
         "_claimed",
+        "_delivered",
         "_gaps",
         "_held",
         "_held_bytes",
         "_nacked_ns",
         "_now_ns",
         "_old",
+        "_output",
         "_reached",
+        "_reader",
         "_seen",
-        "_side",
         "_span",
-        "_taken",
         "_unacked_bytes",
         "_waiting",
         "absent_ticks",
@@ -125,11 +126,13 @@ class WriterProxy:
         self,
         gid: bytes,
         participant: str,
-        first: int,
-        side: ReaderSide,
+        reader: bytes,
+        output: ProxyOutput,
         now_ns: Callable[[], int],
-        span: int = NEVER,
-        taken: int = 0,
+        *,
+        first: int,
+        span: int,
+        delivered: int,
     ) -> None:
         self.gid = gid
         self.participant = participant
@@ -137,8 +140,9 @@ class WriterProxy:
         self.last = first - 1
         self.heard_ns = now_ns()
         self.absent_ticks = 0
+        self._reader = reader
         self._span = span
-        self._side = side
+        self._output = output
         self._now_ns = now_ns
         # Messages that came before an earlier one: item and size by sequence number.
         self._held: dict[int, tuple[Any, int]] = {}
@@ -149,10 +153,10 @@ class WriterProxy:
         self._waiting: deque[int] = deque()
         self._unacked_bytes = 0
         self._nacked_ns = 0
-        # The last message that has arrived, and the last that was given on. `note_in_order` leaves
-        # both to `_catch_up`, which sees by `_seen` that it has moved `next`.
+        # The last message that has arrived, and the last that was delivered. `receive_expected`
+        # leaves both to `_catch_up`, which sees by `_seen` that it has moved `next`.
         self._reached = first - 1
-        self._taken = taken
+        self._delivered = delivered
         self._seen = first
         # Up to where the writer has said that nothing will come, and the last claim beyond what is
         # believed: a range that will not come, and the last message that was sent.
@@ -162,24 +166,24 @@ class WriterProxy:
         self._old = 0, 0, 0
 
     @property
-    def taken(self) -> int:
-        """The last message that was given on."""
+    def delivered(self) -> int:
+        """The last message that was delivered."""
         self._catch_up()
-        return self._taken
+        return self._delivered
 
     @property
     def lacks(self) -> bool:
         """Whether a message is known to be missing."""
         return self.next <= self.last
 
-    def note_in_order(self, size: int) -> None:
-        """Count the message `expected`, which is used by the caller. The common case of `take`."""
+    def receive_expected(self, size: int) -> None:
+        """Count the message `expected`, which the caller uses: the common case of `receive`."""
         self.next = self.expected = self.expected + 1
         self._unacked_bytes = unacked = self._unacked_bytes + size + ACK_OVERHEAD_BYTES
         if unacked >= ACK_BYTES:
             self.acknowledge()
 
-    def take(self, sequence: int, item: Any, size: int, *, is_resent: bool = False) -> None:
+    def receive(self, sequence: int, item: Any, size: int, *, is_resent: bool = False) -> None:
         """Handle a message, whether it is new or was sent again.
 
         Args:
@@ -189,7 +193,7 @@ class WriterProxy:
             is_resent: Whether it was sent to this reader alone.
         """
         self._catch_up()
-        if self._taken < sequence < self.next:
+        if self._delivered < sequence < self.next:
             self._start_anew(sequence)
         if sequence == self.next:
             self.next = sequence + 1
@@ -209,14 +213,14 @@ class WriterProxy:
                 self._nack_soon()
         elif not is_resent and 0 < sequence < self.next - BELIEVED and self._is_anew(sequence):
             self._start_anew(sequence)
-            self.take(sequence, item, size)
+            self.receive(sequence, item, size)
         self._update_expected()
 
     def _catch_up(self) -> None:
-        """Take into account what `note_in_order` has counted."""
+        """Take into account what `receive_expected` has counted."""
         if self.next > self._seen:
-            self._taken = self.next - 1
-            self._reached = max(self._reached, self._taken)
+            self._delivered = self.next - 1
+            self._reached = max(self._reached, self._delivered)
             self._old = 0, 0, 0
 
     def _note_reached(self, sequence: int) -> None:
@@ -232,11 +236,11 @@ class WriterProxy:
     def _start_anew(self, sequence: int) -> None:
         """Go back to a message that came although it is below `next`."""
         if self._claimed - sequence >= ANEW_AFTER:  # fewer were perhaps overtaken
-            self._side.started_anew(self, sequence)
+            self._output.started_anew(sequence)
         self._start_at(sequence)
 
     def _start_at(self, sequence: int) -> None:
-        """Expect a message below `next`; none after it was given on."""
+        """Expect a message below `next`; none after it was delivered."""
         self._claimed = self.next = self._seen = sequence
         self._gaps.clear()
         for held in [number for number in self._held if number > sequence + BELIEVED]:
@@ -253,7 +257,7 @@ class WriterProxy:
         self._old = count + 1, sequence, since_ns if count else now_ns
         if count + 1 < ANEW_AFTER or now_ns - self._old[2] < ANEW_NS:
             return False
-        self._taken, self._claimed = sequence - 1, self.next
+        self._delivered, self._claimed = sequence - 1, self.next
         return True
 
     def _may_hold(self, size: int) -> bool:
@@ -276,8 +280,8 @@ class WriterProxy:
         self.expected = self.next if is_steady else NOT_NOW
 
     def _accept(self, sequence: int, item: Any, size: int) -> None:
-        self._taken = sequence
-        if self._side.accept(item, self):
+        self._delivered = sequence
+        if self._output.accept(item, self):
             self._note_used(size)
         else:
             self._waiting.append(sequence)
@@ -325,11 +329,11 @@ class WriterProxy:
         claim, limit = self._claim, self._limit
         if claim is not None and last < claim[2]:  # a writer has never sent less than before
             self._claim = None
-            self._side.refused(self, claim[2])
+            self._output.refused(claim[2])
         if first > limit + 1 or last > limit:
             self._claim = 0, first - 1, max(first - 1, last)
-        if self._taken <= last and last + 1 < self.next:  # nor did it say what moved `next`
-            self._start_at(max(self._taken + 1, min(first, last + 1)))
+        if self._delivered <= last and last + 1 < self.next:  # nor did it say what moved `next`
+            self._start_at(max(self._delivered + 1, min(first, last + 1)))
         if first <= limit + 1:
             self._claimed = max(self._claimed, first)
             self._skip(first)
@@ -395,7 +399,9 @@ class WriterProxy:
         if ask and (self.lacks or claimed):
             self._nacked_ns = self._now_ns()
             missing = self._missing(claimed)
-        self._side.acknack(self, self._waiting[0] if self._waiting else self.next, missing)
+        first = self._waiting[0] if self._waiting else self.next
+        kind, ranges = SubmessageKind.ACKNACK, pack_ranges(missing)
+        self._output.send(self.participant, pack(kind, self.gid, self._reader, first, 0, ranges))
 
     def _missing(self, claimed: int) -> list[tuple[int, int]]:
         # The end of a claim first: it alone shows whether that is true.
