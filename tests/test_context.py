@@ -182,7 +182,8 @@ async def test_a_context_that_could_not_be_opened_is_not_in_use() -> None:
     transport = Failing()
     context = Context(transport=transport)
     with pytest.raises(ConnectionError):
-        await context._acquire()
+        async with context:
+            pass
     transport.fails = False
 
     async def use() -> None:

@@ -271,13 +271,14 @@ def test_the_descriptor_that_rouses_is_closed_by_the_last_one_who_uses_it() -> N
     """A thread may be about to write while another one closes the loop."""
     with running_loop() as loop:
         readers = readers_of(loop)
-        readers._rousing.append(None)
-    os.fstat(readers._event)
-    readers._rousing.pop()
+        event, rousing = readers._event, readers._rousing
+        rousing.append(None)
+    os.fstat(event)
+    rousing.pop()
     readers.rouse()
 
     with pytest.raises(OSError, match="Bad file descriptor"):
-        os.fstat(readers._event)
+        os.fstat(event)
 
 
 def test_a_wait_of_months_is_possible() -> None:

@@ -125,8 +125,9 @@ async def test_the_log_names_the_callback_behind_filters(node: Node) -> None:
 
     for each in (left, right):
         name = f"(callback {on_pair.__qualname__})"
-        assert each.sub._runner is not None
-        assert each.sub._runner.subject == f"subscription of {each.sub.topic_name} {name}"
+        runner = each.sub._runner
+        assert runner is not None
+        assert runner.subject == f"subscription of {each.sub.topic_name} {name}"
 
 
 def test_a_message_without_a_header_can_count_with_its_arrival() -> None:

@@ -74,7 +74,6 @@ class Waiters:
         # By frame: the times for which data is awaited, with a number that keeps the order.
         self._due: dict[str, list[tuple[int, int, Waiter]]] = {}
         self._numbers = count()
-        self.asked = 0  # how often a waiter was asked again, for tests and benchmarks
 
     def add(self, waiter: Waiter) -> None:
         """End the wait at once if there is nothing to wait for, else begin it."""
@@ -165,6 +164,5 @@ class Waiters:
     def _ask(self, waiters: list[Waiter]) -> None:
         for waiter in waiters:
             if waiter.waits:
-                self.asked += 1
                 self.remove(waiter)
                 self.add(waiter)

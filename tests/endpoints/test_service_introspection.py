@@ -19,11 +19,13 @@ from aionode import (
     Time,
 )
 from aionode.errors import EntityDestroyedError, ServiceError
+from aionode.graph import EndpointKind
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.service_msgs.msg import ServiceEventInfo
 from aionode.qos import HistoryPolicy, qos_profile_system_default
 from aionode.testing import settle
+from tests.support.arrivals import gid_of, writers_of
 
 OFF = ServiceIntrospectionState.OFF
 METADATA = ServiceIntrospectionState.METADATA
@@ -96,7 +98,7 @@ async def test_metadata_says_which_request_and_when(bench: Bench) -> None:
         ServiceEventInfo.RESPONSE_RECEIVED,
     ]
     assert {event.info.sequence_number for event in events} == {1}
-    gid = bench.client._endpoint.gid
+    gid = gid_of(bench.node, "/add", EndpointKind.CLIENT)
     assert {bytes(event.info.client_gid) for event in events} == {gid}
     assert all(len(event.request) == len(event.response) == 0 for event in events)
     now = bench.node.get_clock().now().to_msg()
@@ -183,7 +185,7 @@ async def test_events_follow_the_clock_that_was_given(bench: Bench) -> None:
 
 
 async def test_a_full_reader_does_not_disturb_the_calls(
-    node: Node, node_factory: Callable[..., Node]
+    node: Node, node_factory: Callable[..., Node], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A reader that keeps all events and reads none makes `publish` refuse; the call goes on."""
     keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)
@@ -193,11 +195,10 @@ async def test_a_full_reader_does_not_disturb_the_calls(
     server = node.create_service(AddTwoInts, "/add", add)
     client = node.create_client(AddTwoInts, "/add")
     server.configure_introspection(node.get_clock(), keep_all, METADATA)
-    publisher = server._introspection._publisher
-    assert publisher is not None
-    for writer in publisher._writers:
-        writer.has_room = lambda: False
-        writer.bounded = True
+    (publisher,) = [each for each in node.publishers if each.topic_name == TOPIC]
+    for writer in writers_of(publisher):
+        monkeypatch.setattr(writer, "has_room", lambda: False)
+        monkeypatch.setattr(writer, "bounded", True)
 
     assert (await client.call(Request(a=1, b=1))).sum == 2
 

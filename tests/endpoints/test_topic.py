@@ -32,7 +32,7 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, Reliability
 from aionode.testing import FaultyTransport, settle
 from aionode.transport.local import LocalTransport
 from aionode.wire import cdr
-from tests.support.arrivals import reader_of
+from tests.support.arrivals import direct_subscription, gid_of, reader_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -219,7 +219,8 @@ async def test_a_direct_subscription_takes_messages_within_publish_until_it_is_d
 ) -> None:
     """A recorder puts them elsewhere at once: no queue, no task and no loop has a part in it."""
     taken: list[tuple[bytes, int]] = []
-    subscription = node._create_direct_subscription(
+    subscription = direct_subscription(
+        node,
         String,
         "words",
         lambda raw, sequence, *_: taken.append((raw, sequence)),
@@ -241,8 +242,8 @@ async def test_a_direct_subscription_gets_a_large_message_in_parts_without_a_cop
 ) -> None:
     """A copy of a large image takes the event loop milliseconds."""
     taken: list[Parts] = []
-    node._create_direct_subscription(
-        UInt8MultiArray, "pixels", lambda raw, *_: taken.append(raw), QoSProfile(depth=1)
+    direct_subscription(
+        node, UInt8MultiArray, "pixels", lambda raw, *_: taken.append(raw), QoSProfile(depth=1)
     )
     publisher = node.create_publisher(UInt8MultiArray, "pixels", 10)
     pixels = bytes(range(256)) * 1000
@@ -257,16 +258,20 @@ async def test_a_direct_subscription_counts_what_is_missing_and_leaves_out_what_
 ) -> None:
     """It is past the queue, and not past the numbers of publishers and the policies."""
     taken: list[int] = []
-    subscription = node._create_direct_subscription(
-        String, "words", lambda _raw, sequence, *_: taken.append(sequence), QoSProfile(depth=1)
+    subscription = direct_subscription(
+        node,
+        String,
+        "words",
+        lambda _raw, sequence, *_: taken.append(sequence),
+        QoSProfile(depth=1),
     )
     deliver = reader_of(subscription).deliver
     for sequence in (1, 2, 5):
         deliver(b"", b"g" * 16, sequence, 0)
     assert (taken, subscription.stats.lost) == ([1, 2, 5], 2)
     short = QoSProfile(depth=1, lifespan=Duration(nanoseconds=1))
-    limited = node.create_publisher(String, "words", short)
-    deliver(b"", limited._endpoint.gid, 1, 1)  # published in 1970
+    node.create_publisher(String, "words", short)
+    deliver(b"", gid_of(node, "/words"), 1, 1)  # published in 1970
     assert (taken, subscription.stats.expired) == ([1, 2, 5], 1)
 
 

@@ -262,11 +262,10 @@ async def test_a_node_that_replaces_another_before_that_is_gone_is_noticed(
         await settle()
         camera.destroy_node()
         await settle()
-        node_factory(Step, "camera", [])
+        new = node_factory(Step, "camera", [])
         await settle()
         node.graph.remove_endpoint(lingering)
 
-        (new,) = [one for one in camera.context._nodes if one.get_name() == "camera"]
         assert new.lifecycle_state.label == "active"
 
 

@@ -15,6 +15,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import local_context, settle
+from tests.support.arrivals import gid_of
 
 
 def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
@@ -39,15 +40,15 @@ async def test_every_entity_can_be_created_and_destroyed_in_another_thread(
     node: Node, kind: str
 ) -> None:
     """The loop's thread does it, so asyncio's debug mode finds nothing to complain about."""
-    before = len(node._entities)
+    before = repr(node)  # with the number of entities
 
     entity = await asyncio.to_thread(CREATORS[kind], node)
 
     assert not entity.destroyed
-    assert len(node._entities) > before
+    assert repr(node) != before
     await asyncio.to_thread(entity.destroy)
     assert entity.destroyed
-    assert len(node._entities) == before
+    assert repr(node) == before
 
 
 async def test_an_entity_created_in_another_thread_works(node: Node) -> None:
@@ -112,8 +113,8 @@ async def test_many_threads_create_entities_at_once(node: Node) -> None:
         )
     )
 
-    assert {one.topic_name for one in created} <= {one.topic_name for one in node.publishers}
-    assert len({one._endpoint.gid for one in created}) == 20
+    assert {each.topic_name for each in created} <= {each.topic_name for each in node.publishers}
+    assert len({gid_of(node, f"/topic_{number}") for number in range(20)}) == 20
 
 
 async def test_a_content_filter_can_be_set_in_another_thread(node: Node) -> None:

@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode._concurrency import checkpoint
 from aionode.context import Context
+from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints.events import QoSLivelinessChangedInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from tests.processes.process import Process
 from tests.processes.qos_member import PROFILE
 from tests.support.links import folder
 from tests.support.peers import quiet_node
+from tests.support.spies import returns_of
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from aionode.endpoints.subscription import Subscription
 
 __all__ = ["folder"]  # a fixture
 
@@ -31,8 +31,11 @@ ZENOH_LEASE_S = 10.0
 
 
 @pytest.mark.parametrize("link", [True, False], ids=["link", "zenoh"])
-async def test_a_frozen_process_is_not_alive_within_its_lease(link: bool) -> None:
+async def test_a_frozen_process_is_not_alive_within_its_lease(
+    link: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """And alive again when it goes on."""
+    asserted = returns_of(monkeypatch, PublisherLiveliness, "note_assertion")
     context = Context(link=link)
     setting = {"AIONODE_LINK": "on" if link else "off"}
     with Process("tests/processes/qos_member.py", env=setting) as member:
@@ -40,7 +43,7 @@ async def test_a_frozen_process_is_not_alive_within_its_lease(link: bool) -> Non
             subscription = node.create_subscription(Int32, "n", None, PROFILE)
             changes = liveliness(subscription.events)
             assert (await anext(changes)).alive_count == 1
-            await until_asserted(subscription)
+            await asserted.get()
 
             loop = asyncio.get_running_loop()
             began_s = loop.time()
@@ -52,16 +55,6 @@ async def test_a_frozen_process_is_not_alive_within_its_lease(link: bool) -> Non
             member.send(signal.SIGCONT)
             change = await anext(changes)
             assert (change.alive_count, change.not_alive_count) == (1, 0)
-
-
-async def until_asserted(subscription: Subscription[Int32]) -> None:
-    """Wait until the only publisher has asserted its liveliness."""
-    assert subscription._monitor is not None
-    known = subscription._monitor._liveliness
-    assert known is not None
-    (lease,) = known._leases.values()
-    while not lease.asserts:
-        await checkpoint()
 
 
 async def liveliness(events: AsyncIterator[object]) -> AsyncIterator[QoSLivelinessChangedInfo]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from aionode.transport.base import Serve, Writer
 
-__all__ = ["gid_of", "reader_of", "serve_of", "writers_of"]
+__all__ = ["direct_subscription", "gid_of", "reader_of", "serve_of", "writers_of"]
 
 
 def gid_of(node: Node, topic: str, kind: EndpointKind = EndpointKind.PUBLISHER) -> bytes:
@@ -25,6 +25,11 @@ def gid_of(node: Node, topic: str, kind: EndpointKind = EndpointKind.PUBLISHER) 
         if each.node.participant == node.context.participant and each.node.name == node.get_name()
     ]
     return endpoint.gid
+
+
+def direct_subscription(node: Node, *args: Any) -> Subscription[Any]:
+    """Return a subscription that hands messages on as they arrive, as recorders have them."""
+    return node._create_direct_subscription(*args)
 
 
 def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:

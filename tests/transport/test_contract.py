@@ -29,7 +29,7 @@ from aionode.testing import local_context
 from aionode.transport.rcl import RclTransport
 from aionode.wire import cdr
 from tests.support import fake_rcl
-from tests.support.arrivals import reader_of
+from tests.support.arrivals import direct_subscription, reader_of
 from tests.support.ros import gids_of_a_client, ros_domain, ros_missing
 from tests.support.waiting import until
 
@@ -131,7 +131,10 @@ async def test_service_events_arrive_from_both_sides(pair: Pair) -> None:
     await client.wait_for_service()
     while reader.get_publisher_count() < 2:
         await pair.left.graph.changed()
-    await server._introspection._publisher.wait_for_subscribers()
+    (events_of_server,) = [
+        each for each in pair.right.publishers if each.topic_name == reader.topic_name
+    ]
+    await events_of_server.wait_for_subscribers()
 
     await client.call(Request(int64_value=2, int32_value=3))
     events = [await reader.receive() for _ in range(4)]
@@ -232,7 +235,7 @@ async def test_direct_subscriptions_get_the_bytes_and_times_of_every_message(pai
         taken.append((bytes(raw), sequence))
         times.extend((source_ns, received_ns))
 
-    reader = pair.right._create_direct_subscription(Int32, "numbers", take, QoSProfile(depth=10))
+    reader = direct_subscription(pair.right, Int32, "numbers", take, QoSProfile(depth=10))
     writer = pair.left.create_publisher(Int32, "numbers", 10)
     await writer.wait_for_subscribers()
     for number in range(5):

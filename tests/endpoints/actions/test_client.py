@@ -35,6 +35,7 @@ from aionode.errors import (
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
+from aionode.qos import qos_profile_action_status_default
 from aionode.testing import local_context, settle
 from tests.support.actions import Goal, PlainClient, Worker, end_of, endpoint_count, uuid_of
 from tests.support.peers import isolated_environment
@@ -613,14 +614,15 @@ async def test_a_server_is_ready_with_all_its_parts(ends: Ends) -> None:
     ):
         ends.serving.create_service(srv_type, f"partial/_action/{name}", never)
     ends.serving.create_publisher(impl.FeedbackMessage, "partial/_action/feedback", 10)
-    while client._feedback.get_publisher_count() == 0:
-        await ends.asking.graph.changed()
+    await ends.asking.graph.until(
+        lambda: ends.asking.count_publishers("/partial/_action/feedback") > 0
+    )
 
     assert not client.server_is_ready()
     assert not await client.wait_for_server(timeout_sec=0.01)
 
     ends.serving.create_publisher(
-        impl.GoalStatusMessage, "partial/_action/status", client._status.qos_profile
+        impl.GoalStatusMessage, "partial/_action/status", qos_profile_action_status_default
     )
     assert await client.wait_for_server(timeout_sec=10)
 
@@ -814,7 +816,7 @@ async def halves(ends: Ends, *names: str) -> tuple[Client, dict[str, Any]]:
         for name in names
     }
     client: Client = ends.asking.create_action_client(Fibonacci, "half")
-    await client._send_goal.wait_for_service()
+    await ends.asking.graph.until(lambda: ends.asking.count_services("/half/_action/send_goal") > 0)
     return client, services
 
 

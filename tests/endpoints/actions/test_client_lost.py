@@ -20,13 +20,14 @@ from aionode.action import (
 from aionode.clock._time_base import Alarm
 from aionode.context import Context
 from aionode.endpoints.actions._client_watch import ClientWatch
+from aionode.endpoints.actions._life_signs import LifeSigns
 from aionode.errors import GoalCanceledError, ServiceError, ServiceUnavailableError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.qos import QoSProfile
 from aionode.testing import ManualClock, local_context, settle
-from tests.support.actions import Goal, PlainClient, Worker
+from tests.support.actions import Goal, PlainClient, Worker, end_of, result_client
 from tests.support.peers import isolated_environment
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -194,9 +195,9 @@ async def test_an_offloaded_callback_sees_that_its_client_is_lost(
     await client.sign()
     result = asyncio.ensure_future(client.result())  # noqa: TID251  # owned by the test
     await asyncio.to_thread(running.wait)
-    manual_clock._move(int((LOST_SEC + 1.0) * 1e9))  # `advance` would wait for the thread
-    await asyncio.sleep(0.02)  # noqa: TID251
-    manual_clock._move(int((2 * LOST_SEC + 1.0) * 1e9))
+    for seconds in (LOST_SEC + 1.0, 2 * LOST_SEC + 1.0):
+        manual_clock._move(int(seconds * 1e9))  # `advance` would wait for the thread
+        await asyncio.sleep(0.02)  # noqa: TID251
 
     assert (await result).status == GoalStatus.CANCELED
 
@@ -570,16 +571,21 @@ async def asking(owner: Node, serve: Serve) -> Client:
     return client
 
 
+def signs_of(client: Client) -> LifeSigns:
+    """Return what gives the signs of a client."""
+    return client._signs
+
+
 async def test_a_client_gives_three_signs_in_the_time(
-    asking: Client, worker: Worker, manual_clock: CountingClock
+    asking: Client, owner: Node, worker: Worker, manual_clock: CountingClock
 ) -> None:
     """As long as it has a goal; then nothing wakes it."""
     goal = await asking.send_goal(Fibonacci.Goal())
     await settle()
-    calls = asking._get_result.stats.calls
+    calls = result_client(owner).stats.calls
 
     await manual_clock.advance(30.5)
-    assert asking._get_result.stats.calls - calls == 30
+    assert result_client(owner).stats.calls - calls == 30
     assert (await worker.begun.get()).status is GoalStatus.EXECUTING
 
     worker.may_end.set()
@@ -598,39 +604,43 @@ async def test_a_server_that_wants_no_signs_gets_none(
     await client.send_goal(Fibonacci.Goal())
     await manual_clock.advance(60.0)
 
-    assert client._get_result.stats.calls == 1
+    assert result_client(owner).stats.calls == 1
 
 
 async def test_a_service_that_is_found_later_than_its_goal_gets_signs(
-    asking: Client, worker: Worker, monkeypatch: pytest.MonkeyPatch, manual_clock: ManualClock
+    asking: Client,
+    owner: Node,
+    worker: Worker,
+    monkeypatch: pytest.MonkeyPatch,
+    manual_clock: ManualClock,
 ) -> None:
     """Its place in the graph may come later than the answer of the other service."""
-    not_found = iter([0])
-    announced_ns = asking._signs._announced_ns
-    monkeypatch.setattr(asking._signs, "_announced_ns", lambda: next(not_found, announced_ns()))
-    await asking.send_goal(Fibonacci.Goal())
+    with monkeypatch.context() as not_found:
+        not_found.setattr(owner.graph, "endpoints", lambda *_, **__: [])
+        await asking.send_goal(Fibonacci.Goal())
     goal = await worker.begun.get()
+    calls = result_client(owner).stats.calls
 
     await manual_clock.advance(60.0)
 
     expect(goal, GoalStatus.EXECUTING)
-    assert asking._signs._alarm is not None
+    assert result_client(owner).stats.calls > calls
 
 
 async def test_a_sign_that_could_not_be_delivered_is_given_again_soon(
-    asking: Client, manual_clock: ManualClock
+    asking: Client, owner: Node, manual_clock: ManualClock
 ) -> None:
     """The server learns only from the first one that the client gives signs."""
     await asking.send_goal(Fibonacci.Goal())
-    (sign,) = asking._signs._goals.values()
+    (sign,) = signs_of(asking)._goals.values()
     assert sign is not None
     sign.fail(ServiceUnavailableError("/fibonacci/_action/get_result"))
     await settle()
-    calls = asking._get_result.stats.calls
+    calls = result_client(owner).stats.calls
 
     await manual_clock.advance(0.021)
 
-    assert asking._get_result.stats.calls - calls == 1
+    assert result_client(owner).stats.calls - calls == 1
 
 
 async def test_a_client_that_was_taken_for_lost_learns_why(
@@ -639,7 +649,7 @@ async def test_a_client_that_was_taken_for_lost_learns_why(
     """When it goes on: its goal was canceled by nobody's request."""
     call = asyncio.ensure_future(asking.call(Fibonacci.Goal()))  # noqa: TID251  # owned by the test
     await settle()
-    asking._signs.stop()  # as if the process were frozen
+    signs_of(asking).stop()  # as if the process were frozen
 
     await manual_clock.advance(LOST_SEC)
 
@@ -679,7 +689,7 @@ async def test_a_client_that_ends_properly_leaves_goals_that_nobody_awaits(
     await manual_clock.advance(3600)
 
     expect(goal, GoalStatus.EXECUTING)
-    assert asking._get_result.destroyed
+    assert not [each for each in owner.clients if "fibonacci" in each.srv_name]
 
 
 async def test_a_node_that_fails_ends_properly(manual_clock: ManualClock) -> None:
@@ -727,9 +737,9 @@ async def test_signs_pass_between_contexts(monkeypatch: pytest.MonkeyPatch, *, l
         goal = await worker.begun.get()
         with pytest.raises(TimeoutError):
             async with asyncio.timeout(1.5):
-                await asyncio.shield(goal._outcome())
+                await asyncio.shield(end_of(goal))
 
-        client._signs.stop()
+        signs_of(client).stop()
 
         assert (await sent.result()).status is GoalStatus.CANCELED
         assert (await sent.result()).error_text == (

@@ -41,12 +41,12 @@ async def send(robot: Node, client: Node, steps: list[tuple[str, int, Any]]) -> 
         goal_id = uuid_of(number)
         if kind == "goal":
             goal = Fibonacci.Goal(order=detail)
-            goals._begin(Impl.SendGoalService.Request(goal_id=goal_id, goal=goal))
+            goals.call_async(Impl.SendGoalService.Request(goal_id=goal_id, goal=goal))
         elif kind == "cancel":
             info = GoalInfo(goal_id=goal_id, stamp=detail)
-            cancels._begin(Impl.CancelGoalService.Request(goal_info=info))
+            cancels.call_async(Impl.CancelGoalService.Request(goal_info=info))
         elif kind == "result":
-            results._begin(Impl.GetResultService.Request(goal_id=goal_id))
+            results.call_async(Impl.GetResultService.Request(goal_id=goal_id))
         else:
             for _ in range(number):
                 await checkpoint()

@@ -115,8 +115,9 @@ async def next_of(stream: EventStream[Any], kind: type[EventT]) -> EventT:
 def waiting(stream: EventStream[Any], kind: type[EventT]) -> list[EventT]:
     """Take what waits in a stream, and return the events of a kind."""
     found = []
-    while stream._queue:
-        event = stream._queue.pop()[1]
+    queue = stream._queue
+    while queue:
+        event = queue.pop()[1]
         if isinstance(event, kind):
             found.append(event)
     return found

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from typing import TYPE_CHECKING
 
 import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.clock import Duration
+from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints.events import (
     QoSLivelinessChangedInfo,
     QoSLivelinessLostInfo,
@@ -18,9 +20,11 @@ from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import LivelinessPolicy, QoSProfile
 from aionode.testing import settle
 from tests.endpoints.qos.conftest import Pair, next_of, waiting
+from tests.support.arrivals import writers_of
+from tests.support.spies import returns_of
 
 if TYPE_CHECKING:
-    from aionode.endpoints.subscription import Subscription
+    pass
 
 LEASE = Duration(seconds=1)
 MANUAL = QoSProfile(
@@ -29,15 +33,18 @@ MANUAL = QoSProfile(
 AUTOMATIC = MANUAL.replace(liveliness=LivelinessPolicy.AUTOMATIC)
 
 
-async def until_asserted(pair: Pair, subscription: Subscription[Int32]) -> None:
-    """Wait for an assertion that is at most 0.4 s old, in real time."""
-    assert subscription._monitor is not None
-    liveliness = subscription._monitor._liveliness
-    assert liveliness is not None
-    (lease,) = liveliness._leases.values()
-    assert lease.alarm is not None
-    while not lease.asserts or pair.clock.steady_ns() - (lease.alarm._since_ns or 0) > 400_000_000:
-        await checkpoint()
+@pytest.fixture
+def asserted(monkeypatch: pytest.MonkeyPatch) -> asyncio.Queue[None]:
+    """Get an item with each assertion that a subscription takes."""
+    return returns_of(monkeypatch, PublisherLiveliness, "note_assertion")
+
+
+async def advance(pair: Pair, asserted: asyncio.Queue[None]) -> None:
+    """Let half a second pass, in which the publisher asserts its liveliness."""
+    while not asserted.empty():
+        asserted.get_nowait()
+    await pair.clock.advance(0.5)
+    await asserted.get()
 
 
 ALIVE = QoSLivelinessChangedInfo(1, 0, 1, 0)
@@ -92,29 +99,29 @@ async def test_the_lease_of_the_subscription_decides_what_it_hears(pair: Pair) -
     assert waiting(subscription.events, QoSLivelinessChangedInfo) == [NOT_ALIVE]
 
 
-async def test_automatic_liveliness_needs_no_message(pair: Pair) -> None:
+async def test_automatic_liveliness_needs_no_message(
+    pair: Pair, asserted: asyncio.Queue[None]
+) -> None:
     """The node's event loop asserts it, for as long as the node runs."""
     publisher, subscription = await pair.joined(AUTOMATIC, AUTOMATIC)
     changed = subscription.events
     assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE
     for _ in range(6):
-        await pair.clock.advance(0.5)
-        await until_asserted(pair, subscription)
+        await advance(pair, asserted)
     assert waiting(changed, QoSLivelinessChangedInfo) == []
     assert waiting(publisher.events, QoSLivelinessLostInfo) == []
 
 
-async def test_a_process_that_hangs_is_not_alive(pair: Pair) -> None:
+async def test_a_process_that_hangs_is_not_alive(
+    pair: Pair, asserted: asyncio.Queue[None], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Its token stays for ten seconds over Zenoh, but its assertions stop at once."""
     publisher, subscription = await pair.joined(AUTOMATIC, AUTOMATIC)
     changed = subscription.events
     assert await next_of(changed, QoSLivelinessChangedInfo) == ALIVE
-    await pair.clock.advance(0.5)
-    await until_asserted(pair, subscription)
-    assert publisher._monitor is not None
-    heartbeat = publisher._monitor._heartbeat
-    assert heartbeat is not None
-    heartbeat.cancel()
+    await advance(pair, asserted)
+    for writer in writers_of(publisher):
+        monkeypatch.setattr(writer, "assert_liveliness", lambda: None)
     await pair.clock.advance(1)
     assert waiting(changed, QoSLivelinessChangedInfo) == [NOT_ALIVE]
 

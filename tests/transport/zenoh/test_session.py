@@ -280,7 +280,7 @@ async def test_ros_nodes_are_found_through_a_router(router_first: bool) -> None:
 async def test_opening_can_be_cancelled() -> None:
     """Ctrl-C does not wait for the network, and nothing stays open."""
     context = Context()
-    opening = asyncio.get_running_loop().create_task(context._acquire())
+    opening = asyncio.get_running_loop().create_task(context.__aenter__())
     await checkpoint()
     opening.cancel()
     with pytest.raises(asyncio.CancelledError):
