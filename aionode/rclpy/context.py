@@ -11,7 +11,7 @@ from inspect import ismethod
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode import logging as ros_logging
-from aionode.rclpy._impl.context import ContextHandle
+from aionode.rclpy._impl.context import ContextHandle, living_contexts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -19,33 +19,23 @@ if TYPE_CHECKING:
 __all__ = ["Context"]
 
 
-class LoggingUse:
-    """Counts the contexts that have configured logging; the last one ends that."""
-
-    def __init__(self) -> None:
-        self._lock = threading.RLock()
-        self._users = 0
-
-    def begin(self, handle: ContextHandle) -> None:
-        """Configure logging from a context's arguments, unless another one has done it."""
-        with self._lock:
-            self._users += 1
-            if self._users == 1:
-                arguments = handle.arguments
-                ros_logging.configure(
-                    level=arguments.log_level,
-                    levels=arguments.log_levels,
-                    console=arguments.stdout_logs,
-                    file_name=arguments.log_file_prefix(),
-                )
-
-    def end(self) -> None:
-        """Count one user less."""
-        with self._lock:
-            self._users -= 1
+logging_lock = threading.RLock()
+"""Held while a context looks whether another one has configured logging, and does it else."""
 
 
-logging_use = LoggingUse()
+def configure_logging(handle: ContextHandle) -> None:
+    """Configure logging from a context's arguments, unless another living context has done it."""
+    with logging_lock:
+        is_configured = any(context.logs for context in living_contexts())
+        handle.logs = True
+        if not is_configured:
+            arguments = handle.arguments
+            ros_logging.configure(
+                level=arguments.log_level,
+                levels=arguments.log_levels,
+                console=arguments.stdout_logs,
+                file_name=arguments.log_file_prefix(),
+            )
 
 
 class Context:
@@ -58,7 +48,6 @@ class Context:
     def __init__(self) -> None:
         self._lock = threading.RLock()
         self._callbacks: list[Callable[[], Any]] = []
-        self._logging_initialized = False
         self._handle: ContextHandle | None = None
         self._nodes: list[weakref.ref[Any]] = []
 
@@ -97,9 +86,8 @@ class Context:
             if self._handle is not None:
                 raise RuntimeError("Context.init() must only be called once")
             self._handle = ContextHandle(sys.argv if args is None else args, domain_id)
-            if initialize_logging and not self._logging_initialized:
-                logging_use.begin(self._handle)
-                self._logging_initialized = True
+            if initialize_logging:
+                configure_logging(self._handle)
 
     def track_node(self, node: Any) -> None:
         """Have `shutdown` destroy `node`, if it still exists then."""
@@ -109,7 +97,7 @@ class Context:
     def untrack_node(self, node: Any) -> None:
         """Undo `track_node`."""
         with self._lock:
-            self._nodes = [each for each in self._nodes if each() is not node]
+            self._nodes = [other for other in self._nodes if other() is not node]
 
     def ok(self) -> bool:
         """Return whether it is initialised and not shut down."""
@@ -129,9 +117,6 @@ class Context:
             called = callback() if isinstance(callback, weakref.WeakMethod) else callback
             if called is not None:
                 called()
-        if self._logging_initialized:
-            self._logging_initialized = False
-            logging_use.end()
         handle.close()
 
     def shutdown(self) -> None:

@@ -19,13 +19,20 @@ from aionode.endpoints.events import (
     QoSSubscriptionMatchedInfo,
 )
 from aionode.rclpy._impl.errors import UnsupportedEventTypeError
-from aionode.rclpy._impl.events import EventHandle, PublisherEventType, SubscriptionEventType
+from aionode.rclpy._impl.events import (
+    PUBLISHER_WATCHES,
+    SUBSCRIPTION_WATCHES,
+    EventHandle,
+    PublisherEventType,
+    SubscriptionEventType,
+)
 from aionode.rclpy.waitable import NumberOfEntities, Waitable
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from enum import IntEnum
 
+    from aionode.rclpy._impl.events import Watch
     from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.callback_groups import CallbackGroup
@@ -53,26 +60,6 @@ __all__ = [
 QoSPublisherEventType = PublisherEventType
 QoSSubscriptionEventType = SubscriptionEventType
 
-PUBLISHER_KINDS: dict[str, IntEnum] = {
-    "deadline": PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED,
-    "liveliness": PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST,
-    "incompatible_qos": PublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS,
-    "incompatible_type": PublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE,
-    "matched": PublisherEventType.RCL_PUBLISHER_MATCHED,
-}
-
-SUBSCRIPTION_KINDS: dict[str, IntEnum] = {
-    "deadline": SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED,
-    "incompatible_qos": SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS,
-    "liveliness": SubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED,
-    "message_lost": SubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST,
-    "incompatible_type": SubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE,
-    "matched": SubscriptionEventType.RCL_SUBSCRIPTION_MATCHED,
-}
-
-WITH_DEFAULTS = ("incompatible_qos", "incompatible_type")
-"""The events that are logged where no callback is given for them."""
-
 
 class EventHandler(Waitable[Any]):
     """Has an executor call `callback` when something has happened.
@@ -95,22 +82,15 @@ class EventHandler(Waitable[Any]):
         self.callback = callback
         with parent_impl:
             self._event = EventHandle(parent_impl, event_type)
-        self._index: int | None = None
-        self._ready_to_take_data = False
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether something has happened."""
-        if self._index is not None and wait_set.is_ready("event", self._index):
-            self._ready_to_take_data = True
-        return self._ready_to_take_data
+        return self._event.ready()
 
     def take_data(self) -> Any:
         """Return the status, or None if nothing has happened."""
-        if not self._ready_to_take_data:
-            return None
-        self._ready_to_take_data = False
         with self._event:
-            return self._event.take_event()
+            return self._event.take_event() if self._event.ready() else None
 
     async def execute(self, taken_data: Any) -> None:
         """Call the callback."""
@@ -126,7 +106,7 @@ class EventHandler(Waitable[Any]):
     def add_to_wait_set(self, wait_set: WaitSet) -> None:
         """Add its handle."""
         with self._event:
-            self._index = wait_set.add_event(self._event)
+            wait_set.add_event(self._event)
 
     def __enter__(self) -> None:
         self._event.__enter__()
@@ -169,7 +149,7 @@ def create_handlers(
     group: CallbackGroup,
     parent: PublisherHandle | SubscriptionHandle,
     callbacks: Any,
-    kinds: dict[str, IntEnum],
+    watches: dict[IntEnum, type[Watch]],
 ) -> list[EventHandler]:
     """Return a handler for each callback that is given, or has a default.
 
@@ -177,13 +157,13 @@ def create_handlers(
         group: The group of the callbacks.
         parent: What the events happen to.
         callbacks: What a program gave for them.
-        kinds: The kind of event that each attribute of `callbacks` is called for.
+        watches: The kinds of events of such an endpoint.
     """
-    made: list[EventHandler] = []
-    for name, event_type in kinds.items():
-        callback = getattr(callbacks, name)
+    handlers: list[EventHandler] = []
+    for event_type, watch in watches.items():
+        callback = getattr(callbacks, watch.name)
         if callback:
-            made.append(
+            handlers.append(
                 EventHandler(
                     callback_group=group,
                     callback=callback,
@@ -191,9 +171,9 @@ def create_handlers(
                     parent_impl=parent,
                 )
             )
-        elif callbacks.use_default_callbacks and name in WITH_DEFAULTS:
-            made.append(DefaultHandler(event_type))
-    return made
+        elif callbacks.use_default_callbacks and watch.is_logged:
+            handlers.append(DefaultHandler(event_type))
+    return handlers
 
 
 class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
@@ -203,7 +183,7 @@ class SubscriptionEventCallbacks(events.SubscriptionEventCallbacks):
         self, callback_group: CallbackGroup, subscription: SubscriptionHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return the handlers of a subscription."""
-        return create_handlers(callback_group, subscription, self, SUBSCRIPTION_KINDS)
+        return create_handlers(callback_group, subscription, self, SUBSCRIPTION_WATCHES)
 
 
 class PublisherEventCallbacks(events.PublisherEventCallbacks):
@@ -213,4 +193,4 @@ class PublisherEventCallbacks(events.PublisherEventCallbacks):
         self, callback_group: CallbackGroup, publisher: PublisherHandle, topic_name: str
     ) -> list[EventHandler]:
         """Return the handlers of a publisher."""
-        return create_handlers(callback_group, publisher, self, PUBLISHER_KINDS)
+        return create_handlers(callback_group, publisher, self, PUBLISHER_WATCHES)

@@ -37,8 +37,8 @@ steady_ns = MachineTime().steady_ns
 def living_contexts() -> list[ContextHandle]:
     """Return those that are not shut down; any thread, or handler of a signal, may ask."""
     # Not iterated over: other threads make contexts meanwhile.
-    found = [reference() for reference in contexts_by_id.valuerefs()]
-    return [context for context in found if context is not None]
+    contexts = [reference() for reference in contexts_by_id.valuerefs()]
+    return [context for context in contexts if context is not None]
 
 
 def parsed(args: Sequence[str]) -> Arguments:
@@ -73,6 +73,7 @@ class ContextHandle(Destroyable):
         io: The thread that works for it.
         arguments: Its ROS arguments.
         is_shut_down: Whether it is shut down.
+        logs: Whether it has configured logging, or has found it configured.
 
     Raises:
         UnknownROSArgsError: an argument between ``--ros-args`` and ``--`` is unknown.
@@ -83,6 +84,7 @@ class ContextHandle(Destroyable):
     def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
         super().__init__()
         self.is_shut_down = False
+        self.logs = False
         self._closed = False
         self._signalled = False
         self._told_ns: dict[int, int] = {}  # by thread: when it was told of the signal

@@ -36,7 +36,14 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
     from aionode.transport.base import SampleInfo
 
-__all__ = ["EventHandle", "PublisherEventType", "SubscriptionEventType"]
+__all__ = [
+    "PUBLISHER_WATCHES",
+    "SUBSCRIPTION_WATCHES",
+    "EventHandle",
+    "PublisherEventType",
+    "SubscriptionEventType",
+    "Watch",
+]
 
 
 class PublisherEventType(IntEnum):
@@ -102,9 +109,17 @@ class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its tex
 
 
 class Watch:
-    """Keeps the status of one kind of event; lives in the thread of the context."""
+    """Keeps the status of one kind of event; lives in the thread of the context.
 
+    Attributes:
+        name: The kind of event, as the arguments of event callbacks call it.
+        empty: The status before anything has happened.
+        is_logged: Whether the log tells of these events where no callback does.
+    """
+
+    name = ""
     empty: Any = None
+    is_logged = False
 
     def __init__(
         self, parent: PublisherHandle | SubscriptionHandle, notify: Callable[[], None]
@@ -168,24 +183,23 @@ class Watch:
 
 def changes_in(status: Any) -> list[str]:
     """Return the names of the fields of a status that tell of changes."""
-    return [each.name for each in fields(status) if each.name.endswith("_change")]
+    return [field.name for field in fields(status) if field.name.endswith("_change")]
 
 
 class MatchedWatch(Watch):
     """Counts the endpoints that are matched, or do not fit.
 
     Attributes:
-        name: Which of these events.
         aspects: The mismatches that it tells of, so that the log need not.
     """
 
-    empty = MatchedInfo(0, 0, 0, 0)
     name = "matched"
+    empty = MatchedInfo(0, 0, 0, 0)
     aspects: tuple[str, ...] = ()
 
     def start(self) -> None:
         """Begin to watch."""
-        if self.aspects:
+        if self.is_logged:
             unreported = self.graph.unreported
             unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
             self.ends.append(lambda: unreported.pop(self.endpoint, None))
@@ -199,8 +213,9 @@ class MatchedWatch(Watch):
 class IncompatibleQoSWatch(MatchedWatch):
     """Counts endpoints whose QoS does not fit."""
 
-    empty: Any = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
     name = "incompatible_qos"
+    empty: Any = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
+    is_logged = True
     aspects = ("qos",)
 
     def take(self) -> Any:
@@ -212,14 +227,16 @@ class IncompatibleQoSWatch(MatchedWatch):
 class IncompatibleTypeWatch(MatchedWatch):
     """Counts endpoints of another type."""
 
-    empty: Any = IncompatibleTypeInfo(0, 0)
     name = "incompatible_type"
+    empty: Any = IncompatibleTypeInfo(0, 0)
+    is_logged = True
     aspects = ("type", "definition")
 
 
 class DeadlineWatch(Watch):
     """Counts the periods without a message, from the first message on."""
 
+    name = "deadline"
     empty: Any = QoSRequestedDeadlineMissedInfo(0, 0)
 
     def start(self) -> None:
@@ -243,6 +260,7 @@ class OfferedDeadlineWatch(DeadlineWatch):
 class LivelinessLostWatch(Watch):
     """Counts the leases that a publisher has let pass; asserting or publishing renews them."""
 
+    name = "liveliness"
     empty = QoSLivelinessLostInfo(0, 0)
 
     def start(self) -> None:
@@ -262,6 +280,7 @@ class LivelinessLostWatch(Watch):
 class LivelinessChangedWatch(Watch):
     """Counts the publishers that are alive, and those that let their lease pass."""
 
+    name = "liveliness"
     empty = QoSLivelinessChangedInfo(0, 0, 0, 0)
 
     def start(self) -> None:
@@ -285,6 +304,7 @@ class LivelinessChangedWatch(Watch):
 class MessageLostWatch(Watch):
     """Counts the gaps in what each publisher has numbered."""
 
+    name = "message_lost"
     empty = QoSMessageLostInfo(0, 0)
 
     def start(self) -> None:
@@ -299,17 +319,18 @@ class MessageLostWatch(Watch):
         self.listen(self.feed, note)
 
 
-PUBLISHER_WATCHES: dict[int, type[Watch]] = {
+# In the order in which rclpy makes the handlers of one endpoint.
+PUBLISHER_WATCHES: dict[IntEnum, type[Watch]] = {
     PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: OfferedDeadlineWatch,
     PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: LivelinessLostWatch,
     PublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
     PublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,
     PublisherEventType.RCL_PUBLISHER_MATCHED: MatchedWatch,
 }
-SUBSCRIPTION_WATCHES: dict[int, type[Watch]] = {
+SUBSCRIPTION_WATCHES: dict[IntEnum, type[Watch]] = {
     SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: DeadlineWatch,
-    SubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: LivelinessChangedWatch,
     SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: LivelinessChangedWatch,
     SubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST: MessageLostWatch,
     SubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,
     SubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: MatchedWatch,

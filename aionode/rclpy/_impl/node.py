@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import errors, names
 from aionode._node.graph import NamesAndTypes, names_and_types_of
@@ -37,6 +37,8 @@ NOUNS = {
     EndpointKind.CLIENT: "client",
 }
 """rcl's word for the endpoints of a kind, in errors."""
+
+T = TypeVar("T")
 
 system_ns = MachineTime().system_ns
 
@@ -119,17 +121,13 @@ class NodeHandle(Destroyable):
         rules = () if only_expand else self._rules
         return names.resolve(name, self._name, self._namespace, rules, is_service=is_service)
 
-    def remap_topic(self, name: str) -> str:
-        """Return a full name of a topic, remapped."""
-        return self.resolve(name)
-
     def get_parameters(self, parameter_class: Any) -> dict[str, Any]:
         """Return the parameters that arguments give, by name."""
         return {name: parameter_class(name, value=value) for name, value in self._overrides.items()}
 
     # Graph
 
-    def ask(self, failure: str, question: Callable[[Graph], Any]) -> Any:
+    def ask(self, failure: str, question: Callable[[Graph], T]) -> T:
         """Return what `question` answers; it is called in the thread of the context.
 
         Raises:
@@ -142,18 +140,14 @@ class NodeHandle(Destroyable):
 
     def nodes(self) -> list[NodeInfo]:
         """Return all nodes."""
-        found: list[NodeInfo] = self.ask(
-            "Failed to get node names", lambda graph: list(graph.nodes())
-        )
-        return found
+        return self.ask("Failed to get node names", lambda graph: list(graph.nodes()))
 
     def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
         """Return every topic or every service, with its types."""
         noun = "topic" if kinds is TOPIC_KINDS else "service"
-        found: NamesAndTypes = self.ask(
+        return self.ask(
             f"failed to get {noun} names and types", lambda graph: graph.names_and_types(*kinds)
         )
-        return found
 
     def names_and_types_of(
         self, kind: EndpointKind, node_name: str, node_namespace: str
@@ -171,25 +165,21 @@ class NodeHandle(Destroyable):
                 names.validate_node_name(node_name)
                 namespace = names.normalize_namespace(node_namespace)
                 full_name = names.fully_qualified_name(namespace, node_name)
-                found: NamesAndTypes = self.ask(
-                    failure, lambda graph: names_and_types_of(graph, kind, full_name)
-                )
+                return self.ask(failure, lambda graph: names_and_types_of(graph, kind, full_name))
             except NameValidationException as error:
                 raise RCLError(f"{failure}: {error}") from None
             except errors.NodeNameNonExistentError as error:
                 raise NodeNameNonExistentError(
                     f"cannot get {wanted} for nonexistent node: {error.node}"
                 ) from None
-        return found
 
     def count(self, kind: EndpointKind, name: str) -> int:
         """Return how many endpoints of `kind` have a name, which is not remapped."""
         with self:
             full_name = self._expected(name, only_expand=True, is_service=kind in SERVICE_KINDS)
-            found: int = self.ask(
+            return self.ask(
                 f"Error in rcl_count_{NOUNS[kind]}s", lambda graph: graph.count(kind, full_name)
             )
-            return found
 
     def endpoints(
         self, kind: EndpointKind, topic_name: str, *, is_complete: bool
@@ -197,11 +187,10 @@ class NodeHandle(Destroyable):
         """Return the endpoints of a topic; its name is expanded unless it `is_complete`."""
         with self:
             name = topic_name if is_complete else self._expected(topic_name)
-            found: list[EndpointInfo] = self.ask(
+            return self.ask(
                 f"Failed to get information by topic for {kind.value}s",
                 lambda graph: graph.endpoints(kind, name=name),
             )
-            return found
 
     def _expected(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
         """Return the full name of a topic or service.

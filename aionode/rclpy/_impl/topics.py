@@ -170,8 +170,6 @@ class Inbox:
         self._limit_bytes = limit_bytes
         self._on_heavy: Callable[[], None] | None = on_heavy  # called once
         self._largest_bytes = 0  # of what waits, or did while others have waited
-        self.dropped = 0
-        self.rejected = 0
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
         self.assertions: list[Callable[[bytes], None]] = []
@@ -200,10 +198,8 @@ class Inbox:
             self._largest_bytes = len(data)
         elif not self._make_room(len(data)):
             return
-        if len(items) == self.limit:
-            self.dropped += 1
-            if self.keep_all:
-                return
+        if self.keep_all and len(items) == self.limit:
+            return
         items.append((data, sample_info, arrived_ns or now_ns()))
         self._arrivals.note()
 
@@ -223,7 +219,6 @@ class Inbox:
     def _make_room(self, size_bytes: int) -> bool:
         """Drop the oldest messages until one of this size fits; return whether it does."""
         while self.items and self._is_heavy(size_bytes):
-            self.dropped += 1
             if self._on_heavy is not None:
                 on_heavy, self._on_heavy = self._on_heavy, None
                 self._post(on_heavy)  # not here, where another thread may wait to deliver
@@ -238,8 +233,7 @@ class Inbox:
             listener(sample_info)
 
     def reject(self, error: DecodeError) -> None:
-        """Count what is no message of this type."""
-        self.rejected += 1
+        """Leave out what is no message of this type: the transport has logged it."""
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept."""
@@ -351,7 +345,6 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         }
 
     def _complain(self, error: DecodeError) -> None:
-        self.inbox.rejected += 1
         if not self._complained:
             self._complained = True
             logger.warning("%s: not a message of this type: %s", self.name, error)
