@@ -34,10 +34,10 @@ def find_ready(
     nodes: list[NodeLike], can_execute: Callable[[Entity], bool], context: Any
 ) -> list[Ready]:
     """Return what is ready now, in the order of a round."""
-    found: list[Ready] = []
+    ready: list[Ready] = []
     for node in nodes:
         if node._waitables:  # few have any
-            found += [
+            ready += [
                 (waitable, node, take_waitable)
                 for waitable in tuple(node._waitables)
                 if can_execute(waitable) and is_ready(waitable, context)
@@ -54,8 +54,8 @@ def find_ready(
             if entities and (arrivals is None or arrivals.last is not arrivals.seen):
                 for entity in ready_entities(entities, arrivals):
                     if can_execute(entity):
-                        found.append((entity, node, take))  # rarely any
-    return found
+                        ready.append((entity, node, take))  # rarely any
+    return ready
 
 
 def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:

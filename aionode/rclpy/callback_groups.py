@@ -70,6 +70,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def __init__(self) -> None:
         super().__init__()
         self._active_entity: Entity | None = None
+        # Guards that one thread begins. Read without it, as an executor asks again before a call.
         self._lock = threading.RLock()
 
     def can_execute(self, entity: Entity) -> bool:

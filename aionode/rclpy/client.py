@@ -50,6 +50,8 @@ class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
         self._pending_requests: dict[int, Future[ResponseT]] = {}
         self.callback_group = callback_group
         self._executor_event = False
+        # Guards the numbers and futures of requests: a response is not looked for before its
+        # future is here. A handler of a signal may call while this thread holds it.
         self._lock = threading.RLock()
 
     def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:
@@ -122,14 +124,11 @@ class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
                 self._handle.forget(sequence)
 
     def _sequence_of(self, future: Future[ResponseT]) -> int | None:
-        while True:
-            try:
-                for sequence, pending in self._pending_requests.items():
-                    if pending is future:
-                        return sequence
-            except RuntimeError:  # a handler of a signal has interrupted this, and sent a request
-                continue
-            return None
+        # A copy, made in one step: a handler of a signal may send a request in between.
+        for sequence, pending in tuple(self._pending_requests.items()):
+            if pending is future:
+                return sequence
+        return None
 
     def service_is_ready(self) -> bool:
         """Return whether a server is there."""

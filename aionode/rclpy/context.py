@@ -46,6 +46,7 @@ class Context:
     """
 
     def __init__(self) -> None:
+        # Guards the fields below; taken again by callbacks of the shutdown, and by nodes that end.
         self._lock = threading.RLock()
         self._callbacks: list[Callable[[], Any]] = []
         self._handle: ContextHandle | None = None

@@ -98,13 +98,16 @@ class Executor:
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
         self._nodes: dict[NodeLike, None] = {}
+        # Guards that a node is woken for once while it is here. This lock and the next one are of
+        # the kind that a thread can acquire again: a handler of a signal, or a finalizer, may
+        # interrupt the thread that holds it.
         self._nodes_lock = threading.RLock()
         self._tasks: list[Work] = []
-        # Of the kind that a thread can acquire again: a handler of a signal, or a finalizer, may
-        # interrupt the thread that holds it.
+        # Guards that no task is lost that is added while those that are done are left out.
         self._tasks_lock = threading.RLock()
         self._wakeup = Wakeup()
         self._is_shutdown = False
+        # Of the thread that spins: one at a time may.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
         if self._context.handle is None:
@@ -346,11 +349,11 @@ class Executor:
                 ready = self._ready_after_wait(used, ends_ns)
             # Before the calls, which may take longer than the limit.
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
-            for found in ready:
+            for call in ready:
                 # A call of this round may have begun another one, of the same group.
-                if found is ready[0] or self.can_execute(found[0]):
+                if call is ready[0] or self.can_execute(call[0]):
                     yielded = True
-                    yield found
+                    yield call
             if over:
                 raise TimeoutException
 
@@ -404,7 +407,10 @@ class Executor:
                     if due_ns is not None:
                         waits.append(due_ns)
         waitables = [
-            each for node in nodes for each in tuple(node._waitables) if self.can_execute(each)
+            waitable
+            for node in nodes
+            for waitable in tuple(node._waitables)
+            if self.can_execute(waitable)
         ]
         wait_set = wait_set_of(waitables, self._context_handle) if waitables else None
         if wait_set is not None:
@@ -423,11 +429,11 @@ class Executor:
 
     # Calling callbacks
 
-    def _as_task(self, found: Ready | Work) -> Work:
+    def _as_task(self, ready: Ready | Work) -> Work:
         """Return a task that takes what is ready and calls the entity's callback with it."""
-        if isinstance(found[0], Task):
-            return found  # type: ignore[return-value]  # as its first element says
-        entity, node, take = cast("Ready", found)
+        if isinstance(ready[0], Task):
+            return ready  # type: ignore[return-value]  # as its first element says
+        entity, node, take = cast("Ready", ready)
         entity._executor_event = True
         return self._add_task(self._handle(entity, take), entity, node)
 
@@ -504,10 +510,10 @@ class SingleThreadedExecutor(Executor):
         condition: Callable[[], bool] = never,
     ) -> None:
         try:
-            found = self._next(timeout_sec, None, condition)
+            ready = self._next(timeout_sec, None, condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
-        task = found[0] if isinstance(found[0], Task) else self._call(*found)
+        task = ready[0] if isinstance(ready[0], Task) else self._call(*ready)
         if task is None:
             return
         task()

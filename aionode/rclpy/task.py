@@ -51,6 +51,8 @@ class Future(Generic[T]):
         self._exception_fetched = False
         self._callbacks: list[Callable[[Future[T]], object]] = []
         self._wakers: list[Callable[[], None]] = []
+        # Guards that each callback is called once: it is added before the end, or called after it.
+        # A handler of a signal may complete the future while this thread holds it.
         self._lock = threading.RLock()
         self._executor: weakref.ref[ExecutorLike] | None = None
         self._set_executor(executor)
@@ -201,7 +203,7 @@ class Task(Future[T]):
         self._awaited: Future[Any] | None = None
         self._executing = False
         self._scheduled = False  # whether a thread of a pool is about to run it
-        self._task_lock = threading.Lock()
+        self._task_lock = threading.Lock()  # held by the thread that takes a step; nobody waits
 
     def __call__(self) -> None:
         """Run the function, or the coroutine up to its next wait, unless that is under way."""

@@ -140,12 +140,12 @@ class Timer(HandleOwner[TimerHandle]):
     def info_argument(self, callback: Callable[..., object]) -> str | None:
         """Return the parameter of `callback` that takes a `TimerInfo`, or None."""
         if self._inspected is None or self._inspected[0] is not callback:
-            found = None
+            name = None
             for parameter in inspect.signature(callback).parameters.values():
                 if parameter.annotation in (TimerInfo, "TimerInfo"):
-                    found = parameter.name
+                    name = parameter.name
                     break
-            self._inspected = callback, found
+            self._inspected = callback, name
         return self._inspected[1]
 
 
@@ -157,7 +157,8 @@ class Rate:
         self._is_shutdown = False
         self._is_destroyed = False
         self._event = threading.Event()
-        self._lock = threading.RLock()  # a handler of a signal may sleep, too
+        # Guards the number of sleepers; a handler of a signal may sleep, too.
+        self._lock = threading.RLock()
         self._num_sleepers = 0
         self._timer.callback = self._event.set
         context.on_shutdown(self._on_shutdown)

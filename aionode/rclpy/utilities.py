@@ -27,6 +27,7 @@ __all__ = [
 RMW_IDENTIFIER = "rmw_zenoh_cpp"
 
 g_default_context: Context | None = None
+# Guards that there is one default context at a time.
 g_context_lock = threading.RLock()
 
 

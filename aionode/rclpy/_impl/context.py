@@ -83,6 +83,7 @@ class ContextHandle(Destroyable):
 
     def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
         super().__init__()
+        # Flags that go from False to True once, in any thread or handler of a signal.
         self.is_shut_down = False
         self.logs = False
         self._closed = False

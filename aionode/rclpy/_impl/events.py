@@ -130,7 +130,7 @@ class Watch:
         self.graph = parent.io.context.graph
         self.time_base = parent.io.context.time_base
         self.endpoint = parent.endpoint
-        self.changed = False
+        self.changed = False  # executors read it, to ask for the status in this thread
         self.status = self.empty
         self.ends: list[Callable[[], object]] = []
         self._notify = notify

@@ -82,7 +82,7 @@ class Requests:
 
     def _is_heavy(self, request: Request) -> bool:
         waiting = self.items.copy()  # other threads take from it
-        waiting_bytes = sum(len(each.message.data) for each, _ in waiting)
+        waiting_bytes = sum(len(other.message.data) for other, _ in waiting)
         return waiting_bytes + len(request.message.data) > self._limit_bytes
 
 
@@ -135,6 +135,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             node.requests,
             partial(logger.warning, text),
         )
+        # By threads that spin: each request is added by one of them, and popped by one, in one step.
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 
@@ -201,6 +202,8 @@ class Replies:
 
     def __init__(self, arrivals: Arrivals) -> None:
         self.items: deque[tuple[int, Any, int]] = deque()
+        # Threads that call add to it before they send, and pop what they give up; the thread of the
+        # context pops what it hands on. Each is one step, so one of them gets it.
         self.blocked: dict[int, Callable[[Any], None]] = {}
         self._arrivals = arrivals
 
@@ -220,8 +223,8 @@ class ClientHandle(CallHandle[BareClient]):
     def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
         super().__init__(node, srv_type, srv_name, qos_profile, "client")
         self._replies = Replies(node.responses)
-        self._calls: dict[int, Any] = {}
-        self._sequence = 0
+        self._calls: dict[int, Any] = {}  # used by the thread of the loop, or its borrower
+        self._sequence = 0  # changed under the lock of the client
         self._announce(node.bare.create_client, self._support.wire_type)
 
     def ready(self) -> bool:
@@ -237,7 +240,7 @@ class ClientHandle(CallHandle[BareClient]):
                 does not wait to be taken: for a thread that waits for it.
         """
         data = self._support.request.encode(request)
-        self._sequence += 1  # under the lock of the client
+        self._sequence += 1
         sequence = self._sequence
         if on_response is not None:
             self._replies.blocked[sequence] = on_response

@@ -37,7 +37,7 @@ class GuardConditionHandle(Destroyable):
     def __init__(self, context: ContextHandle) -> None:
         super().__init__()
         context.refuse_if_over("guard_condition")
-        self._triggered = False
+        self._triggered = False  # any thread sets it, the one that takes it resets it
 
     def trigger_guard_condition(self) -> None:
         """Trigger it."""

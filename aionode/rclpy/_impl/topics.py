@@ -164,12 +164,15 @@ class Inbox:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
         self.keep_all = keep_all
+        # Each thread appends or takes in one step; whoever has found it empty is told by `arrivals`.
         self.items: deque[tuple[Any, SampleInfo, int]] = deque(
             maxlen=None if keep_all else self.limit
         )
         self._limit_bytes = limit_bytes
         self._on_heavy: Callable[[], None] | None = on_heavy  # called once
-        self._largest_bytes = 0  # of what waits, or did while others have waited
+        # Of what waits, or did while others have waited. Threads that deliver at once overwrite
+        # each other's: then a message too many may wait.
+        self._largest_bytes = 0
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
         self.assertions: list[Callable[[bytes], None]] = []
@@ -289,6 +292,8 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
+        # Used by the threads that take, one at a time unless the callback group is reentrant. Then
+        # two messages may get the same number, or a publisher be asked about twice.
         self._lifespans: dict[bytes, int] = {}
         self._received = 0
         self._complained = False

@@ -110,8 +110,8 @@ class WaitSet(Destroyable):
 
     def due_in_ns(self) -> int | None:
         """Return how long it is until the next timer, or None."""
-        found = [timer.due_in_ns() for timer in self._handles["timer"]]
-        return min((each for each in found if each is not None), default=None)
+        waits_ns = [timer.due_in_ns() for timer in self._handles["timer"]]
+        return min((wait_ns for wait_ns in waits_ns if wait_ns is not None), default=None)
 
     def wait(self, timeout_nsec: int) -> None:
         """Wait until a handle is ready, the context is shut down, or the time has passed.
@@ -129,8 +129,8 @@ class WaitSet(Destroyable):
                 if left_ns is not None and left_ns <= 0:
                     return
                 due_ns = self.due_in_ns()
-                waits = [each for each in (left_ns, due_ns) if each is not None]
-                wakeup.wait(max(0, min(waits)) / 1e9 if waits else None)
+                waits_ns = [wait_ns for wait_ns in (left_ns, due_ns) if wait_ns is not None]
+                wakeup.wait(max(0, min(waits_ns)) / 1e9 if waits_ns else None)
         finally:
             self.unwatch(wakeup)
             self._context.signal.remove(wakeup)
