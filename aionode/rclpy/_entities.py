@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Generic, Self, TypeVar
+from functools import wraps
+from typing import TYPE_CHECKING, Any, Concatenate, Generic, ParamSpec, Self, TypeVar
 
 from aionode.clock import MachineTime
 from aionode.rclpy._impl.destroyable import Destroyable, Wakeup
@@ -13,23 +14,36 @@ if TYPE_CHECKING:
     from aionode.rclpy._impl.endpoint import EndpointHandle
     from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
     from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
-    from aionode.rclpy.clock import Clock
     from aionode.rclpy.context import Context
     from aionode.rclpy.event_handler import EventHandler
-    from aionode.rclpy.qos import QoSProfile
-    from aionode.rclpy.service_introspection import ServiceIntrospectionState
 
-__all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "wait_until"]
+__all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "in_use", "wait_until"]
 
 CHECK_S = 0.05
 """Time between two looks of a wait for another process."""
 
 steady_ns = MachineTime().steady_ns
 
+P = ParamSpec("P")
+T = TypeVar("T")
 HandleT = TypeVar("HandleT", bound=Destroyable)
 EndpointHandleT = TypeVar("EndpointHandleT", bound="EndpointHandle[Any]")
 TopicHandleT = TypeVar("TopicHandleT", bound="PublisherHandle | SubscriptionHandle")
 ServiceHandleT = TypeVar("ServiceHandleT", bound="ClientHandle | ServiceHandle")
+
+
+def in_use(method: Callable[Concatenate[HandleT, P], T]) -> Callable[Concatenate[Any, P], T]:
+    """Return a method for owners of handles: that of their handle, which lives until its end.
+
+    It raises InvalidHandle once the handle is destroyed.
+    """
+
+    @wraps(method)
+    def call(self: HandleOwner[HandleT], /, *args: P.args, **kwargs: P.kwargs) -> T:
+        with self._handle as handle:
+            return method(handle, *args, **kwargs)
+
+    return call
 
 
 class HandleOwner(Generic[HandleT]):
@@ -72,7 +86,7 @@ class TopicEntity(EndpointEntity[TopicHandleT]):
     def topic_name(self) -> str:
         """The full name of the topic."""
         with self._handle:
-            return self._handle.get_topic_name()
+            return self._handle.name
 
     def destroy(self) -> None:
         """Destroy it, and its event handlers. Use the method of the node."""
@@ -84,29 +98,11 @@ class TopicEntity(EndpointEntity[TopicHandleT]):
 class ServiceEntity(EndpointEntity[ServiceHandleT]):
     """A client or server."""
 
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Tell of calls on ``<service>/_service_event``.
-
-        Args:
-            clock: Where the stamps come from.
-            service_event_qos_profile: QoS of that topic.
-            introspection_state: What is told.
-        """
-        with self._handle:
-            self._handle.configure_introspection(
-                clock.handle, service_event_qos_profile, introspection_state
-            )
-
     @property
     def service_name(self) -> str:
         """The full name of the service."""
         with self._handle:
-            return self._handle.service_name
+            return self._handle.name
 
 
 def wait_until(is_ready: Callable[[], bool], context: Context, timeout_sec: float | None) -> bool:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.rclpy._entities import ServiceEntity, wait_until
+from aionode.rclpy._entities import ServiceEntity, in_use, wait_until
 from aionode.rclpy._impl.destroyable import Wakeup
+from aionode.rclpy._impl.services import ClientHandle
 from aionode.rclpy._impl.uninterrupted import refuse_to_wait
 from aionode.rclpy.task import Future
 
 if TYPE_CHECKING:
-    from aionode.rclpy._impl.services import ClientHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.context import Context
     from aionode.rclpy.qos import QoSProfile
@@ -22,7 +22,7 @@ RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
 
 
-class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
+class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
     """Calls a service. Made by `Node.create_client`.
 
     Attributes:
@@ -130,10 +130,8 @@ class Client(ServiceEntity["ClientHandle"], Generic[RequestT, ResponseT]):
                 return sequence
         return None
 
-    def service_is_ready(self) -> bool:
-        """Return whether a server is there."""
-        with self.handle:
-            return self._handle.service_server_is_available()
+    configure_introspection = in_use(ClientHandle.configure_introspection)
+    service_is_ready = in_use(ClientHandle.service_server_is_available)
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Block the thread until a server is there; nobody needs to spin.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode.rclpy._entities import HandleOwner
+from aionode.rclpy._entities import HandleOwner, in_use
 from aionode.rclpy._impl.timers import GuardConditionHandle
 from aionode.rclpy.utilities import get_default_context
 
@@ -40,11 +40,4 @@ class GuardCondition(HandleOwner[GuardConditionHandle]):
         self._executor_event = False  # whether an executor has a task for it that has not begun
         self._executor_triggered = False
 
-    def trigger(self) -> None:
-        """Trigger it; any thread may.
-
-        Raises:
-            InvalidHandle: it is destroyed.
-        """
-        with self._handle:
-            self._handle.trigger_guard_condition()
+    trigger = in_use(GuardConditionHandle.trigger_guard_condition)

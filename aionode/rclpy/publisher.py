@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from aionode.rclpy._entities import TopicEntity
+from aionode.rclpy._entities import TopicEntity, in_use
+from aionode.rclpy._impl.topics import PublisherHandle
 from aionode.rclpy.duration import Duration
 
 if TYPE_CHECKING:
-    from aionode.rclpy._impl.topics import PublisherHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.event_handler import EventHandler, PublisherEventCallbacks
     from aionode.rclpy.qos import QoSProfile
@@ -20,7 +20,7 @@ MsgT = TypeVar("MsgT")
 FOREVER = Duration(seconds=-1)
 
 
-class Publisher(TopicEntity["PublisherHandle"], Generic[MsgT]):
+class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
     """Sends messages to a topic. Made by `Node.create_publisher`.
 
     Attributes:
@@ -62,15 +62,8 @@ class Publisher(TopicEntity["PublisherHandle"], Generic[MsgT]):
             else:
                 raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
 
-    def get_subscription_count(self) -> int:
-        """Return how many subscriptions are matched."""
-        with self.handle:
-            return self._handle.get_subscription_count()
-
-    def assert_liveliness(self) -> None:
-        """Show that it is alive, for MANUAL_BY_TOPIC."""
-        with self.handle:
-            self._handle.assert_liveliness()
+    get_subscription_count = in_use(PublisherHandle.get_subscription_count)
+    assert_liveliness = in_use(PublisherHandle.assert_liveliness)
 
     def wait_for_all_acked(self, timeout: Duration = FOREVER) -> bool:
         """Wait until what was published is handed on; return whether that is so in time."""

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.rclpy._entities import ServiceEntity
-from aionode.rclpy._impl.services import rmw_request_id_t, rmw_service_info_t
+from aionode.rclpy._entities import ServiceEntity, in_use
+from aionode.rclpy._impl.services import ServiceHandle, rmw_request_id_t, rmw_service_info_t
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.rclpy._impl.services import ServiceHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.qos import QoSProfile
 
@@ -20,7 +19,7 @@ RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
 
 
-class Service(ServiceEntity["ServiceHandle"], Generic[RequestT, ResponseT]):
+class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
     """Answers requests. Made by `Node.create_service`.
 
     Attributes:
@@ -47,6 +46,8 @@ class Service(ServiceEntity["ServiceHandle"], Generic[RequestT, ResponseT]):
         self.callback_group = callback_group
         self._executor_event = False
         self.qos_profile = qos_profile
+
+    configure_introspection = in_use(ServiceHandle.configure_introspection)
 
     def send_response(
         self, response: ResponseT, header: rmw_service_info_t | rmw_request_id_t

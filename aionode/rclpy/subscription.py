@@ -7,12 +7,12 @@ from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar
 
-from aionode.rclpy._entities import TopicEntity
+from aionode.rclpy._entities import TopicEntity, in_use
 from aionode.rclpy._impl.errors import RCLError
+from aionode.rclpy._impl.topics import SubscriptionHandle
 from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
 
 if TYPE_CHECKING:
-    from aionode.rclpy._impl.topics import SubscriptionHandle
     from aionode.rclpy.callback_groups import CallbackGroup
     from aionode.rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
     from aionode.rclpy.qos import QoSProfile
@@ -32,7 +32,7 @@ class MessageInfo(TypedDict):
     publisher_gid: dict[str, Any] | None
 
 
-class Subscription(TopicEntity["SubscriptionHandle"], Generic[MsgT]):
+class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
     """Receives the messages of a topic. Made by `Node.create_subscription`.
 
     Attributes:
@@ -97,10 +97,8 @@ class Subscription(TopicEntity["SubscriptionHandle"], Generic[MsgT]):
             "(to get only the message) or two (to get message and message info)"
         )
 
-    def get_publisher_count(self) -> int:
-        """Return how many publishers are matched."""
-        with self.handle:
-            return self._handle.get_publisher_count()
+    get_publisher_count = in_use(SubscriptionHandle.get_publisher_count)
+    set_content_filter = in_use(SubscriptionHandle.set_content_filter)
 
     @property
     def is_cft_enabled(self) -> bool:
@@ -112,15 +110,6 @@ class Subscription(TopicEntity["SubscriptionHandle"], Generic[MsgT]):
     def is_cft_supported(self) -> bool:
         """Whether content filters can be set: they can."""
         return True
-
-    def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
-        """Take only messages that meet an expression; an empty one takes all.
-
-        Raises:
-            RCLError: the expression cannot be used.
-        """
-        with self.handle:
-            self._handle.set_content_filter(filter_expression, expression_parameters)
 
     def get_content_filter(self) -> ContentFilterOptions:
         """Return the content filter.

@@ -7,7 +7,7 @@ import threading
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import ClockType
-from aionode.rclpy._entities import HandleOwner
+from aionode.rclpy._entities import HandleOwner, in_use
 from aionode.rclpy._impl.timers import TimerHandle
 from aionode.rclpy.exceptions import InvalidHandle, ROSInterruptException
 from aionode.rclpy.time import Time
@@ -103,35 +103,12 @@ class Timer(HandleOwner[TimerHandle]):
         with self._handle:
             self._handle.change_timer_period(int(value))
 
-    def is_ready(self) -> bool:
-        """Return whether it is due."""
-        with self._handle:
-            return self._handle.is_timer_ready()
-
-    def is_canceled(self) -> bool:
-        """Return whether it is cancelled."""
-        with self._handle:
-            return self._handle.is_timer_canceled()
-
-    def cancel(self) -> None:
-        """Call no more, until `reset`."""
-        with self._handle:
-            self._handle.cancel_timer()
-
-    def reset(self) -> None:
-        """Begin a new period now."""
-        with self._handle:
-            self._handle.reset_timer()
-
-    def time_since_last_call(self) -> int:
-        """Return nanoseconds since the last call, or since the timer was made."""
-        with self._handle:
-            return self._handle.time_since_last_call()
-
-    def time_until_next_call(self) -> int | None:
-        """Return nanoseconds until the next call, negative if it is late; None if cancelled."""
-        with self._handle:
-            return self._handle.time_until_next_call()
+    is_ready = in_use(TimerHandle.is_timer_ready)
+    is_canceled = in_use(TimerHandle.is_timer_canceled)
+    cancel = in_use(TimerHandle.cancel_timer)
+    reset = in_use(TimerHandle.reset_timer)
+    time_since_last_call = in_use(TimerHandle.time_since_last_call)
+    time_until_next_call = in_use(TimerHandle.time_until_next_call)
 
     def info(self, called: dict[str, int]) -> TimerInfo:
         """Return what its handle has said of a call, in the timer's clock."""

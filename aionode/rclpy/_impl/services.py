@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from aionode.clock import Clock
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.errors import ServiceError
+    from aionode.qos import QoSProfile
     from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.transport.base import Request
@@ -111,10 +112,19 @@ class CallHandle(EndpointHandle[BareT]):
         return self.name
 
     def configure_introspection(
-        self, clock: Clock, qos_profile: Any, state: ServiceIntrospectionState
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Tell of calls on ``<service>/_service_event``."""
-        self._introspection.configure(clock, qos_profile, state)
+        """Tell of calls on ``<service>/_service_event``.
+
+        Args:
+            clock: Where the stamps come from.
+            service_event_qos_profile: QoS of that topic.
+            introspection_state: What is told.
+        """
+        self._introspection.configure(clock, service_event_qos_profile, introspection_state)
 
     def _destroy(self) -> None:
         if hasattr(self, "_introspection"):
@@ -135,7 +145,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             node.requests,
             partial(logger.warning, text),
         )
-        # By threads that spin: each request is added by one of them, and popped by one, in one step.
+        # Threads that spin add each request, and pop it, in one step.
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 

@@ -40,7 +40,7 @@ class GuardConditionHandle(Destroyable):
         self._triggered = False  # any thread sets it, the one that takes it resets it
 
     def trigger_guard_condition(self) -> None:
-        """Trigger it."""
+        """Trigger it; any thread may."""
         self._triggered = True
         self.signal.notify()
 

@@ -164,7 +164,7 @@ class Inbox:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
         self.keep_all = keep_all
-        # Each thread appends or takes in one step; whoever has found it empty is told by `arrivals`.
+        # Threads append and take in one step; one that has found it empty is told by `arrivals`.
         self.items: deque[tuple[Any, SampleInfo, int]] = deque(
             maxlen=None if keep_all else self.limit
         )
