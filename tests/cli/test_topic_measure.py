@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from collections.abc import Callable
 from typing import Any
@@ -173,17 +172,13 @@ async def test_hz_shows_that_a_topic_fell_silent(
 )
 def test_a_narrow_terminal_drops_columns(width: int, columns: list[str]) -> None:
     """The names of topics and the rates stay whole."""
-    from rich.console import Console
-
     rows = [("/chatter", "5.000", "0.200", "0.200", "0.00000", "4"), ("/b", *topic_measure.SILENT)]
-    console = Console(width=width, record=True, file=io.StringIO())
 
-    console.print(topic_measure.hz_table(rows, width))
+    text = topic_measure.hz_table(rows, width)
 
-    text = console.export_text()
+    assert max(map(len, text.splitlines())) < width
     assert [word for word in topic_measure.HZ_HEADER if word in text] == columns
-    assert "…" not in text
-    assert re.search(r"/chatter +(│ )?5\.000", text)
+    assert re.search(r"/chatter +5\.000", text)
 
 
 async def test_hz_counts_only_what_the_filter_lets_through(

@@ -11,6 +11,7 @@ import asyncio
 import math
 from collections import deque
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -69,8 +70,6 @@ SILENT = ("-",) * (len(HZ_HEADER) - 1)
 measuring = click.Group("topic")
 """The commands of this module; the group ``topic`` has them too."""
 
-topic_argument = name_argument("topic")
-
 
 def window_option(default: int) -> Callable[[CommandT], CommandT]:
     """Return the option for the number of messages in the statistics."""
@@ -119,7 +118,7 @@ async def hz(
     fits = filter_from(filter_text)
     names = [node.resolve_topic_name(name) for name in topic_names]
     intervals = {name: Intervals(window) for name in names}
-    follower = Follower(node)
+    meter = Meter(node, output)
 
     def on_message(name: str, msg: Any, info: MessageInfo) -> None:
         if filter_text is not None and not fits(msg):
@@ -127,84 +126,83 @@ async def hz(
         if intervals[name].arrive(arrival_ns(node, info, wall_time=wall_time)):
             output.text("time has reset, resetting counters")
 
-    subscriptions: list[Subscription[Any]] = []
-
     async def subscribe(name: str) -> None:
         msg_type = await wait_for_type(node, name, output, spinner=len(names) == 1)
         if len(names) > 1 and not output.is_terminal:  # there, the table has its row already
             output.text(f"Subscribed to [{name}]")
-        deliver = partial(on_message, name)
-        raw = filter_text is None
-        subscriptions.append(follow_connected(node, follower, msg_type, name, deliver, raw=raw))
+        meter.follow(msg_type, name, partial(on_message, name), raw=filter_text is None)
 
-    dropped = Dropped(subscriptions, output)
     if len(names) == 1:
         await subscribe(names[0])
-        show = partial(print_rate, output, names[0], intervals[names[0]], dropped)
-        await every_second(node, follower, show)
+        await meter.report(partial(print_rate, output, names[0], intervals[names[0]]))
         return
     table = RateTable(intervals)
-    # At the same time: a topic that has no publisher yet must not hide the others.
-    subscribing = map(subscribe, names)
-    if output.is_terminal:
-        with output.live() as update:
-            show = partial(show_rates, table, dropped, update)
-            await asyncio.gather(every_second(node, follower, show), *subscribing)
-    else:
-        show = partial(print_rates, table, dropped, output)
-        await asyncio.gather(every_second(node, follower, show), *subscribing)
+    with output.live() if output.is_terminal else nullcontext() as update:
+        show = partial(print_rates, table, output, update)
+        # At the same time: a topic that has no publisher yet must not hide the others.
+        await asyncio.gather(meter.report(show), *map(subscribe, names))
 
 
-def follow_connected(
-    node: Node,
-    follower: Follower,
-    msg_type: type[Message],
-    name: str,
-    on_message: Callable[[Any, MessageInfo], None],
-    *,
-    raw: bool,
-) -> Subscription[Any]:
-    """Call `on_message` with each message that arrives after publishers have been connected."""
-    others = len(node.context.transports) > 1  # beyond this process
-    begins_ns = node.context.time_base.system_ns() + int(CONNECTING_S * 1e9) * others
+class Meter:
+    """Receives the messages of topics, and reports once a second.
 
-    def when_connected(msg: Any, info: MessageInfo) -> None:
-        if info["received_timestamp"] >= begins_ns:
-            on_message(msg, info)
+    Args:
+        node: The command's node.
+        output: Where to warn when messages arrive faster than they can be counted.
+    """
 
-    return follower.follow(msg_type, name, when_connected, QOS, raw=raw)
+    def __init__(self, node: Node, output: Output) -> None:
+        self._node = node
+        self._output = output
+        self._follower = Follower(node)
+        self._subscriptions: list[Subscription[Any]] = []
+        self._dropped = 0
+
+    def follow(
+        self,
+        msg_type: type[Message],
+        name: str,
+        on_message: Callable[[Any, MessageInfo], None],
+        *,
+        raw: bool,
+    ) -> None:
+        """Call `on_message` with each message that arrives after publishers have been connected."""
+        others = len(self._node.context.transports) > 1  # beyond this process
+        begins_ns = self._node.context.time_base.system_ns() + int(CONNECTING_S * 1e9) * others
+
+        def when_connected(msg: Any, info: MessageInfo) -> None:
+            if info["received_timestamp"] >= begins_ns:
+                on_message(msg, info)
+
+        self._subscriptions.append(
+            self._follower.follow(msg_type, name, when_connected, QOS, raw=raw)
+        )
+
+    async def report(self, show: Callable[[], None]) -> None:
+        """Call `show` once a second until a callback fails."""
+
+        def tick() -> None:
+            self._warn_of_dropped()
+            show()
+
+        self._node.create_timer(PRINT_PERIOD_S, tick, on_error=self._follower.fail)
+        await self._follower.finished()
+
+    def _warn_of_dropped(self) -> None:
+        dropped = sum(subscription.stats.dropped for subscription in self._subscriptions)
+        if dropped > self._dropped:
+            self._output.warn(
+                f"{dropped} messages arrived too fast to be counted: the real rates are higher"
+            )
+            self._dropped = dropped
 
 
-def arrival_ns(node: Node, info: MessageInfo, *, wall_time: bool = True) -> int:
-    """Return when a message arrived, in ROS time if that is simulated."""
+def arrival_ns(node: Node, info: MessageInfo, *, wall_time: bool = False) -> int:
+    """Return when a message arrived, in ROS time if that is simulated and wanted."""
     clock = node.get_clock()
     if not wall_time and getattr(clock, "ros_time_is_active", False):
         return clock.now().nanoseconds
     return info["received_timestamp"]
-
-
-class Dropped:
-    """Warns when messages arrived faster than they could be counted."""
-
-    def __init__(self, subscriptions: list[Subscription[Any]], output: Output) -> None:
-        self._subscriptions = subscriptions
-        self._output = output
-        self._reported = 0
-
-    def warn(self) -> None:
-        """Warn if more messages have been dropped since the last warning."""
-        dropped = sum(subscription.stats.dropped for subscription in self._subscriptions)
-        if dropped > self._reported:
-            self._output.warn(
-                f"{dropped} messages arrived too fast to be counted: the real rates are higher"
-            )
-            self._reported = dropped
-
-
-async def every_second(node: Node, follower: Follower, show: Callable[[], None]) -> None:
-    """Call `show` once a second until the follower fails."""
-    node.create_timer(PRINT_PERIOD_S, show, on_error=follower.fail)
-    await follower.finished()
 
 
 def spread_text(spread: Spread) -> str:
@@ -287,48 +285,32 @@ def overdue_s(spread: Spread) -> float:
     return 1.0 + 3 * spread.high / 1e9
 
 
-def print_rate(output: Output, name: str, intervals: Intervals, dropped: Dropped) -> None:
+def print_rate(output: Output, name: str, intervals: Intervals) -> None:
     """Print the statistics of the only topic, unless nothing came."""
-    dropped.warn()
     spread = intervals.spread()
-    if spread is None:
-        return
-    output.item(
-        f"average rate: {spread.rate_hz:.3f}\n{spread_text(spread)}", hz_record(name, spread)
-    )
+    if spread is not None:
+        output.item(
+            f"average rate: {spread.rate_hz:.3f}\n{spread_text(spread)}", hz_record(name, spread)
+        )
 
 
-def print_rates(table: RateTable, dropped: Dropped, output: Output) -> None:
-    """Print the statistics of several topics, unless nothing came."""
-    dropped.warn()
-    if not table.update():
-        return
-    output.text(table_text(HZ_HEADER, table.rows()))
-    if output.json:
-        for record in table.records():
-            output.item("", record)
-
-
-def show_rates(
-    table: RateTable, dropped: Dropped, update: Callable[[Callable[[int], Any]], None]
+def print_rates(
+    table: RateTable, output: Output, update: Callable[[Callable[[int], str]], None] | None
 ) -> None:
-    """Display the statistics of several topics on a terminal."""
-    dropped.warn()
-    table.update()
-    update(partial(hz_table, table.rows()))
+    """Print the statistics of several topics, unless nothing came; `update` redraws a terminal."""
+    changed = table.update()
+    if update is not None:
+        update(partial(hz_table, table.rows()))
+    elif changed:
+        output.text(hz_table(table.rows()))
+        if output.json:
+            output.items([("", record) for record in table.records()])
 
 
-def hz_table(rows: list[tuple[str, ...]], width: int) -> Any:
-    """Return the statistics as a rich table, without the columns that do not fit."""
-    from rich import box
-    from rich.table import Table
-
-    kept = columns_for(rows, width)
-    # In less than 40 columns the frame goes too: names of topics matter more.
-    table = Table(*(HZ_HEADER[i] for i in kept), box=None if len(kept) == 2 else box.HEAVY_HEAD)
-    for row in rows:
-        table.add_row(*(row[i] for i in kept))
-    return table
+def hz_table(rows: list[tuple[str, ...]], width: int | None = None) -> str:
+    """Return the statistics as a table, without the columns that do not fit into `width`."""
+    kept = range(len(HZ_HEADER)) if width is None else columns_for(rows, width)
+    return table_text([[row[i] for i in kept] for row in (HZ_HEADER, *rows)])
 
 
 def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
@@ -336,7 +318,7 @@ def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
     widths = [max(map(len, column)) for column in zip(HZ_HEADER, *rows, strict=True)]
     kept = list(range(len(HZ_HEADER)))
     for column in LEAST_FIRST:
-        if sum(widths[i] + 3 for i in kept) + 1 <= width:  # each has two blanks and a line
+        if sum(widths[i] + 3 for i in kept) + 1 <= width:  # no line fills the terminal
             break
         kept.remove(column)
     return kept
@@ -346,7 +328,13 @@ def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
 
 
 @command(
-    measuring, "bw", topic_argument, window_option(100), interfaces=True, endless=True, busy=True
+    measuring,
+    "bw",
+    name_argument("topic"),
+    window_option(100),
+    interfaces=True,
+    endless=True,
+    busy=True,
 )
 async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) -> None:
     """Print the bandwidth of a topic, once a second.
@@ -357,17 +345,15 @@ async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) 
     name = node.resolve_topic_name(topic_name)
     msg_type = await wait_for_type(node, name, output)
     bandwidth = Bandwidth(window)
-    follower = Follower(node)
+    meter = Meter(node, output)
 
     def on_message(data: bytes, info: MessageInfo) -> None:
         bandwidth.arrive(info["received_timestamp"], len(data))
 
-    subscription = follow_connected(node, follower, msg_type, name, on_message, raw=True)
-    dropped = Dropped([subscription], output)
+    meter.follow(msg_type, name, on_message, raw=True)
     output.text(f"Subscribed to [{name}]")
 
     def show() -> None:
-        dropped.warn()
         rate = bandwidth.rate(node.context.time_base.system_ns())
         if rate is None:
             return
@@ -385,7 +371,7 @@ async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) 
             },
         )
 
-    await every_second(node, follower, show)
+    await meter.report(show)
 
 
 # Age
@@ -394,7 +380,7 @@ async def bw(node: Node, topic_name: str, *, output: Output, window: int = 100) 
 @command(
     measuring,
     "delay",
-    topic_argument,
+    name_argument("topic"),
     window_option(10_000),
     interfaces=True,
     sim_time=True,
@@ -415,14 +401,14 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
             "so the age of its messages is unknown"
         )
     delays = Window(window)
-    follower = Follower(node)
+    meter = Meter(node, output)
 
     def on_message(msg: Any, info: MessageInfo) -> None:
         # Not converted to `Time`, which rejects times before 1970; a received stamp may be one.
         stamp_ns = msg.header.stamp.sec * 1_000_000_000 + msg.header.stamp.nanosec
-        delays.add(arrival_ns(node, info, wall_time=False) - stamp_ns)
+        delays.add(arrival_ns(node, info) - stamp_ns)
 
-    follow_connected(node, follower, msg_type, name, on_message, raw=False)
+    meter.follow(msg_type, name, on_message, raw=False)
 
     def show() -> None:
         spread = delays.spread()
@@ -433,7 +419,7 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
             {"topic": name, "delay_s": spread.mean / 1e9, **spread_record(spread)},
         )
 
-    await every_second(node, follower, show)
+    await meter.report(show)
 
 
 def has_header(msg_type: Any) -> bool:
@@ -566,13 +552,13 @@ def size_texts(bytes_per_s: float, *sizes: float) -> list[str]:
     return [f"{size / divisor:.2f} {unit}" for size in (bytes_per_s, *sizes)]
 
 
-def table_text(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a table for a plain terminal."""
-    widths = [max(len(row[i]) for row in (header, *rows)) for i in range(len(header))]
-    head = "   ".join(word.center(width) for word, width in zip(header, widths, strict=True))
+def table_text(rows: Sequence[Sequence[str]]) -> str:
+    """Return a table; its first row is the heading."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    head = "   ".join(word.center(width) for word, width in zip(rows[0], widths, strict=True))
     line = "=" * (sum(widths) + 3 * (len(widths) - 1))
     body = "\n".join(
         "   ".join(word.ljust(width) for word, width in zip(row, widths, strict=True))
-        for row in rows
+        for row in rows[1:]
     )
     return f"{head}\n{line}\n{body}\n"

@@ -131,17 +131,23 @@ class Output:
             yield
 
     @contextlib.contextmanager
-    def live(self) -> Iterator[Callable[[Callable[[int], Any]], None]]:
-        """Yield a function that displays a rich table in place of the previous one.
+    def live(self) -> Iterator[Callable[[Callable[[int], str]], None]]:
+        """Yield a function that displays a text in place of the previous one.
 
-        It is given what makes the table for the width of the terminal, in characters.
+        Its argument returns the text for the width of the terminal, in characters.
         """
         from rich.console import Console
         from rich.live import Live
+        from rich.text import Text
 
         console = Console(file=self._stdout)
         with Live(console=console, auto_refresh=False) as live:
-            yield lambda table_for: live.update(table_for(console.width), refresh=True)
+
+            def update(text_for: Callable[[int], str]) -> None:
+                text = Text(text_for(console.width), no_wrap=True, overflow="ellipsis")
+                live.update(text, refresh=True)
+
+            yield update
 
 
 def unwritable(error: OSError) -> str:
