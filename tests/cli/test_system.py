@@ -19,6 +19,7 @@ from aionode.cli._nouns.system import (
 )
 from aionode.cli._support.output import Output
 from aionode.errors import CommandError
+from aionode.graph import EndpointKind
 from aionode.system import System, SystemLog
 from tests.support.waiting import until
 
@@ -76,7 +77,8 @@ async def test_log_prints_the_lines_from_now_on(
 ) -> None:
     """With time and name, as the terminal of the system has them."""
     async with running(print_log(tool, output=screen.output)):
-        await until(lambda: system._control._log.get_subscription_count() > 0)
+        topic = "/aionode_system_robot/log"
+        await until(lambda: system.graph_node.graph.count(EndpointKind.SUBSCRIPTION, topic) > 0)
         system.log.note("hello")
         await until(lambda: "system | hello" in screen.text)
 

@@ -18,7 +18,7 @@ from click.shell_completion import BashComplete
 
 from aionode.cli import main
 from aionode.cli._main import root
-from aionode.cli._support import completion, session
+from aionode.cli._support import completion
 from aionode.transport.link import available
 from tests.support.fork_server import run, start
 from tests.support.peers import isolated_environment
@@ -98,10 +98,8 @@ def terminals() -> Iterator[Terminals]:
 def in_robot(terminals: Terminals, monkeypatch: pytest.MonkeyPatch) -> None:
     """The variables of a terminal, for commands that run in the process of the tests.
 
-    A process of its own would import all of aionode for each. A command whose end takes longer than
-    `CLOSE_S`, as on a busy machine, ends its process, which must not be that of the tests.
+    A process of its own would import all of aionode for each.
     """
-    monkeypatch.setattr(session, "CLOSE_S", STARTED_S)
     for name, value in terminals.env.items():
         monkeypatch.setenv(name, value)
 

@@ -20,14 +20,12 @@ import threading
 from pathlib import Path
 from uuid import uuid4
 
-import psutil
-
 from aionode import Context
 from aionode.clock import SteadyClock, perf_ns
 from aionode.system import System, SystemLog
 from tests.bytecode import share_bytecode
 from tests.support.peers import isolated_environment
-from tests.system.left import MARK, left
+from tests.system.left import MARK, guardian, left
 
 MEMBERS = 50
 
@@ -116,16 +114,18 @@ async def crowd(seconds: float, folder: Path) -> None:
     async with system:
         add_members(system, ends)
         await system.ready()
-        guardian = psutil.Process(system.guard._process.pid if system.guard._process else 0)
-        times = [cpu_s(), sum(guardian.cpu_times()[:2])]
+        watcher = guardian()
+        times = [cpu_s(), sum(watcher.cpu_times()[:2])]
         begin_ns = perf_ns()
         killed = await kill_some(system, seconds)
         took_s = (perf_ns() - begin_ns) / 1e9
         shares = [
             (cpu_s() - times[0]) / took_s,
-            (sum(guardian.cpu_times()[:2]) - times[1]) / took_s,
+            (sum(watcher.cpu_times()[:2]) - times[1]) / took_s,
         ]
-        restarts = sum(one.restarts for name, one in system.status().items() if "member" in name)
+        restarts = sum(
+            status.restarts for name, status in system.status().items() if "member" in name
+        )
         stop_ns = perf_ns()
     check(restarts >= killed - 1, f"{killed} processes killed, {restarts} restarts")
     check(

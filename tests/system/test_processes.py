@@ -15,6 +15,7 @@ from typing import Any, ClassVar
 import pytest
 
 from aionode import Context, Node
+from aionode._sudden_end import SENDS
 from aionode.errors import MemberNotFoundError, NotReadyError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
@@ -32,6 +33,7 @@ from aionode.system import (
 from aionode.system._process import ProcessMember
 from aionode.testing import settle
 from tests.support.waiting import until
+from tests.system.left import guardian
 
 FOREVER = ["sleep", "1000"]
 SUPERVISED = f"while kill -0 {os.getpid()}"
@@ -223,7 +225,7 @@ async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_kill
         system.process("forking", ["sh", "-c", forking], term_after_sec=0.1)
         await until(lambda: orphan.exists() and orphan.read_text())
         await until(lambda: all(system.log.last_lines(one) for one in ("first", "second")))
-        kill_guardian(system)
+        guardian().kill()
         await system.wait()
         assert not system.health().ok
         with pytest.raises(NotReadyError, match="could not be started"):
@@ -241,7 +243,7 @@ async def test_a_program_that_ends_after_the_guardian_was_killed_has_ended(syste
         system.process("brief", FOREVER)
         await system.ready()
         pid = system.status()["brief"].pid
-        kill_guardian(system)
+        guardian().kill()
         await system.wait()
         os.kill(pid or 0, signal.SIGTERM)
         await until(lambda: system.status()["brief"].state == "failed")
@@ -260,7 +262,7 @@ async def test_what_is_being_stopped_is_stopped_although_the_guardian_is_killed_
         async with asyncio.TaskGroup() as tasks:
             stop = tasks.create_task(system.stop("slow"))
             await until(lambda: system.status()["slow"].state == "stopping")
-            kill_guardian(system)
+            guardian().kill()
             async with asyncio.timeout(20.0):
                 await stop
 
@@ -274,16 +276,11 @@ async def test_a_second_signal_kills_all_although_the_guardian_was_killed(system
         system.process("deaf", ["sh", "-c", script])
         await until(lambda: system.log.last_lines("deaf"))
         pid = system.status()["deaf"].pid
-        kill_guardian(system)
+        guardian().kill()
         await system.wait()
-        system.guard._kill_at_sudden_end(0)
+        for send in SENDS:
+            send(0)
         await until(lambda: not alive(pid))
-
-
-def kill_guardian(system: System) -> None:
-    """Kill the guardian of a system."""
-    assert system.guard._process is not None
-    system.guard._process.kill()
 
 
 async def test_a_program_that_ignores_signals_is_killed(system: System) -> None:
