@@ -58,7 +58,7 @@ def all_attacks() -> list[Attack]:
             "connections to their ports that say nothing", "outsider", "keep_connections", pair()
         ),
         Attack(
-            "takes all turns, and pretends 200 sessions",
+            "takes all connect slots, and pretends 200 sessions",
             "other user",
             "pretend_sessions",
             pair(),

@@ -135,7 +135,7 @@ def keep_connections(seconds: float, pids: Sequence[int]) -> int:
 
 
 def pretend_sessions(seconds: float, _: Sequence[int]) -> int:
-    """Take all turns, and have the machine list 200 sessions that nobody has, as another user."""
+    """As another user, take all connect slots, and have the machine list 200 false sessions."""
     os.setgid(65534)
     os.setuid(65534)
     ports = [int(port) for port in os.environ["AIONODE_MEETING_PORTS"].split(",")]

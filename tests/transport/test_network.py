@@ -19,7 +19,7 @@ from aionode.transport._network import (
 )
 from aionode.transport.zenoh._config import probed_ports
 from aionode.transport.zenoh._settings import (
-    INTRODUCERS,
+    GOSSIPING,
     Neighbours,
     router_settings,
     session_settings,
@@ -180,7 +180,7 @@ def test_a_listed_session_introduces_peers_only_if_some_cannot_be_listed(
     network: Network, port: int, *, introduces: bool
 ) -> None:
     """Each would tell all others of each new one; routers introduce as those of ROS do."""
-    others = tuple(range(41000, 41000 + INTRODUCERS))
+    others = tuple(range(41000, 41000 + GOSSIPING))
     found = session_settings(network, (), Neighbours(port, others))
 
     target = found.get("scouting/gossip/target", {"peer": ["router", "peer"]})
@@ -190,7 +190,7 @@ def test_a_listed_session_introduces_peers_only_if_some_cannot_be_listed(
 
 def test_the_first_sessions_introduce_others_wherever_they_listen() -> None:
     """More than one: what Zenoh hears on a connection that is being made is lost."""
-    few = tuple(range(41000, 41000 + INTRODUCERS - 1))
+    few = tuple(range(41000, 41000 + GOSSIPING - 1))
 
     assert "scouting/gossip/target" not in session_settings(Network(), (), Neighbours(40000, few))
 

@@ -1,6 +1,6 @@
-"""The configuration of Zenoh's sessions, the endpoints that they dial, and looks.
+"""The configuration of Zenoh's sessions, the endpoints that they dial, and probes.
 
-A look is a session that is open for some milliseconds, to read the tokens that one endpoint sees.
+A probe is a session that is open for some milliseconds, to read the tokens that one endpoint sees.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 __all__ = [
     "LOOPBACK",
-    "introducers",
-    "is_look",
+    "gossip_endpoints",
+    "is_probe",
     "load_config",
     "near",
-    "open_look",
+    "open_probe",
     "probed_ports",
 ]
 
 LOOPBACK: Final = "127.0.0.1"
 
-LOOK_IDS: Final = "a10de10c"
-"""The prefix of the ids of sessions that are open for one look only."""
+PROBE_IDS: Final = "a10de10c"
+"""The prefix of the ids of sessions that are open for one query only."""
 
 
 def near(network: Network) -> bool:
@@ -54,8 +54,11 @@ def probed_ports(network: Network) -> tuple[int, ...]:
     return (*network.meeting_ports, network.router_port)
 
 
-def introducers(network: Network) -> tuple[str, ...]:
-    """Return the endpoints that a session dials again and again, as far as aionode knows."""
+def gossip_endpoints(network: Network) -> tuple[str, ...]:
+    """Return the endpoints that a session dials again and again, as far as aionode knows.
+
+    A router or peer there is a gossip source: it names other sessions to this one.
+    """
     if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
         return ()
     ports = (*probed_ports(network), *network.spare_ports)
@@ -102,12 +105,12 @@ def load_config(
     return config
 
 
-def is_look(zid: str) -> bool:
-    """Return whether a session is open for one look only, and subscribes to nothing."""
-    return zid.startswith(LOOK_IDS) and len(zid) == 32
+def is_probe(zid: str) -> bool:
+    """Return whether a session is open for one query only, and subscribes to nothing."""
+    return zid.startswith(PROBE_IDS) and len(zid) == 32
 
 
-def open_look(network: Network, endpoint: str, mode: str = "client") -> zenoh.Session:
+def open_probe(network: Network, endpoint: str, mode: str = "client") -> zenoh.Session:
     """Open a session that is connected with one endpoint only.
 
     Raises:
@@ -125,4 +128,4 @@ def open_look(network: Network, endpoint: str, mode: str = "client") -> zenoh.Se
         "transport/unicast/open_timeout": 700,
         "transport/shared_memory/enabled": False,
     }
-    return zenoh.open(load_config(network, {}, LOOK_IDS + secrets.token_hex(12), settings))
+    return zenoh.open(load_config(network, {}, PROBE_IDS + secrets.token_hex(12), settings))

@@ -93,7 +93,7 @@ class Check:
     """A query for all tokens, whose replies are compared with the known ones.
 
     Attributes:
-        found: The tokens in the replies.
+        tokens: The tokens in the replies.
         changed: Tokens that were declared or undeclared meanwhile; replies may be older.
         failed: Whether replies may be missing.
         attempt: Which attempt it is, beginning with 1.
@@ -101,7 +101,7 @@ class Check:
 
     def __init__(self, attempt: int) -> None:
         self.attempt = attempt
-        self.found: set[str] = set()
+        self.tokens: set[str] = set()
         self.changed: set[str] = set()
         self.failed = False
 
@@ -250,7 +250,7 @@ class Watcher:
             if item.ok is None:
                 self._check.failed = True
             else:
-                self._check.found.add(str(item.ok.key_expr))
+                self._check.tokens.add(str(item.ok.key_expr))
         elif isinstance(item, Check):
             self._end_check(item)
         else:
@@ -268,15 +268,15 @@ class Watcher:
         if check is not self._check:
             return
         self._check = None
-        for key in check.found - check.changed:
+        for key in check.tokens - check.changed:
             self._add(key)
         if check.failed or self._state.session is None:
             return
-        if not self._state.own_tokens() <= check.found | check.changed:
+        if not self._state.own_tokens() <= check.tokens | check.changed:
             if check.attempt < ATTEMPTS:
                 self.check(check.attempt + 1)
             return
-        missing = self._known.keys() - check.found - check.changed
+        missing = self._known.keys() - check.tokens - check.changed
         for key in missing & self._missing:
             if key.split("/", 3)[2] not in self._state.connections.kinds:
                 self._remove(key)

@@ -22,7 +22,7 @@ from aionode.clock import perf_ns
 from aionode.errors import ConfigurationError
 from aionode.transport._network import is_near
 from aionode.transport._send_thread import start_thread
-from aionode.transport.zenoh._config import LOOPBACK, load_config, open_look
+from aionode.transport.zenoh._config import LOOPBACK, load_config, open_probe
 from aionode.transport.zenoh._defects.lingering import SocketOptions
 from aionode.transport.zenoh._handlers import reason
 from aionode.transport.zenoh._session import answering_ports, close_session, run_in_own_thread
@@ -141,9 +141,9 @@ class LocalRouter:
         """Return the id of the router at a port of this machine, "unknown" if it does not say."""
         with (
             suppress(zenoh.ZError),
-            closing(open_look(self._network, f"tcp/{LOOPBACK}:{port}")) as look,
+            closing(open_probe(self._network, f"tcp/{LOOPBACK}:{port}")) as probe,
         ):
-            for zid in look.info.routers_zid():
+            for zid in probe.info.routers_zid():
                 return str(zid)
         return "unknown"
 

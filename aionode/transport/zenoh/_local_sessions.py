@@ -71,14 +71,14 @@ def holder_of(port: int) -> int | None:
 
 def reserve_port(host: str) -> socket.socket:
     """Return a socket with a free port, where a session can listen as long as it is open."""
-    one = socket.socket()
+    reserved = socket.socket()
     try:
-        one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        one.bind((host, 0))
+        reserved.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        reserved.bind((host, 0))
     except OSError:
-        one.close()
+        reserved.close()
         raise
-    return one
+    return reserved
 
 
 def address_of(group: int) -> str:

@@ -11,7 +11,7 @@ import zenoh
 from aionode.transport import _content_filters
 from aionode.transport._send_thread import SendThread
 from aionode.transport.base import LinkStatus
-from aionode.transport.zenoh._config import is_look
+from aionode.transport.zenoh._config import is_probe
 from aionode.transport.zenoh._handlers import (
     BLOCK,
     DROP,
@@ -155,8 +155,8 @@ class ZenohPeerDirectory:
         first, self._filters_declared = self._filters_declared, None
         if first is not None:
             declared.append(first)
-        for one in reversed(declared):
-            one.undeclare()
+        for declaration in reversed(declared):
+            declaration.undeclare()
         for queue in (
             self._first_filters,
             self._tokens,
@@ -322,7 +322,7 @@ class ZenohPeerDirectory:
 
     def _classify(self, zid: str) -> None:
         """Note whether a session is connected that has announced nothing."""
-        if zid in self._connected and zid not in self._known and not is_look(zid):
+        if zid in self._connected and zid not in self._known and not is_probe(zid):
             self._unknown.add(zid)
         else:
             self._unknown.discard(zid)

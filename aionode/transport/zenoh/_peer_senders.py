@@ -29,11 +29,11 @@ OVERHEAD_BYTES: Final = 512
 """Bytes that a request or reply takes besides its payload, approximately: its key and headers."""
 
 UNSEEN_BYTES: Final = 256 * 1024
-"""Bytes that a thread sends before it looks again whether the peer takes them; with those of the
+"""Bytes that a thread sends before it checks again whether the peer takes them; with those of the
 loop fewer than Zenoh's queue holds."""
 
-LOOK_S: Final = 0.05
-"""The interval of looks while the peer takes nothing, in seconds."""
+CHECK_S: Final = 0.05
+"""The interval of checks while the peer takes nothing, in seconds."""
 
 MOST_THREADS: Final = 200
 """Number of peers that have a thread of their own at once; the others share `SHARED` threads. A
@@ -69,17 +69,19 @@ class PeerSenders:
 
     Args:
         waker: Wakes the event loop from threads.
-        look: Tells in a thread whether the connection to a participant has room, and how many bytes
-            were written to it so far; None if that is not known.
+        progress: Tells in a thread whether the connection to a participant has room, and how many
+            bytes were written to it so far; None if that is not known.
 
     Attributes:
         is_crowded: Whether threads send everything, as `ControlMessages.is_crowded`.
     """
 
-    def __init__(self, waker: LoopWaker, look: Callable[[str], tuple[bool, int] | None]) -> None:
+    def __init__(
+        self, waker: LoopWaker, progress: Callable[[str], tuple[bool, int] | None]
+    ) -> None:
         self.is_crowded = False
         self._waker = waker
-        self._look = look
+        self._progress = progress
         self._stopped = threading.Event()
         # By participant.
         self._peers: dict[str, PeerSender] = {}
@@ -148,14 +150,14 @@ class PeerSenders:
         has to be written, or there has to be room twice in a row.
         """
         had_room = False
-        while (seen := self._look(participant)) is not None:
+        while (seen := self._progress(participant)) is not None:
             has_room, written_bytes = seen
             is_sent = written_bytes - peer.written_bytes >= peer.unseen_bytes
             if has_room and (is_sent or had_room):
                 peer.written_bytes = written_bytes
                 return
             had_room = has_room
-            if stopped.wait(LOOK_S):
+            if stopped.wait(CHECK_S):
                 return
 
     def _tidy(self) -> None:

@@ -22,7 +22,7 @@ import zenoh
 
 from aionode.errors import ConfigurationError, TransportError
 from aionode.transport._send_thread import SendThread
-from aionode.transport.zenoh._config import open_look
+from aionode.transport.zenoh._config import open_probe
 from aionode.transport.zenoh._handlers import direct, reason
 from aionode.transport.zenoh._session import CLOSE_S
 
@@ -263,7 +263,7 @@ class RouterMatching:
     def _open(self, router: RouterSession, session: zenoh.Session) -> zenoh.Session:
         """Open a session that is connected to the router, and to nothing else."""
         locators = [str(link.dst) for link in session.info.links() if str(link.zid) == router.zid]
-        opened = open_look(self._network, next(iter(locators), ""), mode="peer")
+        opened = open_probe(self._network, next(iter(locators), ""), mode="peer")
 
         def on_event(event: zenoh.TransportEvent) -> None:
             if event.kind == zenoh.SampleKind.DELETE:

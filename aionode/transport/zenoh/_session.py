@@ -19,6 +19,7 @@ from aionode.errors import TransportError
 from aionode.transport._network import network_from
 from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._config import LOOPBACK, load_config, near, probed_ports
+from aionode.transport.zenoh._connect_slots import one_at_a_time
 from aionode.transport.zenoh._defects.closing import cut_unanswered
 from aionode.transport.zenoh._defects.lingering import SocketOptions
 from aionode.transport.zenoh._handlers import reason
@@ -29,7 +30,6 @@ from aionode.transport.zenoh._settings import (
     router_settings,
     session_settings,
 )
-from aionode.transport.zenoh._turns import one_at_a_time
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -176,12 +176,12 @@ def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
 
 def can_listen(address: str, port: int) -> bool:
     """Return whether a port is free."""
-    with socket.socket() as one:
+    with socket.socket() as tried:
         if os.name == "posix":  # elsewhere it means something else
-            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            one.bind((address, port))
-            one.listen()
+            tried.bind((address, port))
+            tried.listen()
         except OSError:
             return False
     return True
@@ -266,7 +266,7 @@ def open_listed(network: Network, participant: str) -> Opened | None:
             mine = next(free, None)
             port = mine or reserved.getsockname()[1]
             presence = failed.enter_context(announce(group, port))
-            # Listed again: one that did not get its turn may have come meanwhile, and if one has
+            # Listed again: one that got no slot may have come meanwhile, and if one has
             # ended while the list was read, another may be missing in it.
             others = (there | (listed(group) or set())) - {port}
         # Other programs may listen there, or processes of aionode that cannot be listed.

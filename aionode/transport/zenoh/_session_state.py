@@ -30,7 +30,7 @@ from aionode.transport.zenoh._handlers import translated
 from aionode.transport.zenoh._peer_senders import PeerSenders
 from aionode.transport.zenoh._request_room import RequestRoom
 from aionode.transport.zenoh._settings import FLUSH_S
-from aionode.transport.zenoh._sockets import look
+from aionode.transport.zenoh._sockets import send_progress
 from aionode.wire._key_expression import data_key
 from aionode.wire._liveliness import endpoint_token, gid_of
 
@@ -152,7 +152,7 @@ class SessionState:
         self.control_messages = ControlMessages(self.bulk, queue_bytes)
         self._calm: asyncio.TimerHandle | None = None  # ends a crowd
         self.announced.on_crowded.append(self.note_crowd)
-        self.peer_senders = PeerSenders(self.waker, self._look)
+        self.peer_senders = PeerSenders(self.waker, self._send_progress)
         self.burst = Burst()
         self.acknowledgements = Acknowledgements(
             *(participant, domain_id, self.waker, self.note_malformed, self._acknowledges),
@@ -218,7 +218,7 @@ class SessionState:
 
     def own_tokens(self) -> set[str]:
         """Return the tokens of what is declared in the session."""
-        return {each.token for each in self._declarations if each.is_declared and each.token}
+        return {known.token for known in self._declarations if known.is_declared and known.token}
 
     def remove(self, declaration: Declaration) -> None:
         """Forget `declaration`."""
@@ -248,13 +248,13 @@ class SessionState:
             if declaration.needs_graph and self.session is not None:
                 declaration.declare(self.session)
 
-    def _look(self, participant: str) -> tuple[bool, int] | None:
-        """Return the state of the connection to a participant, as `look`; called in a thread."""
+    def _send_progress(self, participant: str) -> tuple[bool, int] | None:
+        """Return the progress of the sends to a participant; called in a thread."""
         session = self.session
         if session is None:
             return None
         try:
-            return look(session, participant)
+            return send_progress(session, participant)
         except zenoh.ZError:  # the session was closed meanwhile
             return None
 

@@ -43,7 +43,7 @@ BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
 """The priorities of what the loop sends, tokens, requests and replies, messages, and that of
 messages which late readers get, too."""
 
-INTRODUCERS: Final = 4
+GOSSIPING: Final = 4
 """Number of listed sessions that tell all others by gossip of sessions that are not listed, such as
 those of other programs. One is too few: Zenoh drops gossip on a connection that it is just taking
 into use. With all of them a hundred would send half a million messages.
@@ -101,9 +101,7 @@ def session_settings(
     if neighbours is not None:
         listen = [neighbours.port]
         dial = [*neighbours.others, network.router_port]
-        introduces = (
-            len(neighbours.others) < INTRODUCERS or neighbours.port in network.meeting_ports
-        )
+        introduces = len(neighbours.others) < GOSSIPING or neighbours.port in network.meeting_ports
         if not (introduces or subnet or network.near_peers):
             gossip["scouting/gossip/target"] = {"router": ["router"], "peer": ["router"]}
     else:

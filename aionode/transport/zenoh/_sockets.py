@@ -47,10 +47,10 @@ __all__ = [
     "duplicates",
     "find",
     "info_of",
-    "look",
     "number_in",
     "pair_of",
     "polled_by_zenoh",
+    "send_progress",
     "split_locator",
 ]
 
@@ -104,8 +104,8 @@ Address = tuple[bytes, int]
 Descriptor = tuple[int, int]
 """The number of a descriptor and that of its inode, as the first is used again."""
 
-lock = threading.Lock()  # held to read and change `found`
-found: dict[Pair, Descriptor] = {}
+lock = threading.Lock()  # held to read and change `known`
+known: dict[Pair, Descriptor] = {}
 """Descriptors of connections found before, so that most searches read neither list."""
 
 
@@ -170,15 +170,15 @@ def find(pairs: Collection[Pair]) -> dict[Pair, Descriptor]:
     It may take some milliseconds, and is no work for the event loop.
     """
     with lock:
-        result = {pair: found[pair] for pair in pairs if pair in found and is_open(found[pair])}
+        result = {pair: known[pair] for pair in pairs if pair in known and is_open(known[pair])}
         missing = {pair for pair in pairs if pair not in result}
         if missing and (inodes := inodes_of(missing)):
             numbers = {inode: number for number, inode in sockets()}
-            for pair in [pair for pair, (_, inode) in found.items() if inode not in numbers]:
-                del found[pair]
+            for pair in [pair for pair, (_, inode) in known.items() if inode not in numbers]:
+                del known[pair]
             for pair, inode in inodes.items():
                 if inode in numbers:
-                    result[pair] = found[pair] = numbers[inode], inode
+                    result[pair] = known[pair] = numbers[inode], inode
         return result
 
 
@@ -272,7 +272,7 @@ def polled_by_zenoh() -> set[Descriptor]:
         if target == EVENT_POLL:
             with suppress(OSError), open(f"{DETAILS}/{number}") as details:  # noqa: PTH123
                 text = details.read()
-                polled.update((int(one), int(ino, 16)) for one, ino in POLLED.findall(text))
+                polled.update((int(number), int(ino, 16)) for number, ino in POLLED.findall(text))
     return polled
 
 
@@ -283,10 +283,10 @@ def duplicates(those: Iterable[Descriptor]) -> Iterator[tuple[Descriptor, socket
     descriptors that a process may have.
     """
     for descriptor in those:
-        one = duplicate(descriptor) if is_open(descriptor) else None
-        if one is not None:
-            with one:
-                yield descriptor, one
+        copy = duplicate(descriptor) if is_open(descriptor) else None
+        if copy is not None:
+            with copy:
+                yield descriptor, copy
 
 
 def duplicate(descriptor: Descriptor) -> socket.socket | None:
@@ -304,9 +304,9 @@ def duplicate(descriptor: Descriptor) -> socket.socket | None:
     return None
 
 
-def info_of(one: socket.socket) -> bytes:
+def info_of(copy: socket.socket) -> bytes:
     """Return the beginning of the ``struct tcp_info`` of a connection."""
-    return one.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)
+    return copy.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)
 
 
 def number_in(info: bytes, field: slice) -> int:
@@ -326,24 +326,24 @@ def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
     import termios
 
     arrived = {}
-    for descriptor, one in duplicates(own):
-        unread = fcntl.ioctl(one, termios.FIONREAD, bytes(4))
+    for descriptor, copy in duplicates(own):
+        unread = fcntl.ioctl(copy, termios.FIONREAD, bytes(4))
         arrived[str(own[descriptor].dst)] = (
-            number_in(info_of(one), RECEIVED),
+            number_in(info_of(copy), RECEIVED),
             int.from_bytes(unread, sys.byteorder),
         )
     return arrived
 
 
-def look(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
+def send_progress(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
     """Return whether the socket to a peer has room, and how many bytes were written to it so far.
 
     None if there is no such socket, or the system does not tell.
     """
-    for _, one in duplicates(connections(session, {participant})):
+    for _, copy in duplicates(connections(session, {participant})):
         poll = select.poll()
-        poll.register(one, select.POLLOUT)
-        return bool(poll.poll(0)), number_in(info_of(one), ACKED) + queued_bytes(one)
+        poll.register(copy, select.POLLOUT)
+        return bool(poll.poll(0)), number_in(info_of(copy), ACKED) + queued_bytes(copy)
     return None
 
 
@@ -354,8 +354,8 @@ def cut(those: Iterable[Descriptor], linger: bytes = NO_LINGER) -> None:
         those: The sockets of Zenoh.
         linger: SO_LINGER; another one if the peer is not to get what has been sent.
     """
-    for _, one in duplicates(those):
+    for _, copy in duplicates(those):
         with suppress(OSError):  # it is lost already
-            logger.debug("%s: the connection is cut", one.getpeername())
-            one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
-            one.shutdown(socket.SHUT_RDWR)
+            logger.debug("%s: the connection is cut", copy.getpeername())
+            copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
+            copy.shutdown(socket.SHUT_RDWR)

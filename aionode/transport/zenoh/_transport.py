@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import perf_ns
 from aionode.transport.base import Transport
+from aionode.transport.zenoh._connect_slots import connecting
 from aionode.transport.zenoh._defects.closing import cut_stuck
-from aionode.transport.zenoh._defects.forgotten_peers import Recovery, nodes_at_introducer
+from aionode.transport.zenoh._defects.forgotten_peers import Recovery, nodes_at_gossip_source
 from aionode.transport.zenoh._defects.lingering import SocketOptions
 from aionode.transport.zenoh._defects.scarcity import refuse_scarcity
 from aionode.transport.zenoh._defects.stale_transports import StaleTransports
@@ -29,7 +30,6 @@ from aionode.transport.zenoh._session import (
 from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._sockets import arrived_bytes
 from aionode.transport.zenoh._subscription import ZenohReader
-from aionode.transport.zenoh._turns import connecting
 
 if TYPE_CHECKING:
     import socket
@@ -196,12 +196,12 @@ class ZenohTransport(Transport):
         return len(self._state.connections.kinds) >= self._expected
 
     async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
-        """Return the nodes that an introducer sees and the graph has not; None without answer."""
+        """Return the nodes that a gossip source sees and the graph has not; None without answer."""
         ends_ns = perf_ns() + int(quiet_s * 1e9)
         while True:
             known = self._watcher.node_tokens()
-            look = partial(nodes_at_introducer, session, self.network, known)
-            seen = await run_in_own_thread(look)
+            ask = partial(nodes_at_gossip_source, session, self.network, known)
+            seen = await run_in_own_thread(ask)
             if seen is not None:
                 return set(filterfalse(self._watcher.knows, seen))
             if perf_ns() > ends_ns:

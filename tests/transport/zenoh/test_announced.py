@@ -82,7 +82,7 @@ def test_contexts_that_acknowledge_are_limited_present_or_gone() -> None:
 
 
 def test_namespaces_of_bridges_are_limited(caplog: pytest.LogCaptureFixture) -> None:
-    """Each costs a look for each name of this context, and is remembered for good."""
+    """Each is compared with each name of this context, and is remembered for good."""
     state = BridgeState("a1", DOMAIN_ID, MachineTime(), LoopWaker())
     for number in range(150):
         state.add_bridge(f"{number:x}", f"robot{number}/")

@@ -18,11 +18,11 @@ from aionode._concurrency import checkpoint
 from aionode.graph import Graph, NodeInfo
 from aionode.transport._network import Network, network_from
 from aionode.transport.zenoh import _config, _sockets
-from aionode.transport.zenoh._config import LOOK_IDS, is_look
+from aionode.transport.zenoh._config import PROBE_IDS, is_probe
 from aionode.transport.zenoh._defects import forgotten_peers as recovery
 from aionode.transport.zenoh._defects import stale_transports
 from aionode.transport.zenoh._defects.forgotten_peers import (
-    Introducer,
+    GossipSource,
     Recovery,
     addresses_of,
     participant_of,
@@ -47,13 +47,14 @@ pytestmark = pytest.mark.one_loop
 
 LIMIT_S = 15.0
 
-Looks = list[set[str] | None]
-"""What looks have found to be missing, and cut connections for; None if they decided nothing."""
+Comparisons = list[set[str] | None]
+"""The missing participants of each comparison, which cuts connections; None if it decided
+nothing."""
 
 
 @pytest.fixture(autouse=True)
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Look as early as possible: no other process uses these ports."""
+    """Compare as early as possible: no other process uses these ports."""
     monkeypatch.setattr(recovery, "FIRST_S", 0.1)
     monkeypatch.setattr(recovery, "SURE_S", 0.05)
 
@@ -220,17 +221,17 @@ class Forgetful:
 
 
 @pytest.fixture
-def looks(monkeypatch: pytest.MonkeyPatch) -> Looks:
-    """What looks find, which are made again soon."""
+def comparisons(monkeypatch: pytest.MonkeyPatch) -> Comparisons:
+    """What comparisons find, which are made again soon."""
     monkeypatch.setattr(recovery, "AGAIN_S", 0.05)
-    found: Looks = []
-    take_look = Recovery._take_look
+    found: Comparisons = []
+    take_comparison = Recovery._take_comparison
 
-    def on_look(self: Recovery, missing: set[str] | None) -> None:
-        take_look(self, missing)
+    def on_comparison(self: Recovery, missing: set[str] | None) -> None:
+        take_comparison(self, missing)
         found.append(missing)
 
-    monkeypatch.setattr(Recovery, "_take_look", on_look)
+    monkeypatch.setattr(Recovery, "_take_comparison", on_comparison)
     return found
 
 
@@ -240,30 +241,30 @@ def all_ways(transport: ZenohTransport) -> set[Descriptor]:
     return set(_sockets.connections(session))
 
 
-async def have_more(looks: Looks, count: int) -> None:
-    """Wait for so many further looks."""
+async def have_more(comparisons: Comparisons, count: int) -> None:
+    """Wait for so many further comparisons."""
     async with asyncio.timeout(2 * LIMIT_S):
-        wanted = len(looks) + count
-        await until(lambda: len(looks) >= wanted)
+        wanted = len(comparisons) + count
+        await until(lambda: len(comparisons) >= wanted)
 
 
-async def test_one_that_ended_is_looked_for_and_nothing_is_cut(looks: Looks) -> None:
+async def test_one_that_ended_is_looked_for_and_nothing_is_cut(comparisons: Comparisons) -> None:
     """No other session sees it either."""
     async with robot("one", "two") as (one, _), context("a1") as ours:
         await until_seen(ours, "one", "two")
         await asyncio.to_thread(one.close)
         await until_seen(ours, "two")
         ways = all_ways(ours)
-        looks.clear()  # those made while the sessions were opened
+        comparisons.clear()  # those made while the sessions were opened
         async with asyncio.timeout(2 * LIMIT_S):
-            await until(lambda: set() in looks)
+            await until(lambda: set() in comparisons)
 
         assert all_ways(ours) == ways
 
 
 @pytest.mark.parametrize("named", ["nothing", "own", "half"])
 async def test_an_incomplete_answer_of_the_own_session_cuts_nobody_off(
-    named: str, looks: Looks
+    named: str, comparisons: Comparisons
 ) -> None:
     """A query that ended too early named none of 169 tokens, and all connections were cut.
 
@@ -291,7 +292,7 @@ async def test_an_incomplete_answer_of_the_own_session_cuts_nobody_off(
         await asyncio.to_thread(one.close)
         await until_seen(ours, *names[1:])
         ways = all_ways(ours)
-        await have_more(looks, 6)
+        await have_more(comparisons, 6)
 
         assert all_ways(ours) == ways
         (query,) = asked.items
@@ -303,20 +304,20 @@ async def test_an_incomplete_answer_of_the_own_session_cuts_nobody_off(
 def looking(
     monkeypatch: pytest.MonkeyPatch, names: Callable[[str], bool], times: int, **options: bool
 ) -> None:
-    """Have the next looks at the introducer lack all tokens but some."""
-    open_look = _config.open_look
+    """Have the next comparisons at the gossip source lack all tokens but some."""
+    open_probe = _config.open_probe
     left = iter(range(times))
 
-    def look(network: Network, endpoint: str) -> Any:
-        session = open_look(network, endpoint)
+    def probe(network: Network, endpoint: str) -> Any:
+        session = open_probe(network, endpoint)
         return session if next(left, None) is None else Forgetful(session, names, **options)
 
-    monkeypatch.setattr(recovery, "open_look", look)
+    monkeypatch.setattr(recovery, "open_probe", probe)
 
 
 @pytest.mark.parametrize("in_time", [True, False])
-async def test_an_incomplete_answer_of_the_introducer_cuts_nobody_off(
-    in_time: bool, looks: Looks, monkeypatch: pytest.MonkeyPatch
+async def test_an_incomplete_answer_of_the_gossip_source_cuts_nobody_off(
+    in_time: bool, comparisons: Comparisons, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It had named nobody, so that this context was taken for one that it does not see.
 
@@ -326,20 +327,20 @@ async def test_an_incomplete_answer_of_the_introducer_cuts_nobody_off(
         await until_seen(ours, "one", "two", "three")
         await asyncio.to_thread(one.close)
         await until_seen(ours, "two", "three")
-        await have_more(looks, 1)
+        await have_more(comparisons, 1)
         ways = all_ways(ours)
         looking(monkeypatch, lambda _: False, 2, in_time=in_time)
-        await have_more(looks, 4)
+        await have_more(comparisons, 4)
 
         assert all_ways(ours) == ways
 
 
-async def test_an_answer_of_the_introducer_that_lacks_only_this_context_cuts_nobody_off(
-    looks: Looks, monkeypatch: pytest.MonkeyPatch
+async def test_an_answer_of_the_gossip_source_that_lacks_only_this_context_cuts_nobody_off(
+    comparisons: Comparisons, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Beside ROS nodes, the token of this context is the only one that a query asks for.
 
-    An answer that ended too early in two looks cut the connection to a router that saw this
+    An answer that ended too early in two comparisons cut the connection to a router that saw this
     context: in one of ten runs of another test here.
     """
     answers = itertools.count()
@@ -351,24 +352,24 @@ async def test_an_answer_of_the_introducer_that_lacks_only_this_context_cuts_nob
         await until_seen(ours, "one", "two", "three")
         await asyncio.to_thread(one.close)
         await until_seen(ours, "two", "three")
-        await have_more(looks, 1)
+        await have_more(comparisons, 1)
         ways = all_ways(ours)
         looking(monkeypatch, is_named, 4)
-        await have_more(looks, 2)
+        await have_more(comparisons, 2)
 
         assert all_ways(ours) == ways
 
 
 @pytest.mark.parametrize("sees", ["the others", "nobody"])
-async def test_an_introducer_that_does_not_see_this_context_is_connected_anew(
-    sees: str, looks: Looks, monkeypatch: pytest.MonkeyPatch
+async def test_a_gossip_source_that_does_not_see_this_context_is_connected_anew(
+    sees: str, comparisons: Comparisons, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At once if it sees the others, and if it sees nobody when it still does not a look later."""
+    """At once if it sees the others; one comparison later if it sees nobody."""
     async with robot("one", "two") as (one, *_), context("a1") as ours:
         await until_seen(ours, "one", "two")
         await asyncio.to_thread(one.close)
         await until_seen(ours, "two")
-        await have_more(looks, 1)
+        await have_more(comparisons, 1)
         session: Any = ours._state.session
         (router,) = (str(zid) for zid in session.info.routers_zid())
         ways = ways_between(ours, router)
@@ -377,10 +378,10 @@ async def test_an_introducer_that_does_not_see_this_context_is_connected_anew(
             return sees == "the others" and participant_of(token) != "a1"
 
         looking(monkeypatch, is_seen, 4)
-        looks.clear()
+        comparisons.clear()
         async with asyncio.timeout(LIMIT_S):
             while ways & all_ways(ours):
-                await have_more(looks, 1)
+                await have_more(comparisons, 1)
             await until(lambda: ways_between(ours, router))
 
 
@@ -394,7 +395,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
         monkeypatch.setattr(recovery, "seen_at", lambda _, __, *keys, **___: tokens(session, *keys))
         await until_seen(ours, "b2")
         token = announce(session, "c3", "brought")
-        way = Introducer("", "")
+        way = GossipSource("", "")
         missing, is_sure = await asyncio.to_thread(
             lambda: ours._recovery._missing(session, way, {"b2", "c3"}, set())
         )
@@ -404,7 +405,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
     assert is_sure
 
 
-async def test_a_look_makes_no_unannounced_peer() -> None:
+async def test_a_probe_makes_no_unannounced_peer() -> None:
     """Else everything would go both ways for as long as it takes."""
     async with context("a1") as first, context("b2") as second:
         await until_seen(first, "b2")
@@ -415,9 +416,7 @@ async def test_a_look_makes_no_unannounced_peer() -> None:
         first.peer_directory.on_unannounced_peers = told.append
         session = second._state.session
         assert session is not None
-        way = await asyncio.to_thread(
-            lambda: recovery.introducer_connection(session, second.network)
-        )
+        way = await asyncio.to_thread(lambda: recovery.gossip_source(session, second.network))
         assert way is not None
         missing, is_sure = await asyncio.to_thread(
             lambda: second._recovery._missing(session, way, set(), set())
@@ -470,7 +469,7 @@ async def test_a_connection_that_takes_long_to_be_made_is_not_given_up() -> None
         token.undeclare()
 
 
-async def test_an_unreachable_participant_is_given_up(looks: Looks) -> None:
+async def test_an_unreachable_participant_is_given_up(comparisons: Comparisons) -> None:
     """A program on a host that only the router reaches would be looked for for ever."""
     async with robot("theirs", "one") as (_, one), context("a1") as ours:
         router_port = os.environ["AIONODE_ROUTER_PORT"]
@@ -487,16 +486,16 @@ async def test_an_unreachable_participant_is_given_up(looks: Looks) -> None:
             await until_seen(ours, "theirs", "one")
             await asyncio.to_thread(one.close)
             async with asyncio.timeout(3 * LIMIT_S):
-                await until(lambda: times_found(looks, zid) == recovery.ATTEMPTS)
-            await have_more(looks, 3)
+                await until(lambda: times_found(comparisons, zid) == recovery.ATTEMPTS)
+            await have_more(comparisons, 3)
             token.undeclare()
 
-    assert times_found(looks, zid) == recovery.ATTEMPTS
+    assert times_found(comparisons, zid) == recovery.ATTEMPTS
 
 
-def times_found(looks: Looks, zid: str) -> int:
-    """Return how many looks found that a participant is missing, and cut connections for it."""
-    return sum(missing is not None and zid in missing for missing in looks)
+def times_found(comparisons: Comparisons, zid: str) -> int:
+    """Return how many comparisons cut connections for a participant that is missing."""
+    return sum(missing is not None and zid in missing for missing in comparisons)
 
 
 async def test_the_graph_is_compared_with_the_tokens_that_are_there() -> None:
@@ -585,12 +584,12 @@ def test_an_endpoint_by_name_has_addresses() -> None:
     assert list(addresses_of("tcp/no.such.host.invalid:1")) == []
 
 
-def test_a_look_is_known_by_its_id() -> None:
+def test_a_probe_is_known_by_its_id() -> None:
     """The ids of all others are random."""
-    assert is_look(LOOK_IDS + "0" * 24)
-    assert not is_look("a1")
+    assert is_probe(PROBE_IDS + "0" * 24)
+    assert not is_probe("a1")
     with closing(ros_session()) as session:
-        assert not is_look(str(session.zid()))
+        assert not is_probe(str(session.zid()))
 
 
 @asynccontextmanager

@@ -26,7 +26,7 @@ from aionode.transport.zenoh._session import (
     run_in_own_thread,
     speaking_ports,
 )
-from aionode.transport.zenoh._settings import INTRODUCERS
+from aionode.transport.zenoh._settings import GOSSIPING
 from tests.support.peers import free_ports, quiet_node, ros_router, ros_session
 
 pytestmark = pytest.mark.one_loop
@@ -167,7 +167,7 @@ async def test_a_process_that_cannot_list_or_be_listed_meets_all_others(
     monkeypatch: pytest.MonkeyPatch, place: int
 ) -> None:
     """As many as there are here all introduce it, also to those that have no meeting port."""
-    names = [f"n{number}" for number in range(INTRODUCERS)]
+    names = [f"n{number}" for number in range(GOSSIPING)]
     async with AsyncExitStack() as stack:
         nodes = []
         for number, name in enumerate(names):

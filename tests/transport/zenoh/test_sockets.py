@@ -176,7 +176,7 @@ def test_a_connection_is_searched_for_once(
         monkeypatch.setattr(_sockets, "SOCK_DIAG", -1)
 
         assert find(pairs) == first
-        assert set(_sockets.found) >= pairs
+        assert set(_sockets.known) >= pairs
 
 
 def test_what_was_found_is_forgotten_when_its_connection_is_closed() -> None:
@@ -189,7 +189,7 @@ def test_what_was_found_is_forgotten_when_its_connection_is_closed() -> None:
         with dialling("127.0.0.1", port) as session:
             find(pairs_of(session))
 
-    assert pairs.isdisjoint(_sockets.found)
+    assert pairs.isdisjoint(_sockets.known)
 
 
 def test_searching_opens_one_descriptor_at_a_time() -> None:
@@ -215,7 +215,7 @@ async def test_locks_of_the_program_outlast_all_that_is_done_with_sockets(
         async with two_contexts() as (first, second):
             session, other = session_of(first), str(session_of(second).zid())
             await until(lambda: not any(lingers(session)))  # by SocketOptions
-            assert await asyncio.to_thread(_sockets.look, session, other)
+            assert await asyncio.to_thread(_sockets.send_progress, session, other)
             assert await asyncio.to_thread(_sockets.arrived_bytes, session)
             await asyncio.to_thread(closing_defect.unanswered)
             before = pairs_of(session)

@@ -14,5 +14,5 @@ acknowledges those of KEEP_ALL).
 
 Behaviour that Zenoh documents is no defect, though aionode has to live with it: DROP drops without
 a word (`_acknowledgements`), a router carries nothing between its peers (`_local_router`,
-`_router_matching`), gossip tells all of all (`_local_sessions`, `_turns`).
+`_router_matching`), gossip tells all of all (`_local_sessions`, `_connect_slots`).
 """

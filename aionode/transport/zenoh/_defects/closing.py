@@ -69,7 +69,7 @@ def is_mended() -> bool:
 def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:
     """Return how many bytes wait in each socket of a session; not those with none."""
     own = connections(session)
-    waiting = {descriptor: queued_bytes(one) for descriptor, one in duplicates(own)}
+    waiting = {descriptor: queued_bytes(copy) for descriptor, copy in duplicates(own)}
     return {descriptor: size for descriptor, size in waiting.items() if size}
 
 
@@ -78,17 +78,17 @@ def unanswered() -> set[Descriptor]:
 
     Of all sessions of the process: the system does not tell them apart.
     """
-    return {descriptor for descriptor, one in duplicates(polled_by_zenoh()) if is_unanswered(one)}
+    return {descriptor for descriptor, copy in duplicates(polled_by_zenoh()) if is_unanswered(copy)}
 
 
-def is_unanswered(one: socket.socket) -> bool:
+def is_unanswered(copy: socket.socket) -> bool:
     """Return whether a socket has the options of Zenoh, is connected, and has received nothing."""
-    if one.type != socket.SOCK_STREAM or one.family not in INTERNET:
+    if copy.type != socket.SOCK_STREAM or copy.family not in INTERNET:
         return False
-    if one.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) != ZENOH_LINGER:
+    if copy.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) != ZENOH_LINGER:
         return False
-    info = info_of(one)
-    sent = number_in(info, ACKED) + queued_bytes(one)
+    info = info_of(copy)
+    sent = number_in(info, ACKED) + queued_bytes(copy)
     return info[0] == ESTABLISHED and not number_in(info, RECEIVED) and sent <= FIRST_BYTES
 
 

@@ -11,10 +11,10 @@ Seen in:
     1.8.0, 1.9.0, 1.10.2
 Mend:
     After the loss of a connection, the tokens that this session sees are compared with those that
-    its introducer (a router, or the peer at a configured endpoint) sees: a look queries them. If
-    the introducer sees a participant that this session does not, or to which it has lost the
-    connection, or does not see this session, the connection to the introducer is cut, and Zenoh
-    makes it anew at once, with all introductions.
+    its gossip source (a router, or the peer at a configured endpoint) sees: a probe asks for them.
+    If that source sees a participant that this session does not, or to which it has lost the
+    connection, or does not see this session, the connection to the source is cut, and Zenoh makes
+    it anew at once: the source names all others again.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ import zenoh
 
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
-from aionode.transport.zenoh._config import introducers, open_look
+from aionode.transport.zenoh._config import gossip_endpoints, open_probe
 from aionode.transport.zenoh._defects._switch import is_mended
 from aionode.transport.zenoh._defects.incomplete_answers import ANSWER_S, tokens
 from aionode.transport.zenoh._sockets import connections, cut, pair_of, split_locator
@@ -46,22 +46,24 @@ if TYPE_CHECKING:
     from aionode.transport.zenoh._session_state import SessionState
     from aionode.transport.zenoh._sockets import Address
 
-__all__ = ["Recovery", "nodes_at_introducer"]
+__all__ = ["Recovery", "nodes_at_gossip_source"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
 FIRST_S: Final = 0.5
-"""Delay of the first look after a connection was lost or made, in seconds; Zenoh needs
+"""Delay of the first comparison after a connection was lost or made, in seconds; Zenoh needs
 milliseconds."""
 
 POSTPONED_S: Final = 3.0
-"""Time for which connections that go on being made or lost may postpone a look, in seconds."""
+"""Time for which connections that go on being made or lost may postpone a comparison, in
+seconds."""
 
 AGAIN_S: Final = 3.0
-"""The interval of further looks, in seconds: a process that was frozen returns without a sign."""
+"""The interval of further comparisons, in seconds: a process that was frozen returns without a
+sign."""
 
 WATCH_S: Final = 120.0
-"""Time for which looks are repeated after the most recent loss of a connection, in seconds."""
+"""Time for which comparisons are repeated after the last loss of a connection, in seconds."""
 
 SURE_S: Final = 0.3
 """Time for which a participant must be missing, in seconds; a starting one is for milliseconds."""
@@ -76,8 +78,8 @@ CHECKS: Final = 3
 """Number of comparisons of the graph after connections have come or gone."""
 
 
-class Introducer(NamedTuple):
-    """A connection to an introducer.
+class GossipSource(NamedTuple):
+    """A connection to a gossip source.
 
     Attributes:
         zid: The id of its session.
@@ -89,7 +91,7 @@ class Introducer(NamedTuple):
 
 
 class Recovery:
-    """Looks for processes that are alive, but not connected any more.
+    """Finds processes that are alive, but not connected any more.
 
     Args:
         state: The session state of the context.
@@ -102,31 +104,31 @@ class Recovery:
         self._network = network
         self._watcher = watcher
         self._checks = 0
-        self._looks = state.queue(self._take_look)
+        self._comparisons = state.queue(self._take_comparison)
         state.connections.on_change.append(self._take_change)
         self._session: zenoh.Session | None = None
         self._timer: asyncio.TimerHandle | None = None
-        self._looking = False
+        self._is_comparing = False
         self._until_s = 0.0
-        self._changing_since_s = 0.0  # when the first change was seen after the last look
-        # Those that were missing in the last look; used by its thread only.
+        self._changing_since_s = 0.0  # when the first change was seen after the last comparison
+        # Those that were missing in the last comparison; used by its thread only.
         self._suspected: set[str] = set()
         # Number of cuts for each missing participant.
         self._attempts: dict[str, int] = {}
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
-        if introducers(self._network) and is_mended("forgotten_peers"):
+        if gossip_endpoints(self._network) and is_mended("forgotten_peers"):
             self._session = session  # else no endpoint is dialled again
 
     def stop(self) -> None:
-        """Stop watching; a look that is under way ends by itself."""
+        """Stop watching; a comparison that is under way ends by itself."""
         self._session = None
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
-        self._looks.clear()
-        self._looking = False
+        self._comparisons.clear()
+        self._is_comparing = False
         self._until_s = 0.0
         self._attempts.clear()
 
@@ -142,27 +144,27 @@ class Recovery:
         if self._timer is None:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
-            self._look_in(FIRST_S)
+            self._compare_in(FIRST_S)
 
-    def _look_in(self, delay_s: float) -> None:
-        """Look in a while; processes that saw the same end do not all look at once."""
+    def _compare_in(self, delay_s: float) -> None:
+        """Compare in a while; processes that saw the same end do not all do so at once."""
         if self._timer is not None:
             self._timer.cancel()
         spread = 1 + int(self._state.participant[-4:], 16) / 0x10000
-        self._timer = asyncio.get_running_loop().call_later(delay_s * spread, self._look)
+        self._timer = asyncio.get_running_loop().call_later(delay_s * spread, self._compare)
 
-    def _look(self) -> None:
+    def _compare(self) -> None:
         self._timer = None
         session = self._session
         if session is None or self._state.announced.left_out:
             return  # what was left out would pass for lost
-        if self._looking:
-            self._look_in(FIRST_S)
+        if self._is_comparing:
+            self._compare_in(FIRST_S)
             return
         known = self._watcher.node_tokens() | self._state.acknowledgements.tokens()
-        self._looking = start_thread(
+        self._is_comparing = start_thread(
             threading.Thread(
-                target=self._look_in_thread,
+                target=self._compare_in_thread,
                 # Of those that are lost, a router may forward what they send, but not always what
                 # this session sends.
                 args=(session, self._state.connections.lost.copy(), known),
@@ -170,25 +172,25 @@ class Recovery:
             )
         )
 
-    def _look_in_thread(self, session: zenoh.Session, lost: set[str], known: set[str]) -> None:
+    def _compare_in_thread(self, session: zenoh.Session, lost: set[str], known: set[str]) -> None:
         missing: set[str] | None = None
         with suppress(zenoh.ZError, ConfigurationError, TimeoutError):
-            connection = introducer_connection(session, self._network)
+            connection = gossip_source(session, self._network)
             if connection is not None:
                 missing = self._reconnect(session, connection, lost, known)
-        self._looks.put(missing)
+        self._comparisons.put(missing)
 
     def _reconnect(
-        self, session: zenoh.Session, connection: Introducer, lost: set[str], known: set[str]
+        self, session: zenoh.Session, connection: GossipSource, lost: set[str], known: set[str]
     ) -> set[str]:
         """Cut what has to be made anew, and return the participants for which that was done."""
-        found, is_sure = self._missing(session, connection, lost, known)
+        apart, is_sure = self._missing(session, connection, lost, known)
         # Where many start at once, connecting takes seconds, and a cut makes it take longer: one
-        # that was never connected has to be missing in two looks in a row.
-        missing = found & (lost | self._suspected)
+        # that was never connected has to be missing in two comparisons in a row.
+        missing = apart & (lost | self._suspected)
         if is_sure:
-            missing |= found & {self._state.participant}
-        self._suspected = found
+            missing |= apart & {self._state.participant}
+        self._suspected = apart
         if missing:
             threading.Event().wait(SURE_S)
             missing &= self._missing(session, connection, lost, known)[0]
@@ -198,13 +200,13 @@ class Recovery:
         return missing
 
     def _missing(
-        self, session: zenoh.Session, connection: Introducer, lost: set[str], known: set[str]
+        self, session: zenoh.Session, connection: GossipSource, lost: set[str], known: set[str]
     ) -> tuple[set[str], bool]:
         """Return the participants that are not connected as they should be.
 
-        Those that only the introducer sees, lost ones that it sees and that are not connected
-        here, and this one if the introducer does not see it. Besides, whether the last is sure: the
-        introducer sees all others that are connected with both.
+        Those that only the gossip source sees, lost ones that it sees and that are not connected
+        here, and this one if the gossip source does not see it. Besides, whether the last is sure:
+        the gossip source sees all others that are connected with both.
 
         Raises:
             TimeoutError: an answer is not complete.
@@ -225,9 +227,9 @@ class Recovery:
         missing = unseen | unconnected | {participant_of(token) for token in own - there}
         return missing, common <= there
 
-    def _take_look(self, missing: set[str] | None) -> None:
-        """Take what a look has found to be missing; None if it could not be made."""
-        self._looking = False
+    def _take_comparison(self, missing: set[str] | None) -> None:
+        """Take what a comparison has shown to be missing; None if it could not be made."""
+        self._is_comparing = False
         if self._session is None:
             return
         if missing is not None:
@@ -245,12 +247,12 @@ class Recovery:
             self._watcher.check()
         now_s = asyncio.get_running_loop().time()
         if self._timer is None and now_s < self._until_s:
-            self._look_in(FIRST_S if missing else AGAIN_S)
+            self._compare_in(FIRST_S if missing else AGAIN_S)
 
 
 def seen_at(
     network: Network,
-    connection: Introducer,
+    connection: GossipSource,
     *keys: str,
     expected: AbstractSet[str] = frozenset(),
     timeout_s: float = ANSWER_S,
@@ -267,24 +269,24 @@ def seen_at(
     Raises:
         TimeoutError: an answer was not complete in time.
     """
-    with closing(open_look(network, connection.endpoint)) as look:
-        return tokens(look, *keys, expected=expected, timeout_s=timeout_s)
+    with closing(open_probe(network, connection.endpoint)) as probe:
+        return tokens(probe, *keys, expected=expected, timeout_s=timeout_s)
 
 
-def nodes_at_introducer(
+def nodes_at_gossip_source(
     session: zenoh.Session, network: Network, known: AbstractSet[str]
 ) -> set[str] | None:
-    """Return the tokens of all nodes that an introducer sees, if there is one.
+    """Return the tokens of all nodes that a gossip source sees, if there is one.
 
     None if it does not answer, or not completely.
 
     Args:
-        session: The session, which is connected with an introducer or not.
+        session: The session, which is connected with a gossip source or not.
         network: The settings of the context.
         known: The tokens of nodes that are known; without them an answer may not be complete.
     """
     try:
-        connection = introducer_connection(session, network)
+        connection = gossip_source(session, network)
         if connection is None:
             return set()
         nodes = f"{ROS_PREFIX}/{network.domain_id}/*/*/*/NN/**"
@@ -303,18 +305,20 @@ def participant_of(token: str) -> str:
     return token.split("/", 3)[2]
 
 
-def introducer_connection(session: zenoh.Session, network: Network) -> Introducer | None:
-    """Return a connection to an introducer, a router if there is one."""
+def gossip_source(session: zenoh.Session, network: Network) -> GossipSource | None:
+    """Return a connection to a gossip source, a router if there is one."""
     routers = {str(zid) for zid in session.info.routers_zid()}
-    found = []
+    sources = []
     dialled = {
-        address: endpoint for endpoint in introducers(network) for address in addresses_of(endpoint)
+        address: endpoint
+        for endpoint in gossip_endpoints(network)
+        for address in addresses_of(endpoint)
     }
     for link in session.info.links():
         pair = pair_of(link)
         if pair is not None and pair.remote in dialled:
-            found.append(Introducer(str(link.zid), dialled[pair.remote]))
-    return min(found, key=lambda connection: connection.zid not in routers, default=None)
+            sources.append(GossipSource(str(link.zid), dialled[pair.remote]))
+    return min(sources, key=lambda connection: connection.zid not in routers, default=None)
 
 
 def addresses_of(endpoint: str) -> Iterator[Address]:
@@ -322,5 +326,5 @@ def addresses_of(endpoint: str) -> Iterator[Address]:
     where = split_locator(endpoint)
     if where is not None:
         with suppress(OSError):
-            for family, *_, found in socket.getaddrinfo(*where, type=socket.SOCK_STREAM):
-                yield socket.inet_pton(family, str(found[0]).partition("%")[0]), int(found[1])
+            for family, *_, address in socket.getaddrinfo(*where, type=socket.SOCK_STREAM):
+                yield socket.inet_pton(family, str(address[0]).partition("%")[0]), int(address[1])

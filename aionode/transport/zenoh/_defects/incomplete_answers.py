@@ -58,14 +58,14 @@ def tokens(
     Raises:
         TimeoutError: an answer was not complete in time; tokens that it lacks may exist.
     """
-    found: set[str] = set()
+    named: set[str] = set()
     ends_ns = perf_ns() + int(ANSWERS_S * 1e9)
     for _ in range(ANSWERS if is_mended("incomplete_answers") else 1):
         for key in keys:
-            found.update(answer(session, key, timeout_s))
-        if expected <= found or perf_ns() > ends_ns:
+            named.update(answer(session, key, timeout_s))
+        if expected <= named or perf_ns() > ends_ns:
             break
-    return found
+    return named
 
 
 def answer(session: zenoh.Session, key: str, timeout_s: float) -> Iterator[str]:

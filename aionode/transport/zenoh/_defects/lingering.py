@@ -102,9 +102,9 @@ class SocketOptions:
             new = self._new.copy()
             self._new.clear()
         peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}
-        for descriptor, one in duplicates(peers):
+        for descriptor, copy in duplicates(peers):
             limit_ms = unread_ms() if is_near(peers[descriptor]) else UNREACHABLE_MS
             with suppress(OSError):  # it is lost already
                 if is_mended("lingering"):
-                    one.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
-                one.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)
+                    copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                copy.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)

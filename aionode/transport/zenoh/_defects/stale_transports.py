@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 
 from aionode.transport._send_thread import start_thread
-from aionode.transport.zenoh._config import introducers
+from aionode.transport.zenoh._config import gossip_endpoints
 from aionode.transport.zenoh._connections import REMEMBERED
 from aionode.transport.zenoh._defects._switch import is_mended
 from aionode.transport.zenoh._defects.forgotten_peers import ATTEMPTS, POSTPONED_S
@@ -73,7 +73,7 @@ class StaleTransports:
 
     def start(self, session: zenoh.Session) -> None:
         """Start watching the connections of a session."""
-        if introducers(self._network) and is_mended("stale_transports"):
+        if gossip_endpoints(self._network) and is_mended("stale_transports"):
             self._session = session  # else no endpoint is dialled again
 
     def stop(self) -> None:

@@ -268,22 +268,22 @@ class BridgeWatcher:
         """Return the replies to a query."""
         done: asyncio.Future[Replies] = asyncio.get_running_loop().create_future()
 
-        def answer(found: Replies) -> None:
+        def answer(replies: Replies) -> None:
             if not done.done():
-                done.set_result(found)
+                done.set_result(replies)
 
         self._query(get, key, answer)
         return await done
 
     def _query(self, get: Callable[..., Any], key: str, then: Callable[[Replies], object]) -> None:
         """Call `then` with the replies to a query when all have come, soon."""
-        found: Replies = []
+        replies: Replies = []
 
         def take(reply: zenoh.Reply | None) -> None:
             if reply is None:
-                then(found)
+                then(replies)
             elif reply.ok is not None:
-                found.append((str(reply.ok.key_expr), reply.ok.payload.to_bytes()))
+                replies.append((str(reply.ok.key_expr), reply.ok.payload.to_bytes()))
 
         queue = self._queue_of(take)
         with translated(key):
@@ -311,17 +311,17 @@ class BridgeWatcher:
     def _endpoints(self, bridge: Bridge, token: BridgeToken) -> Iterator[EndpointInfo]:
         """Yield what a token stands for: for each node if they are known, else once."""
         zid = bridge.node.participant
-        for found in bridged_endpoints(token):
-            for node in self._nodes_of(bridge, found):
+        for announced in bridged_endpoints(token):
+            for node in self._nodes_of(bridge, announced):
                 yield EndpointInfo(
-                    kind=found.kind,
+                    kind=announced.kind,
                     node=node,
                     endpoint_id=self._new_id(),
-                    name=found.name,
-                    type_name=found.type_name,
+                    name=announced.name,
+                    type_name=announced.type_name,
                     type_hash=token.type_hash,
-                    qos=found.qos,
-                    gid=gid_of(f"{zid} {found.kind.value} {found.name} {node}"),
+                    qos=announced.qos,
+                    gid=gid_of(f"{zid} {announced.kind.value} {announced.name} {node}"),
                 )
 
     def _nodes_of(self, bridge: Bridge, endpoint: BridgedEndpoint) -> list[NodeInfo]:

@@ -28,8 +28,8 @@ class BridgeServer(BridgeDeclaration, ZenohServer):
             # No request, or one of a context of aionode, which comes on rmw_zenoh's key too.
             self.answer(query, sample_info_of(extra) or SampleInfo(UNKNOWN_GID, 0, 0), None, 0)
             return
-        found = None if extra is None else parse_request_id(extra.to_bytes())
-        client, sequence = found or (UNKNOWN_GID, 0)
+        request = None if extra is None else parse_request_id(extra.to_bytes())
+        client, sequence = request or (UNKNOWN_GID, 0)
         self._take_from(query, SampleInfo(client, sequence, 0))
 
     def attachment_of(self, sample_info: SampleInfo) -> None:

@@ -23,7 +23,7 @@ __all__ = ["BridgeDeclaration", "BridgeState"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 MOST_NAMESPACES: Final = 100
-"""So many namespaces of bridges are served: each costs a look for each name of this context."""
+"""So many namespaces of bridges are served: each is compared with each name of this context."""
 
 
 class SharedToken:

@@ -1,4 +1,4 @@
-"""What processes that start together do one after another."""
+"""Processes that start together connect one after another."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ import pytest
 
 from aionode._concurrency import checkpoint
 from aionode.transport._network import DiscoveryRange, Network, network_from
-from aionode.transport.zenoh import _turns
+from aionode.transport.zenoh import _connect_slots
+from aionode.transport.zenoh._connect_slots import connecting, is_idle, one_at_a_time
 from aionode.transport.zenoh._local_sessions import announce
-from aionode.transport.zenoh._turns import connecting, is_idle, one_at_a_time
 from tests.support.peers import free_ports
 
 pytestmark = [
@@ -32,8 +32,8 @@ pytestmark = [
 def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
     """Return the settings of a process beside another one, on a busy machine with a processor."""
     monkeypatch.setenv("AIONODE_MEETING_PORTS", ",".join(map(str, free_ports(6))))
-    monkeypatch.setattr(_turns, "is_idle", lambda: False)
-    monkeypatch.setattr(_turns, "processors", lambda: 1)
+    monkeypatch.setattr(_connect_slots, "is_idle", lambda: False)
+    monkeypatch.setattr(_connect_slots, "processors", lambda: 1)
     found = network_from(os.environ)
     with closing(announce(found.meeting_ports[0], 4711)):
         yield found
@@ -66,8 +66,8 @@ class Visits:
 async def test_one_process_connects_at_a_time_for_two_processors(
     network: Network, monkeypatch: pytest.MonkeyPatch, processors: int, most: int
 ) -> None:
-    """All others wait for it, and each has its turn. Five at most: a port each stands for it."""
-    monkeypatch.setattr(_turns, "processors", lambda: processors)
+    """All others wait for it, and each gets its slot. Five at most: a port each stands for it."""
+    monkeypatch.setattr(_connect_slots, "processors", lambda: processors)
     visits = Visits()
     await visits.visit_together(network)
 
@@ -78,7 +78,7 @@ async def test_nobody_waits_while_a_processor_is_free(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One that connects may be waiting for another process, which may be frozen."""
-    monkeypatch.setattr(_turns, "is_idle", lambda: True)
+    monkeypatch.setattr(_connect_slots, "is_idle", lambda: True)
     visits = Visits()
     await visits.visit_together(network)
 
@@ -88,15 +88,15 @@ async def test_nobody_waits_while_a_processor_is_free(
 async def test_nobody_waits_if_there_is_no_other_process(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nor if a context does not look for any, or no port can stand for the turn."""
-    monkeypatch.setattr(_turns, "TURN_S", 1000.0)
+    """Nor if a context does not look for any, or no port can stand for a slot."""
+    monkeypatch.setattr(_connect_slots, "SLOT_S", 1000.0)
     alone = network_from({"AIONODE_MEETING_PORTS": ",".join(map(str, free_ports(6)))})
     off = network_from(os.environ, discovery_range=DiscoveryRange.OFF)
     single = replace(network, meeting_ports=network.meeting_ports[:1], spare_ports=())
-    for one in (alone, off, single):
+    for settings in (alone, off, single):
         visits = Visits()
         async with asyncio.timeout(20):
-            await visits.visit_together(one)
+            await visits.visit_together(settings)
 
         assert visits.most == 8
 
@@ -105,20 +105,20 @@ async def test_a_process_that_does_not_go_on_is_not_waited_for(
     network: Network, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It may be frozen while it connects; then no other one appears either."""
-    monkeypatch.setattr(_turns, "TURN_S", 0.01)
+    monkeypatch.setattr(_connect_slots, "SLOT_S", 0.01)
     async with connecting(network), asyncio.timeout(20), connecting(network):
         pass
 
 
 @pytest.fixture
-def foreign_turns(network: Network) -> Iterator[None]:
-    """Have a process of another user keep all turns."""
+def foreign_slots(network: Network) -> Iterator[None]:
+    """Have a process of another user keep all slots."""
     if os.getuid() != 0:
         pytest.skip("only root may start a process of another user")
     program = (
         "import socket, sys\n"
         "kept = [socket.socket(type=socket.SOCK_DGRAM) for _ in sys.argv[1:]]\n"
-        "for one, port in zip(kept, sys.argv[1:]): one.bind(('127.0.0.1', int(port)))\n"
+        "for slot, port in zip(kept, sys.argv[1:]): slot.bind(('127.0.0.1', int(port)))\n"
         "print(flush=True); sys.stdin.read()"
     )
     ports = map(str, (*network.meeting_ports, *network.spare_ports))
@@ -134,8 +134,8 @@ def foreign_turns(network: Network) -> Iterator[None]:
         process.communicate()
 
 
-@pytest.mark.usefixtures("foreign_turns")
-async def test_a_turn_that_another_user_keeps_costs_a_third_of_a_second(network: Network) -> None:
+@pytest.mark.usefixtures("foreign_slots")
+async def test_a_slot_that_another_user_keeps_costs_a_third_of_a_second(network: Network) -> None:
     """Each start took three seconds longer: whoever binds the port decides about all others."""
     loop = asyncio.get_running_loop()
     began_s = loop.time()
@@ -153,15 +153,15 @@ async def test_it_is_waited_longer_while_others_appear(
 ) -> None:
     """Where a hundred start the last one waits for a minute."""
     lists = iter([{1}, {1, 2}, {1, 2, 3}, {1, 2, 3}])
-    monkeypatch.setattr(_turns, "TURN_S", 0.01)
-    monkeypatch.setattr(_turns, "listed", lambda _: next(lists))
+    monkeypatch.setattr(_connect_slots, "SLOT_S", 0.01)
+    monkeypatch.setattr(_connect_slots, "listed", lambda _: next(lists))
     async with connecting(network), connecting(network):
         pass
 
     assert next(lists, None) is None
 
 
-async def test_waiting_for_the_turn_can_be_cancelled(network: Network) -> None:
+async def test_waiting_for_a_slot_can_be_cancelled(network: Network) -> None:
     """Ctrl-C does not wait for others."""
     async with connecting(network):
         waiting = asyncio.get_running_loop().create_task(Visits().visit(network))
@@ -186,8 +186,8 @@ def test_a_machine_is_busy_if_more_threads_run_than_it_has_processors(
 ) -> None:
     """Where it does not tell, nobody is to wait."""
     load = tmp_path / "loadavg"
-    monkeypatch.setattr(_turns, "LOAD", load)
-    monkeypatch.setattr(_turns, "processors", lambda: 2)
+    monkeypatch.setattr(_connect_slots, "LOAD", load)
+    monkeypatch.setattr(_connect_slots, "processors", lambda: 2)
 
     assert is_idle()
     load.write_text(text)

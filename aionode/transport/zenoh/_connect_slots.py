@@ -1,6 +1,6 @@
-"""Turns: processes that start together take their ports and connect one after another.
+"""Connect slots: processes that start together take their ports and connect one after another.
 
-A process takes a turn by binding the loopback UDP port that stands for it. Unlike a lock file the
+A process takes a slot by binding the loopback UDP port that stands for it. Unlike a lock file the
 port belongs to no user, and is free as soon as its process has ended, however that ends.
 """
 
@@ -25,25 +25,27 @@ if TYPE_CHECKING:
 
 __all__ = ["connecting", "one_at_a_time"]
 
-TURN_S: Final = 3.0
-"""Time for which a process waits for one that has the turn and does not go on, in seconds."""
+SLOT_S: Final = 3.0
+"""Time for which a process waits for another that has the slot and does not go on, in
+seconds."""
 
-FOREIGN_TURN_S: Final = 0.3
-"""Time for which a process waits while another user's process has the turn, in seconds: that
-process may keep the turn on purpose."""
+FOREIGN_SLOT_S: Final = 0.3
+"""Time for which a process waits while another user's process has the slot, in seconds: that
+process may keep the slot on purpose."""
 
 FIRST_POLL_S: Final = 0.002
-"""The first interval at which a process tries to take a turn, in seconds."""
+"""The first interval at which a process tries to take a slot, in seconds."""
 
 POLL_GROWTH: Final = 1.5
 """Growth of that interval: the more processes wait, the longer each waits, and some try soon."""
 
 LAST_POLL_S: Final = 0.03
-"""The longest interval for a place in the list of sessions, in seconds; a turn takes a
+"""The longest interval for a place in the list of sessions, in seconds; a slot is kept for a
 millisecond."""
 
 LAST_CONNECTING_POLL_S: Final = 0.5
-"""The longest interval for connecting, in seconds; a turn takes up to a second."""
+"""The longest interval for connecting, in seconds; a slot is kept for up to a
+second."""
 
 LOAD: Final = Path("/proc/loadavg")
 """Says how many threads of this machine run or could run."""
@@ -51,10 +53,10 @@ LOAD: Final = Path("/proc/loadavg")
 
 @contextmanager
 def one_at_a_time(port: int | None) -> Iterator[None]:
-    """Let the processes of this machine look for a free meeting port, and take it, in turn.
+    """Have the processes of this machine choose and take a free meeting port one after another.
 
-    Two that look at the same moment would both choose the first one; the loser would have none, and
-    not dial the winner either. Two that list each other would dial each other. Blocks.
+    Two that choose at the same moment would both choose the first port; the loser would have none,
+    and not dial the winner either. Two that list each other would dial each other. Blocks.
 
     Args:
         port: The first meeting port; None if there is none.
@@ -62,10 +64,10 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
     if port is None:
         yield
         return
-    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
-        patience = Patience((port,))
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as slot:
+        wait = SlotWait((port,))
         poll_s = FIRST_POLL_S
-        while not (takes(turn, port) or patience.is_over()):
+        while not (takes(slot, port) or wait.is_over()):
             threading.Event().wait(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_POLL_S)
         yield
@@ -86,24 +88,24 @@ async def connecting(network: Network) -> AsyncIterator[None]:
     if not (others and ports):
         yield
         return
-    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as turn:
-        patience, poll_s = Patience(ports), FIRST_POLL_S
-        while not (any(takes(turn, port) for port in ports) or is_idle()):
+    with closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as slot:
+        wait, poll_s = SlotWait(ports), FIRST_POLL_S
+        while not (any(takes(slot, port) for port in ports) or is_idle()):
             await asyncio.sleep(poll_s)
             poll_s = min(poll_s * POLL_GROWTH, LAST_CONNECTING_POLL_S)
-            if patience.is_over():
+            if wait.is_over():
                 before, others = others, listed(group)
-                if patience.is_foreign or others == before:
+                if wait.is_foreign or others == before:
                     break  # nobody has begun to connect meanwhile: those that do are stuck
-                patience = Patience(ports)
+                wait = SlotWait(ports)
         yield
 
 
-class Patience:
-    """The time for which a process waits for one of some turns.
+class SlotWait:
+    """One wait of a process until any of several slots is free.
 
     Attributes:
-        is_foreign: Whether processes of other users have all of them.
+        is_foreign: Whether processes of other users have all slots.
     """
 
     def __init__(self, ports: Sequence[int]) -> None:
@@ -112,13 +114,13 @@ class Patience:
         self.is_foreign = False
 
     def is_over(self) -> bool:
-        """Return whether it has waited long enough, given whose processes have the turns."""
+        """Return whether this took long enough, given the users that have the slots."""
         waited_s = (perf_ns() - self._began_ns) / 1e9
-        if waited_s < FOREIGN_TURN_S:
+        if waited_s < FOREIGN_SLOT_S:
             return False
         own = None if not hasattr(os, "getuid") else os.getuid()
         self.is_foreign = not {holder_of(port) for port in self._ports} & {own, None}
-        return self.is_foreign or waited_s >= TURN_S
+        return self.is_foreign or waited_s >= SLOT_S
 
 
 def connecting_ports(network: Network) -> tuple[int, ...]:
@@ -141,9 +143,9 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
 
 
-def takes(turn: socket.socket, port: int) -> bool:
-    """Return whether the turn was free."""
+def takes(slot: socket.socket, port: int) -> bool:
+    """Return whether the slot of a port was free; the socket has it from then on."""
     with suppress(OSError):
-        turn.bind((LOOPBACK, port))
+        slot.bind((LOOPBACK, port))
         return True
     return False
