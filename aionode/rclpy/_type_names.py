@@ -1,11 +1,13 @@
-"""Names that rclpy has for type checkers, and which programs import for their annotations."""
+"""Names that rclpy has for type checkers, and which programs import for their annotations.
+
+Type checkers do not see them here, as they are found when a program runs: so none has fields.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from typing import Any, Literal, Protocol, TypedDict, TypeVar
 
-from aionode.rclpy.clock import ClockChange
 from aionode.rclpy.qos import QoSProfile
 from aionode.rclpy.type_support import Srv
 
@@ -45,9 +47,9 @@ MsgType = TypeVar("MsgType")
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
-Goal = TypeVar("Goal")
-Result = TypeVar("Result")
-Feedback = TypeVar("Feedback")
+Goal_co = TypeVar("Goal_co", covariant=True)
+Result_co = TypeVar("Result_co", covariant=True)
+Feedback_co = TypeVar("Feedback_co", covariant=True)
 
 CallbackNames = Literal[
     "on_configure", "on_cleanup", "on_shutdown", "on_activate", "on_deactivate", "on_error"
@@ -79,82 +81,42 @@ class PyCapsule(Protocol):
 class EventMessage(Protocol):
     """An event of a service."""
 
-    info: Any
 
-
-class SendGoalServiceRequest(Protocol[Goal]):
+class SendGoalServiceRequest(Protocol[Goal_co]):
     """The request that sends a goal."""
-
-    goal_id: Any
-    goal: Goal
 
 
 class SendGoalServiceResponse(Protocol):
     """The answer to it."""
 
-    accepted: bool
-    stamp: Any
-
 
 class GetResultServiceRequest(Protocol):
     """The request for the result of a goal."""
 
-    goal_id: Any
 
-
-class GetResultServiceResponse(Protocol[Result]):
+class GetResultServiceResponse(Protocol[Result_co]):
     """The answer to it."""
 
-    status: int
-    result: Result
 
-
-class FeedbackMessage(Protocol[Feedback]):
+class FeedbackMessage(Protocol[Feedback_co]):
     """The feedback of a goal."""
-
-    goal_id: Any
-    feedback: Feedback
 
 
 class SendGoalKWargs(TypedDict):
     """The optional arguments of `ActionClient.send_goal_async`."""
 
-    feedback_callback: Callable[[Any], None] | None
-    goal_uuid: Any
-
 
 class TimeJumpDictionary(TypedDict):
     """A jump of time, as callbacks get it."""
-
-    clock_change: ClockChange
-    delta: int
 
 
 class TypeHashDictionary(TypedDict):
     """The parts of a type's hash."""
 
-    version: int
-    value: bytes
 
-
-class CreateLifecyclePublisherArgs(TypedDict, total=False):
+class CreateLifecyclePublisherArgs(TypedDict):
     """The optional arguments of `create_lifecycle_publisher`."""
 
-    callback_group: Any
-    event_callbacks: Any
-    qos_overriding_options: Any
 
-
-class LifecycleNodeArgs(TypedDict, total=False):
+class LifecycleNodeArgs(TypedDict):
     """The optional arguments of `LifecycleNode`."""
-
-    context: Any
-    cli_args: list[str] | None
-    namespace: str | None
-    use_global_arguments: bool
-    enable_rosout: bool
-    start_parameter_services: bool
-    parameter_overrides: list[Any] | None
-    allow_undeclared_parameters: bool
-    automatically_declare_parameters_from_overrides: bool
-    enable_logger_service: bool

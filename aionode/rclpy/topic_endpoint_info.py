@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode import qos as core
 from aionode.rclpy.qos import QoSHistoryPolicy, QoSPresetProfiles, QoSProfile
-from aionode.rclpy.type_hash import TypeHash
+from aionode.rclpy.type_hash import Checked, TypeHash
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,26 +21,6 @@ class TopicEndpointTypeEnum(IntEnum):
     INVALID = 0
     PUBLISHER = 1
     SUBSCRIPTION = 2
-
-
-class Checked:
-    """An attribute whose values have to be of one type."""
-
-    def __init__(self, kind: Any, convert: Any = None) -> None:
-        self._kind = kind
-        self._convert = convert
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._slot = f"_{name}"
-
-    def __get__(self, instance: Any, owner: type) -> Any:
-        return self if instance is None else getattr(instance, self._slot)
-
-    def __set__(self, instance: Any, value: Any) -> None:
-        if self._convert is not None and not isinstance(value, self._kind):
-            value = self._convert(value)
-        assert isinstance(value, self._kind)  # noqa: S101  # as rclpy does
-        setattr(instance, self._slot, value)
 
 
 def from_dict(kind: Any) -> Any:

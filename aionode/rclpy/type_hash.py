@@ -2,10 +2,40 @@
 
 from __future__ import annotations
 
-__all__ = ["TypeHash"]
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["Checked", "TypeHash"]
 
 SIZE = 32
 PREFIX = "RIHS"
+
+
+class Checked:
+    """An attribute whose values have to be of one type.
+
+    Args:
+        kind: The type.
+        convert: Makes a value of that type from others.
+    """
+
+    def __init__(self, kind: Any, convert: Callable[[Any], Any] | None = None) -> None:
+        self._kind = kind
+        self._convert = convert
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._slot = f"_{name}"
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        return self if instance is None else getattr(instance, self._slot)
+
+    def __set__(self, instance: Any, value: Any) -> None:
+        if self._convert is not None and not isinstance(value, self._kind):
+            value = self._convert(value)
+        assert isinstance(value, self._kind)  # noqa: S101  # as rclpy does
+        setattr(instance, self._slot, value)
 
 
 class TypeHash:
@@ -18,9 +48,12 @@ class TypeHash:
 
     __slots__ = ("_value", "_version")
 
+    version = Checked(int)
+    value = Checked(bytes)
+
     def __init__(self, version: int = -1, value: bytes = bytes(SIZE)) -> None:
-        self.version = version
-        self.value = value
+        self.version = version  # noqa: PLE0237  # kept in the slot `_version`
+        self.value = value  # noqa: PLE0237  # likewise
 
     @classmethod
     def from_text(cls, text: str) -> TypeHash:
@@ -30,35 +63,15 @@ class TypeHash:
         version, _, digits = text.removeprefix(PREFIX).partition("_")
         return cls(int(version), bytes.fromhex(digits))
 
-    @property
-    def version(self) -> int:
-        """How it was made."""
-        return self._version
-
-    @version.setter
-    def version(self, value: int) -> None:
-        assert isinstance(value, int)  # noqa: S101  # as rclpy does
-        self._version = value
-
-    @property
-    def value(self) -> bytes:
-        """Its bytes."""
-        return self._value
-
-    @value.setter
-    def value(self, value: bytes) -> None:
-        assert isinstance(value, bytes)  # noqa: S101  # as rclpy does
-        self._value = value
-
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, TypeHash):
             return False
-        return (self._version, self._value) == (other._version, other._value)
+        return (self.version, self.value) == (other.version, other.value)
 
     def __hash__(self) -> int:
-        return hash((self._version, self._value))
+        return hash((self.version, self.value))
 
     def __str__(self) -> str:
-        if self._version <= 0 or len(self._value) != SIZE:
+        if self.version <= 0 or len(self.value) != SIZE:
             return "INVALID"
-        return f"{PREFIX}{self._version:02}_{self._value.hex()}"
+        return f"{PREFIX}{self.version:02}_{self.value.hex()}"

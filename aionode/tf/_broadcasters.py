@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.tf._listener import DEPTH, STATIC_TOPIC, TOPIC
 
 if TYPE_CHECKING:
+    from aionode.interfaces.geometry_msgs.msg import TransformStamped
     from aionode.node import Node
 
 __all__ = ["StaticTransformBroadcaster", "TransformBroadcaster"]
@@ -27,8 +27,11 @@ class TransformBroadcaster:
         pub_tf: The publisher.
     """
 
+    _message: Any = TFMessage
+
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        self.pub_tf = node.create_publisher(TFMessage, TOPIC, qos or DEPTH)
+        qos = DEPTH if qos is None else qos
+        self.pub_tf = node.create_publisher(self._message, TOPIC, qos)
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # tf2's name
         """Publish one transform, or several in one message; never waits.
@@ -37,7 +40,7 @@ class TransformBroadcaster:
             TypeError: it is not a transform.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self.pub_tf.publish(TFMessage(transforms=listed(transform)))
+        self.pub_tf.publish(self._message(transforms=listed(transform)))
 
 
 class StaticTransformBroadcaster:
@@ -52,12 +55,16 @@ class StaticTransformBroadcaster:
 
     Attributes:
         pub_tf: The publisher.
+        net_message: The message that was published last.
     """
 
+    _message: Any = TFMessage
+
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
-        qos = qos or QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.pub_tf = node.create_publisher(TFMessage, STATIC_TOPIC, qos)
-        self._by_child: dict[str, TransformStamped] = {}
+        if qos is None:
+            qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.pub_tf = node.create_publisher(self._message, STATIC_TOPIC, qos)
+        self.net_message = self._message()
 
     def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # tf2's name
         """Publish one or several transforms, with all that were sent before; never waits.
@@ -66,11 +73,15 @@ class StaticTransformBroadcaster:
             TypeError: it is not a transform.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        every = self._by_child | {stamped.child_frame_id: stamped for stamped in listed(transform)}
-        self.pub_tf.publish(TFMessage(transforms=list(every.values())))
-        self._by_child = every
+        by_child = {
+            stamped.child_frame_id: stamped
+            for stamped in [*self.net_message.transforms, *listed(transform)]
+        }
+        message = self._message(transforms=list(by_child.values()))
+        self.pub_tf.publish(message)
+        self.net_message = message
 
 
 def listed(transform: TransformStamped | Iterable[TransformStamped]) -> list[TransformStamped]:
     """Return one or several transforms as a list."""
-    return [transform] if isinstance(transform, TransformStamped) else list(transform)
+    return list(transform) if isinstance(transform, Iterable) else [transform]
