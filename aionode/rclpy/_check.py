@@ -67,11 +67,11 @@ def report_on(file: Path) -> tuple[str, bool]:
     for wanted in imports_of(tree):
         if wanted.module.partition(".")[0] in sys.stdlib_module_names:
             continue
-        found = find(wanted, file)
-        if found.is_there:
-            listed[found.shown] = found.where
+        finding = find(wanted, file)
+        if finding.is_there:
+            listed[finding.shown] = finding.where
             continue
-        listed[found.shown] = f"missing{', optional' * wanted.optional}: {found.where}"
+        listed[finding.shown] = f"missing{', optional' * wanted.optional}: {finding.where}"
         complete = complete and wanted.optional
     width = max(map(len, listed), default=0)
     lines = [f"  {shown:{width}}  {where}" for shown, where in sorted(listed.items())]
@@ -194,13 +194,13 @@ def source_of(module: str) -> str | None:
 
 def found_on(path: list[str] | None, module: str) -> ModuleSpec | None:
     """Return the description of a module without importing the packages that it is in."""
-    found: ModuleSpec | None = None
+    spec: ModuleSpec | None = None
     for part in module.split("."):
-        found = PathFinder.find_spec(part, path)  # the whole name would need the parent imported
-        if found is None:
+        spec = PathFinder.find_spec(part, path)  # the whole name would need the parent imported
+        if spec is None:
             return None
-        path = list(found.submodule_search_locations or ())
-    return found
+        path = list(spec.submodule_search_locations or ())
+    return spec
 
 
 def has_name(module: str, name: str) -> bool:

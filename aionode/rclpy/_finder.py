@@ -82,10 +82,10 @@ def install(
 
 def rclpy_of_ros() -> Path | None:
     """Return the folder of an installed rclpy that is not aionode's, if there is one."""
-    found = PathFinder.find_spec("rclpy")
-    if found is None or found.origin is None:
+    spec = PathFinder.find_spec("rclpy")
+    if spec is None or spec.origin is None:
         return None
-    file = Path(found.origin)
+    file = Path(spec.origin)
     is_own = "aionode" in file.read_text(encoding="utf-8", errors="replace")[:300]
     return None if is_own else file.parent
 
@@ -204,8 +204,9 @@ class AliasLoader(Loader):
         module.__spec__ = self.spec
         add_names()
         if self.own == ALIASES["rclpy"]:  # what was loaded before `install`; the rest has its names
-            for found in [each for name, each in sys.modules.items() if f"{name}.".startswith(OWN)]:
-                take_names(found)
+            for name, loaded in list(sys.modules.items()):
+                if f"{name}.".startswith(OWN):
+                    take_names(loaded)
 
 
 class NamesLoader(Loader):
@@ -271,17 +272,17 @@ class KindLoader(Loader):
 
         def find(name: str) -> Any:
             if name == "__all__":
-                return [one.rpartition("/")[2] for one in names()]
+                return [name.rpartition("/")[2] for name in names()]
             whole = f"{package}/{kind}/{name.partition('_')[0]}"
-            found = classes_of(whole) if whole in names() else {}
-            if name not in found:
+            classes = classes_of(whole) if whole in names() else {}
+            if name not in classes:
                 raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-            vars(module).update(found)
-            return found[name]
+            vars(module).update(classes)
+            return classes[name]
 
         def listed() -> list[str]:
-            found = {part for name in names() for part in classes_of(name)}
-            return sorted(found.union(vars(module)))
+            parts = {part for name in names() for part in classes_of(name)}
+            return sorted(parts.union(vars(module)))
 
         vars(module).update(__getattr__=find, __dir__=listed)
 

@@ -88,15 +88,19 @@ class NodeGraph(GraphQueries):
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic; with `no_mangle` its name is complete."""
-        found = self._handle.endpoints(EndpointKind.PUBLISHER, topic_name, is_complete=no_mangle)
-        return [info_of(endpoint) for endpoint in found]
+        return self._infos(EndpointKind.PUBLISHER, topic_name, is_complete=no_mangle)
 
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """Return the subscriptions of a topic; with `no_mangle` its name is complete."""
-        found = self._handle.endpoints(EndpointKind.SUBSCRIPTION, topic_name, is_complete=no_mangle)
-        return [info_of(endpoint) for endpoint in found]
+        return self._infos(EndpointKind.SUBSCRIPTION, topic_name, is_complete=no_mangle)
+
+    def _infos(
+        self, kind: EndpointKind, topic_name: str, *, is_complete: bool
+    ) -> list[TopicEndpointInfo]:
+        endpoints = self._handle.endpoints(kind, topic_name, is_complete=is_complete)
+        return [info_of(endpoint) for endpoint in endpoints]
 
 
 def info_of(endpoint: EndpointInfo) -> TopicEndpointInfo:

@@ -191,7 +191,7 @@ def no_module(name: str) -> str:
 
     above, _, last = name.rpartition(".")
     folders = [sys.path[0]] if not above else getattr(sys.modules.get(above), "__path__", ())
-    known = {one.name for one in pkgutil.iter_modules(folders)}
+    known = {module.name for module in pkgutil.iter_modules(folders)}
     if not above:
         known.update(here().sources())
     near = difflib.get_close_matches(last, known, 1)
@@ -219,12 +219,13 @@ def only_defines_main(source: bytes) -> bool:
     quiet = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
     statements = ast.parse(source).body
     is_quiet = all(
-        isinstance(one, quiet)
-        or (isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant))
-        for one in statements
+        isinstance(statement, quiet)
+        or (isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant))
+        for statement in statements
     )
     return is_quiet and any(
-        isinstance(one, ast.FunctionDef) and one.name == "main" for one in statements
+        isinstance(statement, ast.FunctionDef) and statement.name == "main"
+        for statement in statements
     )
 
 

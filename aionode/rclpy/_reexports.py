@@ -183,14 +183,14 @@ SUBMODULES: Final = (
 
 def table(text: str) -> dict[str, list[str]]:
     """Return the words after each word that ends in a colon."""
-    found: dict[str, list[str]] = {}
+    entries: dict[str, list[str]] = {}
     words: list[str] = []
     for word in text.split():
         if word.endswith(":"):
-            words = found.setdefault(word[:-1], [])
+            words = entries.setdefault(word[:-1], [])
         else:
             words.append(word)
-    return found
+    return entries
 
 
 BY_MODULE: Final = table(NAMES)
@@ -204,9 +204,9 @@ def names_from_elsewhere(module: str) -> list[str]:
 def add_names() -> None:
     """Give the modules of rclpy that are loaded what finds these names."""
     for module in BY_MODULE:
-        found = sys.modules.get(f"aionode.{module}")
-        if found is not None and "__getattr__" not in vars(found):
-            hook(found, module)
+        loaded_module = sys.modules.get(f"aionode.{module}")
+        if loaded_module is not None and "__getattr__" not in vars(loaded_module):
+            hook(loaded_module, module)
 
 
 def hook(module: ModuleType, name: str) -> None:

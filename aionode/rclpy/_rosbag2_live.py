@@ -435,7 +435,7 @@ class Player(Live):
     def _make(self, context: Context) -> bag.Player:
         options = self._options
         storages = self._storage if isinstance(self._storage, list) else [self._storage]
-        remap = [each for each in options.topic_remapping_options if ":=" in each]
+        remap = [option for option in options.topic_remapping_options if ":=" in option]
         until_ns, length = options.playback_until_timestamp, options.playback_duration
         kinds = {
             "service": options.publish_service_requests,
@@ -453,7 +453,7 @@ class Player(Live):
             until=Time(nanoseconds=until_ns) if until_ns >= 0 else None,
             delay_sec=options.delay,
             selection=options.selection(),
-            remap=dict(each.split(":=", 1) for each in remap),
+            remap=dict(option.split(":=", 1) for option in remap),
             clock_hz=options.clock_publish_frequency,
             clock_topics=options.clock_with(),
             qos=options.topic_qos_profile_overrides,
@@ -561,7 +561,7 @@ class Player(Live):
 
 def cancel_all(kind: type[Any]) -> None:
     """End everything of a kind that runs in this process."""
-    for thread in [each for each in LiveThread.running if each.kind is kind]:
+    for thread in [thread for thread in LiveThread.running if thread.kind is kind]:
         if kind is bag.Player:
             awaited(thread.begin(stopped(thread)))
         else:

@@ -165,8 +165,8 @@ class TopicMetadata:
     def equals(self, other: TopicMetadata) -> bool:
         """Whether two topics have the same name, type and format."""
         return all(
-            getattr(self, each) == getattr(other, each)
-            for each in ("name", "type", "serialization_format")
+            getattr(self, name) == getattr(other, name)
+            for name in ("name", "type", "serialization_format")
         )
 
     def __eq__(self, other: object) -> bool:
@@ -327,7 +327,7 @@ class SequentialReader:
 
     def get_all_topics_and_types(self) -> list[TopicMetadata]:
         """Return the topics."""
-        return [each.topic_metadata for each in topics_of(self._opened())]
+        return [topic.topic_metadata for topic in topics_of(self._opened())]
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
         """Return the definitions of all types."""

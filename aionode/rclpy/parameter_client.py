@@ -163,10 +163,10 @@ class AsyncParameterClient:
         return self.set_parameters_atomically(self._in_file(parameter_file, use_wildcard), callback)
 
     def _in_file(self, parameter_file: str, use_wildcard: bool) -> list[Any]:
-        found = parameter_dict_from_yaml_file(
+        parameters = parameter_dict_from_yaml_file(
             parameter_file, use_wildcard, target_nodes=[self.remote_node_name]
         )
-        return list(found.values())
+        return list(parameters.values())
 
     def on_parameter_event(
         self,
@@ -205,4 +205,7 @@ def ask(
 
 def as_messages(parameters: Sequence[Any]) -> list[Any]:
     """Return parameters as messages."""
-    return [each.to_parameter_msg() if isinstance(each, Parameter) else each for each in parameters]
+    return [
+        parameter.to_parameter_msg() if isinstance(parameter, Parameter) else parameter
+        for parameter in parameters
+    ]

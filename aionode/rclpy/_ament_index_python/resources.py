@@ -58,29 +58,29 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
         LookupError: There is no such resource.
         OSError: AMENT_PREFIX_PATH is not set, or the file cannot be read.
     """
-    found = find(resource_type, resource_name)
-    if found is None:
+    resource = find(resource_type, resource_name)
+    if resource is None:
         raise LookupError(
             f"Could not find the resource '{resource_name}' of type '{resource_type}'"
         )
-    prefix, file = found
+    prefix, file = resource
     return file.read_text(), prefix
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | Literal[False]:
     """Return the prefix where a resource is, or False."""
-    found = find(resource_type, resource_name)
-    return found[0] if found else False
+    resource = find(resource_type, resource_name)
+    return resource[0] if resource else False
 
 
 def get_resources(resource_type: str) -> dict[str, str]:
     """Return the prefix of each resource of a type, by its name."""
-    found: dict[str, str] = {}
+    prefixes: dict[str, str] = {}
     for prefix, folder in folders(resource_type):
         for file in folder.iterdir() if folder.is_dir() else ():
             if not file.is_dir() and not file.name.startswith("."):
-                found.setdefault(file.name, prefix)
-    return found
+                prefixes.setdefault(file.name, prefix)
+    return prefixes
 
 
 def get_resource_types() -> set[str]:

@@ -19,4 +19,4 @@ def get_search_paths() -> list[str]:
     prefixes = os.environ.get(AMENT_PREFIX_PATH_ENV_VAR, "")
     if not prefixes:
         raise OSError(f"Environment variable '{AMENT_PREFIX_PATH_ENV_VAR}' is not set or empty")
-    return [one for one in prefixes.split(os.pathsep) if one and Path(one).exists()]
+    return [prefix for prefix in prefixes.split(os.pathsep) if prefix and Path(prefix).exists()]

@@ -38,12 +38,12 @@ def parts_of(encoding: str) -> tuple[str, int, str]:
     Raises:
         RuntimeError: The encoding is unknown.
     """
-    if found := COLOURS.fullmatch(encoding):
-        return f"{found[2]}U", CHANNELS.get(found[1], 1), found[1]
+    if match := COLOURS.fullmatch(encoding):
+        return f"{match[2]}U", CHANNELS.get(match[1], 1), match[1]
     if encoding in YUV:
         return "8U", 2, encoding
-    if found := OPENCV.fullmatch(encoding):
-        return found[1], int(found[2] or 1), ""
+    if match := OPENCV.fullmatch(encoding):
+        return match[1], int(match[2] or 1), ""
     raise RuntimeError(f"Unrecognized image encoding [{encoding}]")
 
 
@@ -103,7 +103,7 @@ def dtype_of(encoding: str) -> str:
 
 def colour_of(encoding: str) -> str:
     """Return what the channels mean, such as ``bgr`` or ``bayer_rggb``; empty if nothing."""
-    found = COLOURS.fullmatch(encoding)
-    if found is not None:
-        return found[1]
+    match = COLOURS.fullmatch(encoding)
+    if match is not None:
+        return match[1]
     return encoding if encoding in YUV else ""

@@ -45,10 +45,10 @@ def of_each(array: Array, rank: int, make: Callable[[Array], Any]) -> Any:
     shape = array.shape[:-rank]
     if not shape:
         return make(array)
-    made = np.empty(shape, dtype=object)
+    messages = np.empty(shape, dtype=object)
     for index in np.ndindex(shape):
-        made[index] = make(array[index])
-    return made
+        messages[index] = make(array[index])
+    return messages
 
 
 def xyz(cls: type[Any]) -> Callable[[Array], Any]:
@@ -105,7 +105,7 @@ def numpy_to_quat(arr: Array) -> Any:
     """
     check_shape(arr, (4,))
     return of_each(
-        arr, 1, lambda one: Quaternion(**dict(zip("xyzw", map(float, one), strict=True)))
+        arr, 1, lambda numbers: Quaternion(**dict(zip("xyzw", map(float, numbers), strict=True)))
     )
 
 
@@ -120,7 +120,7 @@ def of_matrices(arr: Array, make: Callable[[Array, Any], Any]) -> Any:
     return of_each(
         arr,
         2,
-        lambda one: make(one[:3, 3], numpy_to_quat(np.array(quaternion_from_matrix(one)))),
+        lambda matrix: make(matrix[:3, 3], numpy_to_quat(np.array(quaternion_from_matrix(matrix)))),
     )
 
 

@@ -73,14 +73,14 @@ def fields_of(dtype: np.dtype[Any]) -> Mapping[str, Any]:
 @converts_from_numpy(PointField, plural=True)
 def dtype_to_fields(dtype: np.dtype[Any]) -> list[Any]:
     """Return the fields of a cloud whose points are of a structured type."""
-    made = []
+    fields = []
     for name in dtype.names or ():
         whole, offset = fields_of(dtype)[name][:2]
         count = int(np.prod(whole.shape)) if whole.shape else 1
-        made.append(
+        fields.append(
             PointField(name=name, offset=offset, datatype=nptype_to_pftype[whole.base], count=count)
         )
-    return made
+    return fields
 
 
 @converts_to_numpy(PointCloud2)

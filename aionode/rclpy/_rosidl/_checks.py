@@ -99,10 +99,10 @@ def collection_check(name: str, type_: FieldType, class_: type[Any]) -> Check:
         require(
             isinstance(value, Sequence | AbstractSet | UserList)
             and not isinstance(value, str | UserString)
-            and (bound is None or all(len(one) <= bound for one in value))
+            and (bound is None or all(len(element) <= bound for element in value))
             and fits_length(type_, len(value))
-            and all(isinstance(one, class_) for one in value)
-            and all(limits(one) for one in value),
+            and all(isinstance(element, class_) for element in value)
+            and all(limits(element) for element in value),
             text,
         )
         return False

@@ -39,11 +39,11 @@ MAKING = threading.RLock()
 
 def python_class(cls: type[Any]) -> type[Any]:
     """Return the class of rosidl's kind for a message, service or action class of aionode."""
-    found = CLASSES.get(cls)
-    if found is None:
+    own = CLASSES.get(cls)
+    if own is None:
         with MAKING:
-            found = CLASSES.get(cls) or register(cls)
-    return found
+            own = CLASSES.get(cls) or register(cls)
+    return own
 
 
 def aionode_class(cls: type[Any]) -> type[Any] | None:
@@ -57,13 +57,13 @@ def register(cls: type[Any]) -> type[Any]:
     # A part of a service or action is in the module of the whole, whose name has no underscore.
     module = module_name(package, kind, name.partition("_")[0])
     if issubclass(cls, Message):
-        made = message_of(cls, name, module)
+        own = message_of(cls, name, module)
     elif issubclass(cls, ServiceType):
-        made = service_of(cls, name, module)
+        own = service_of(cls, name, module)
     else:
-        made = action_of(cls, name, module)
-    CLASSES[cls], SOURCES[made] = made, cls
-    return made
+        own = action_of(cls, name, module)
+    CLASSES[cls], SOURCES[own] = own, cls
+    return own
 
 
 def module_name(package: str, kind: str, name: str) -> str:
@@ -131,7 +131,7 @@ def itself(value: Any) -> Any:
 
 def message_of(cls: type[Message], name: str, module: str) -> type[Any]:
     """Make a message class."""
-    constants = {one.name: one.value for one in constants_of(cls)}
+    constants = {constant.name: constant.value for constant in constants_of(cls)}
     defaults: dict[str, Callable[[], Any]] = {
         f"{field.name.upper()}__DEFAULT": default_of(field)
         for field in fields(cls)
@@ -160,8 +160,8 @@ def message_of(cls: type[Message], name: str, module: str) -> type[Any]:
     }
     # The source holds validated field names and numbers only: see the module's docstring.
     exec(compile(source.text(), f"<{module}>", "exec"), namespace)  # noqa: S102
-    made: type[Any] = namespace[name]
-    return made
+    message: type[Any] = namespace[name]
+    return message
 
 
 class ClassSource:
@@ -289,7 +289,7 @@ def default_of(field: Field) -> Callable[[], Any]:
     if is_numeric(type_):
         return lambda: array(TYPE_CODES[type_.kind], default)
     if type_.kind == "byte":
-        return lambda: [bytes((one,)) if isinstance(one, int) else one for one in default]
+        return lambda: [bytes((octet,)) if isinstance(octet, int) else octet for octet in default]
     return lambda: list(default)
 
 
@@ -328,8 +328,8 @@ def service_of(cls: Any, name: str, module: str) -> type[Any]:
         "__init__": not_instantiated("Service"),
         **{part: python_class(getattr(cls, part)) for part in SERVICE_PARTS},
     }
-    made: type[Any] = metaclass(name, (), body)
-    return made
+    service: type[Any] = metaclass(name, (), body)
+    return service
 
 
 def action_of(cls: Any, name: str, module: str) -> type[Any]:
@@ -353,5 +353,5 @@ def action_of(cls: Any, name: str, module: str) -> type[Any]:
         **{part: python_class(getattr(cls, part)) for part in ACTION_PARTS},
         "Impl": type("Impl", (), implementation),
     }
-    made: type[Any] = metaclass(name, (), body)
-    return made
+    action: type[Any] = metaclass(name, (), body)
+    return action

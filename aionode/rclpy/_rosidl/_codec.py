@@ -80,11 +80,11 @@ def described(cls: type[Any]) -> type[Message]:
     Raises:
         TypeError: It is not a message class.
     """
-    found = aionode_class(cls)
-    if found is None or not issubclass(found, Message):
-        hint = "; use one of its parts, such as .Request" if found else ""
+    description = aionode_class(cls)
+    if description is None or not issubclass(description, Message):
+        hint = "; use one of its parts, such as .Request" if description else ""
         raise TypeError(f"{cls!r}: not a message class{hint}")
-    return found
+    return description
 
 
 def from_aionode(msg: Message) -> Any:
@@ -120,8 +120,10 @@ def adopted_value(value: Any, field: Field) -> Any:
         return value  # refused with aionode's error
     if is_numeric(type_):
         return value if not isinstance(value, set | frozenset) else list(value)
-    elements = [adopted_element(one, type_) for one in value]
-    if type_.kind == "byte" and all(isinstance(one, bytes) and len(one) == 1 for one in elements):
+    elements = [adopted_element(element, type_) for element in value]
+    if type_.kind == "byte" and all(
+        isinstance(element, bytes) and len(element) == 1 for element in elements
+    ):
         return b"".join(elements)
     return elements
 
@@ -146,12 +148,12 @@ def constructor(cls: type[Message]) -> Callable[..., Any]:
 
 def new_constructor(cls: type[Message]) -> Callable[..., Any]:
     """Return a new constructor; its source holds validated field names and numbers only."""
-    made = python_class(cls)
+    own = python_class(cls)
     names = [field.name for field in fields(cls)]
     namespace: dict[str, Any] = {
-        "NEW": made.__new__,
-        "CLASS": made,
-        "CHECKED": made()._check_fields,
+        "NEW": own.__new__,
+        "CLASS": own,
+        "CHECKED": own()._check_fields,
         "ARRAY": array,
         "OCTETS": OCTETS,
     }

@@ -79,15 +79,15 @@ def slot_type(type_: FieldType) -> AbstractType:
 
 def field_text(type_: FieldType) -> str:
     """Return the type as in ``get_fields_and_field_types``: ``sequence<string<5>, 3>``."""
-    one = IDL_NAMES.get(type_.kind, type_.kind)
+    element = IDL_NAMES.get(type_.kind, type_.kind)
     if type_.nested is not None:
         package, _, name = type_name(type_.nested).split("/")
-        one = f"{package}/{name}"
+        element = f"{package}/{name}"
     elif type_.string_bound is not None:
-        one = f"{one}<{type_.string_bound}>"
-    ends = {"array": f"{one}[{type_.size}]", "bounded": f"sequence<{one}, {type_.size}>"}
-    ends["unbounded"] = f"sequence<{one}>"
-    return ends.get(type_.container, one)
+        element = f"{element}<{type_.string_bound}>"
+    ends = {"array": f"{element}[{type_.size}]", "bounded": f"sequence<{element}, {type_.size}>"}
+    ends["unbounded"] = f"sequence<{element}>"
+    return ends.get(type_.container, element)
 
 
 def python_type(type_: FieldType) -> str:

@@ -47,11 +47,11 @@ def action_class(name: str) -> type[Any]:
 
 def of_kind(name: str, base: type[Any]) -> type[Any]:
     """Return the class of a type that has to be of one kind."""
-    found = find(name)
-    if not issubclass(found, base):
+    described = find(name)
+    if not issubclass(described, base):
         what = {Message: "a message", ServiceType: "a service", ActionType: "an action"}[base]
         raise TypeError(f"{name}: not {what} type")
-    return python_class(found)
+    return python_class(described)
 
 
 def aionode_class(cls: Any) -> Any:
@@ -63,9 +63,9 @@ def aionode_class(cls: Any) -> Any:
     if isinstance(cls, type):
         if issubclass(cls, Message | ServiceType | ActionType):
             return cls
-        found = _classes.aionode_class(cls)
-        if found is not None:
-            return found
+        described = _classes.aionode_class(cls)
+        if described is not None:
+            return described
     raise TypeError(f"{cls!r}: not a message, service or action class")
 
 
@@ -81,12 +81,12 @@ def ros_type_name(cls: Any) -> str:
 def classes_of(name: str) -> dict[str, type[Any]]:
     """Return all classes that rosidl generates for an interface, by their Python names."""
     cls = interface_class(name)
-    found = {cls.__name__: cls}
+    classes = {cls.__name__: cls}
     if "/msg/" in name:
-        return found
+        return classes
     parts = [getattr(cls, part) for part in (*SERVICE_PARTS, *ACTION_PARTS) if hasattr(cls, part)]
     if hasattr(cls, "Impl"):
         services = (cls.Impl.SendGoalService, cls.Impl.GetResultService)
         parts += [*services, cls.Impl.FeedbackMessage]
         parts += [getattr(service, part) for service in services for part in SERVICE_PARTS]
-    return found | {part.__name__: part for part in parts}
+    return classes | {part.__name__: part for part in parts}

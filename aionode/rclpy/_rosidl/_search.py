@@ -45,12 +45,12 @@ def find(name: str) -> type[Any]:
     if NAMED and NAMED[0].has(name):
         return NAMED[0].build(name)
     try:
-        found: type[Any] = get_interface(name)
+        described: type[Any] = get_interface(name)
     except InterfaceNotFoundError:
         if not add_workspace(name.partition("/")[0]):
             raise
-        found = find(name)
-    return found
+        described = find(name)
+    return described
 
 
 def add_workspace(package: str) -> bool:

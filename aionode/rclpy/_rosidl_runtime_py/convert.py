@@ -56,11 +56,11 @@ def message_to_yaml(
     flow_style: bool = False,
 ) -> str:
     """Return a message as YAML; see `message_to_ordereddict`."""
-    found = message_to_ordereddict(
+    shown = message_to_ordereddict(
         msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str
     )
     return yaml.dump(
-        found,
+        shown,
         Dumper=OrderedDumper,
         allow_unicode=True,
         width=sys.maxsize,
@@ -114,7 +114,7 @@ class Conversion:
         if isinstance(value, list | tuple | array | np.ndarray):
             if self.no_arr and type_ is not None:
                 return described(value, type_)
-            shown = [self.value(one) for one in value[: self.truncate_length]]
+            shown = [self.value(element) for element in value[: self.truncate_length]]
             if self.is_long(value):
                 shown.append("...")
             return tuple(shown) if isinstance(value, tuple) else shown
@@ -129,7 +129,7 @@ class Conversion:
         if isinstance(value, list | tuple | array | np.ndarray):
             if self.no_arr and type_ is not None:
                 return described(value, type_)
-            shown = [self.text(one) for one in value[: self.truncate_length]]
+            shown = [self.text(element) for element in value[: self.truncate_length]]
             return ",".join([*shown, "..."] if self.is_long(value) else shown)
         if isinstance(value, str):
             return f"<string length: <{len(value)}>>" if self.no_str else self.shortened(value)

@@ -56,13 +56,13 @@ def get_action_interfaces(package_names: Collection[str] = ()) -> dict[str, list
 
 def interfaces(package_names: Collection[str], prefix: str) -> dict[str, list[str]]:
     """Return the interfaces of packages whose names begin with a prefix."""
-    found: dict[str, list[str]] = {}
+    by_package: dict[str, list[str]] = {}
     for package in package_names or get_interface_packages():
         if not has_interfaces(package) and not installed(package):
             raise LookupError(f"Unknown package '{package}'")
         names = [name.partition("/")[2] for name in names_in(package)]
-        found[package] = [name for name in names if name.startswith(prefix)]
-    return {package: names for package, names in found.items() if names}
+        by_package[package] = [name for name in names if name.startswith(prefix)]
+    return {package: names for package, names in by_package.items() if names}
 
 
 def installed(package: str) -> str:

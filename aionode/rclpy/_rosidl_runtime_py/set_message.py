@@ -77,7 +77,7 @@ class Filling:
             return np.array(value, dtype=before.dtype)
         if isinstance(type_, AbstractNestedType) and isinstance(type_.value_type, NamespacedType):
             cls = import_message_from_namespaced_type(type_.value_type)
-            return [self.filled(cls, one) for one in value]
+            return [self.filled(cls, element) for element in value]
         if type(value) is type(before):
             return value
         try:
@@ -87,6 +87,6 @@ class Filling:
 
     def filled(self, cls: Any, value: Any) -> Any:
         """Return a new message with these values."""
-        made = cls()
-        self.fill(made, value)
-        return made
+        message = cls()
+        self.fill(message, value)
+        return message

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from aionode.rclpy._rosidl_parser.definition import NamespacedType
@@ -29,26 +30,27 @@ def get_interface(identifier: str) -> Any:
 
 def get_message(identifier: str) -> Any:
     """Return a message class; ``std_msgs/String`` will do."""
-    found = import_message_from_namespaced_type(get_message_namespaced_type(identifier))
-    if not is_message(found):
-        raise ValueError(f"Expected the full name of a message, got '{identifier}'")
-    return found
+    return of_kind(get_message_namespaced_type(identifier), is_message, "a message", identifier)
 
 
 def get_service(identifier: str) -> Any:
     """Return a service class; ``std_srvs/Trigger`` will do."""
-    found = import_message_from_namespaced_type(get_service_namespaced_type(identifier))
-    if not is_service(found):
-        raise ValueError(f"Expected the full name of a service, got '{identifier}'")
-    return found
+    return of_kind(get_service_namespaced_type(identifier), is_service, "a service", identifier)
 
 
 def get_action(identifier: str) -> Any:
     """Return an action class; ``example_interfaces/Fibonacci`` will do."""
-    found = import_message_from_namespaced_type(get_action_namespaced_type(identifier))
-    if not is_action(found):
-        raise ValueError(f"Expected the full name of an action, got '{identifier}'")
-    return found
+    return of_kind(get_action_namespaced_type(identifier), is_action, "an action", identifier)
+
+
+def of_kind(
+    type_: NamespacedType, is_kind: Callable[[Any], bool], what: str, identifier: str
+) -> Any:
+    """Return the class of a type that has to be of one kind."""
+    interface = import_message_from_namespaced_type(type_)
+    if not is_kind(interface):
+        raise ValueError(f"Expected the full name of {what}, got '{identifier}'")
+    return interface
 
 
 def get_namespaced_type(identifier: str) -> NamespacedType:

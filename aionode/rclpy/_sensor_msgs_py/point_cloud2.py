@@ -67,8 +67,8 @@ def dtype_from_fields(fields: Iterable[Any], point_step: int | None = None) -> n
 
 def create_cloud(header: Any, fields: Iterable[Any], points: Any, step: int | None = None) -> Any:
     """Return a cloud of points; see `aionode.point_cloud2.create_cloud`."""
-    made = point_cloud2.create_cloud(own(header), map(own, fields), points, step)
-    return from_aionode(made)
+    cloud = point_cloud2.create_cloud(own(header), map(own, fields), points, step)
+    return from_aionode(cloud)
 
 
 def create_cloud_xyz32(header: Any, points: Any, step: int | None = None) -> Any:

@@ -67,8 +67,8 @@ class BufferCore(tf.BufferCore):
     @locked
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
         """Return the newest time at which a transform is available."""
-        found = super().get_latest_common_time(target_frame, source_frame)
-        return Time(nanoseconds=found.nanoseconds)
+        latest = super().get_latest_common_time(target_frame, source_frame)
+        return Time(nanoseconds=latest.nanoseconds)
 
     set_transform = locked(tf.BufferCore.set_transform)
     set_transform_static = locked(tf.BufferCore.set_transform_static)

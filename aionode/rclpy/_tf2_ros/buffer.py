@@ -95,10 +95,10 @@ class Buffer(BufferCore, BufferInterface):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether a transform is available, after a wait of `timeout` at most."""
-        found = self._until(
+        answer = self._until(
             lambda: self.can_transform_core(target_frame, source_frame, time), timeout
         )
-        return found if return_debug_tuple else found[0]
+        return answer if return_debug_tuple else answer[0]
 
     def can_transform_full(
         self,
@@ -112,16 +112,16 @@ class Buffer(BufferCore, BufferInterface):
     ) -> Any:
         """Return whether a transform between two times is available, after a wait."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
-        found = self._until(lambda: self.can_transform_full_core(*question), timeout)
-        return found if return_debug_tuple else found[0]
+        answer = self._until(lambda: self.can_transform_full_core(*question), timeout)
+        return answer if return_debug_tuple else answer[0]
 
     def _until(self, ask: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
         """Ask until the answer is yes, or the time is over."""
         ends_ns = perf_ns() + time_ns_of(timeout)
         with self._new_data:
-            while not (found := ask())[0] and (left_ns := ends_ns - perf_ns()) > 0:
+            while not (answer := ask())[0] and (left_ns := ends_ns - perf_ns()) > 0:
                 self._new_data.wait(left_ns / 1e9)
-        return found
+        return answer
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
         """Await a transform, and return it."""

@@ -84,18 +84,18 @@ class ConvertRegistration:
 
     def get_from_msg(self, key: Any) -> Callable[[Any], Any]:
         """Return what makes an object of a message; TypeException if nothing does."""
-        return found(ConvertRegistration.__from_msg_map, key)
+        return entry_of(ConvertRegistration.__from_msg_map, key)
 
     def get_to_msg(self, key: Any) -> Callable[[Any], Any]:
         """Return what makes a message of an object; TypeException if nothing does."""
-        return found(ConvertRegistration.__to_msg_map, key)
+        return entry_of(ConvertRegistration.__to_msg_map, key)
 
     def get_convert(self, key: Any) -> Callable[[Any], Any]:
         """Return what converts between two types; TypeException if nothing does."""
-        return found(ConvertRegistration.__convert_map, key)
+        return entry_of(ConvertRegistration.__convert_map, key)
 
 
-def found(table: dict[Any, Callable[[Any], Any]], key: Any) -> Callable[[Any], Any]:
+def entry_of(table: dict[Any, Callable[[Any], Any]], key: Any) -> Callable[[Any], Any]:
     """Return an entry of a table; TypeException if it has none."""
     if key not in table:
         raise TypeException(f"Type {key} is not loaded or supported")

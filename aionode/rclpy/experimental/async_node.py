@@ -257,11 +257,11 @@ class AsyncNode(Node):
         **options: Any,
     ) -> AsyncClient:
         """Return a client whose `call` is awaited."""
-        made = super().create_client(srv_type, srv_name, qos_profile=qos_profile, **options)
+        plain = super().create_client(srv_type, srv_name, qos_profile=qos_profile, **options)
         client = AsyncClient(
-            self.context, made.handle, srv_type, srv_name, qos_profile, made.callback_group
+            self.context, plain.handle, srv_type, srv_name, qos_profile, plain.callback_group
         )
-        self._clients[self._clients.index(made)] = client
+        self._clients[self._clients.index(plain)] = client
         return client
 
     def create_timer(  # type: ignore[override] # of Lyrical's AsyncNode
