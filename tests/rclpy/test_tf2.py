@@ -18,6 +18,8 @@ from aionode.rclpy._tf2_py import BufferCore, ExtrapolationException, LookupExce
 from aionode.rclpy._tf2_ros import Buffer, TransformRegistration, TypeException, convert
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
+from aionode.tf._waiters import Waiter
+from tests.support.living import living
 
 TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
 PointStamped = message_class("geometry_msgs/msg/PointStamped")
@@ -153,7 +155,7 @@ def test_a_future_gets_the_transform_and_is_forgotten_when_it_is_cancelled() -> 
     with pytest.raises(StopIteration) as ended:
         coroutine.send(None)
     assert ended.value.value == stamped("a", "b")
-    assert not buffer._waiters._by_frame
+    assert living(Waiter) == 0
 
 
 def test_what_is_there_is_awaited_without_a_turn() -> None:

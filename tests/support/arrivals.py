@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
+    from aionode.bare_node import BarePublisher
     from aionode.endpoints._core.subscription_reader import SubscriptionReader
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.service import Service
@@ -37,7 +38,7 @@ def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:
     return subscription._reader
 
 
-def writers_of(publisher: Publisher[Any]) -> tuple[Writer, ...]:
+def writers_of(publisher: Publisher[Any] | BarePublisher) -> tuple[Writer, ...]:
     """Return what a publisher got from each transport: it writes each message to them."""
     return tuple(publisher._writers)
 

@@ -114,7 +114,7 @@ class StandIn:
         )
         self._listen = session.declare_subscriber("**", self._check, allowed_origin=REMOTE)
         self._hear = session.declare_queryable("**", self._check_query, allowed_origin=REMOTE)
-        self._token = session.liveliness().declare_token(f"@/{self.zid}/@ros2_lv")
+        self.token = session.liveliness().declare_token(f"@/{self.zid}/@ros2_lv")
 
     def key(self, name: str) -> str:
         """Return the key of a topic or service on DDS."""

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from math import cos, sin
 
 from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.interfaces.tf2_msgs.msg import TFMessage
+from aionode.tf import BufferCore
 
-__all__ = ["message", "parts", "transform"]
+__all__ = ["message", "parts", "senders", "transform"]
 
 
 def transform(
@@ -31,6 +33,11 @@ def transform(
             translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=i, y=j, z=k, w=w)
         ),
     )
+
+
+def senders(buffer: BufferCore) -> set[str]:
+    """Return who has sent the transforms of a buffer."""
+    return set(re.findall("broadcaster: '(.*?)'", buffer.all_frames_as_yaml()))
 
 
 def message(*transforms: TransformStamped) -> TFMessage:

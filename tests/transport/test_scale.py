@@ -16,6 +16,7 @@ from aionode.node import Node
 from aionode.testing import local_context
 from aionode.transport.link._manager import LinkManager
 from aionode.transport.link._protocol import Open, Opened, Switched
+from tests.support.arrivals import writers_of
 from tests.support.links import Counting, folder, link_of, manager_of, transport_of, two_nodes
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ async def test_a_subscription_of_another_process_concerns_publishers_of_its_name
             return lambda: asked.append(name)
 
         for publisher in (near, *far):
-            writer: Any = publisher._writers[1]
+            writer: Any = writers_of(publisher)[1]
             writer.reconsider = note(publisher.topic_name)
         nodes.b.create_subscription(Int32, "near", None, 10)
         await near.wait_for_subscribers()
@@ -105,7 +106,7 @@ async def test_a_subscription_of_another_context_costs_the_same_beside_many() ->
         state = transport_of(nodes.a).zenoh.session_state  # type: ignore[attr-defined]  # Zenoh's
         state.acknowledgements.participants.add("f00")
         other = NodeInfo("f00", 0, "other", "/")
-        endpoint = publisher._endpoint
+        (endpoint,) = nodes.a.graph.endpoints(EndpointKind.PUBLISHER, name="/many")
         readers = [
             replace(
                 endpoint,

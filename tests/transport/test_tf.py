@@ -5,7 +5,7 @@ from __future__ import annotations
 from aionode import Time
 from aionode.clock import ClockType
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
-from tests.support.transforms import transform
+from tests.support.transforms import senders, transform
 from tests.transport.test_contract import Pair, pair
 
 __all__ = ["pair"]  # the fixture
@@ -30,4 +30,4 @@ async def test_a_late_buffer_has_static_transforms_and_awaits_the_others(pair: P
     )
     assert found.transform.translation.x == 2.0
     sender = pair.left.get_fully_qualified_name()
-    await pair.right.graph.until(lambda: set(buffer._authorities.values()) == {sender})
+    await pair.right.graph.until(lambda: senders(buffer) == {sender})

@@ -14,6 +14,7 @@ from aionode._lendable_loop import LendableLoop
 from aionode.bare_node import BareNode, BarePublisher
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile
+from tests.support.arrivals import writers_of
 from tests.support.links import folder
 from tests.support.peers import quiet_node
 
@@ -73,7 +74,7 @@ async def test_messages_of_a_borrower_arrive_in_order_over_whatever_route() -> N
         while not ("link" in routes and sent >= 3000):
             await asyncio.to_thread(send, 200)
             (reader,) = publisher.matched()
-            routes.update(writer.route_of(reader) for writer in publisher._writers[1:])
+            routes.update(writer.route_of(reader) for writer in writers_of(publisher)[1:])
             while len(got) < sent:
                 got.append((await subscription.receive()).data)
 

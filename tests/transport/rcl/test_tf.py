@@ -12,7 +12,7 @@ from aionode.context import Context
 from aionode.node import Node
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
 from tests.support.ros import ros_domain, ros_missing, ros_peer
-from tests.support.transforms import transform
+from tests.support.transforms import senders, transform
 
 if TYPE_CHECKING:
     import subprocess
@@ -62,7 +62,7 @@ async def test_a_late_buffer_has_the_static_transforms_of_rclpy_and_hears_the_ot
             now = node.get_clock().now()
             found = await buffer.wait_for_transform("peer_map", "peer_camera", now)
             assert found.transform.translation.x == 3.0
-            await node.graph.until(lambda: set(buffer._authorities.values()) == {"/tf_peer"})
+            await node.graph.until(lambda: senders(buffer) == {"/tf_peer"})
 
 
 async def test_a_late_node_of_rclpy_gets_our_static_transforms_and_hears_the_others() -> None:

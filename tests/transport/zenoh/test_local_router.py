@@ -6,14 +6,13 @@ import asyncio
 from contextlib import AsyncExitStack
 
 import pytest
+import zenoh  # noqa: TID251  # type of sessions
 
 from aionode.context import Context
 from aionode.errors import ConfigurationError
-from aionode.transport._network import network_from
 from aionode.transport.zenoh import _local_router as local_router
-from aionode.transport.zenoh._local_router import ROUTER_IDS, LocalRouter
+from aionode.transport.zenoh._local_router import ROUTER_IDS
 from aionode.transport.zenoh._session import answering_ports
-from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import ros_router
 from tests.support.waiting import until
@@ -29,11 +28,11 @@ def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(local_router, "LINKED_S", 0.0)
 
 
-def router_of(context: Context) -> LocalRouter:
-    """Return what opens a router for a context."""
+def router_of(context: Context) -> zenoh.Session | None:
+    """Return the router that a context has opened."""
     transport = context.transports[1]
     assert isinstance(transport, ZenohTransport)
-    return transport._local_router
+    return transport._local_router._router
 
 
 def port_of(context: Context) -> int:
@@ -49,7 +48,7 @@ async def test_the_first_process_with_static_peers_opens_a_router() -> None:
         Context(),
     ):
         assert answering_ports([port_of(first)])
-        routers = [router_of(each)._router for each in (first, second)]
+        routers = [router_of(each) for each in (first, second)]
 
         assert routers[0] is not None
         assert routers[1] is None
@@ -64,7 +63,7 @@ async def test_another_process_takes_the_place_of_one_that_ended() -> None:
         async with AsyncExitStack() as rest:
             second = await rest.enter_async_context(Context(static_peers=[FAR]))
             await stack.aclose()
-            await until(lambda: router_of(second)._router is not None)
+            await until(lambda: router_of(second) is not None)
             assert answering_ports([port_of(first)])
 
 
@@ -73,7 +72,7 @@ async def test_beside_a_router_it_only_links_that_one() -> None:
     router = await asyncio.to_thread(ros_router)
     try:
         async with Context(static_peers=[FAR]) as context:
-            opened = router_of(context)._router
+            opened = router_of(context)
             assert opened is not None
             await until(lambda: list(opened.info.routers_zid()) == [router.zid()])
             assert not list(opened.info.peers_zid())
@@ -94,7 +93,7 @@ async def test_without_peers_on_other_machines_there_is_no_router(
 ) -> None:
     """What is not asked for does not listen."""
     async with Context(**options) as context:  # type: ignore[arg-type]
-        assert router_of(context)._router is None
+        assert router_of(context) is None
         assert not answering_ports([port_of(context)])
 
 
@@ -103,5 +102,3 @@ async def test_a_wrong_setting_is_an_error_and_leaves_nothing_open() -> None:
     with pytest.raises(ConfigurationError):
         async with Context(static_peers=[FAR], config={"no/such/key": 1}):
             pass
-    network = network_from({})
-    assert LocalRouter(SessionState("a1", 0), network)._router is None

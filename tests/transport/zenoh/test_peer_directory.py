@@ -17,7 +17,7 @@ from aionode.transport._network import network_from
 from aionode.transport.zenoh._session import close_session, open_router
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import DOMAIN_ID, Collector, known, raw_session, ros_router, zenoh_config
-from tests.support.spies import returns_of
+from tests.support.waiting import until
 
 PATIENCE_S = 20.0
 """How long a test waits for a connection to come or go."""
@@ -118,7 +118,7 @@ def announce_node(session: zenoh.Session, domain_id: int) -> zenoh.LivelinessTok
 
 async def until_nodes(transport: ZenohTransport, count: int) -> None:
     """Wait until `count` nodes of the domain are in the graph."""
-    graph = transport._state.graph
+    graph = transport.session_state.graph
     assert graph is not None
     await graph.until(lambda: len(graph.nodes()) == count)
 
@@ -138,22 +138,19 @@ async def test_a_plain_session_is_an_unannounced_peer_while_it_is_connected(hear
     assert heard.told == [True, False]
 
 
-async def test_unannounced_peers_are_reported_with_the_connection(
-    heard: Heard, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_unannounced_peers_are_reported_with_the_connection(heard: Heard) -> None:
     """Not in a later turn of the loop, in which something may be published."""
     seen: list[bool] = []
     there = asyncio.Event()
 
-    note = heard.peer_directory._update
+    connections = heard.transport.session_state.connections
 
-    def on_connected() -> None:
-        note()
-        if heard.peer_directory._connected:  # other events lead here too
+    def on_change(_: object) -> None:
+        if connections.kinds:
             seen.append(heard.peer_directory.has_unannounced_peers)
             there.set()
 
-    monkeypatch.setattr(heard.peer_directory, "_update", on_connected)
+    connections.on_change.append(on_change)
     async with asyncio.timeout(PATIENCE_S):
         with raw_session():
             await there.wait()
@@ -187,14 +184,11 @@ async def test_a_ros_context_stays_known_after_its_last_node(heard: Heard) -> No
 
 
 @pytest.mark.parametrize("domain_id", [DOMAIN_ID, DOMAIN_ID + 1])
-async def test_a_context_is_no_unannounced_peer(
-    heard: Heard, domain_id: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_a_context_is_no_unannounced_peer(heard: Heard, domain_id: int) -> None:
     """Of any domain, and before it has a node."""
-    updated = returns_of(monkeypatch, heard.peer_directory, "_update")
+    connections = heard.transport.session_state.connections
     async with context("b2", domain_id=domain_id):
-        while "b2" not in heard.peer_directory._connected:
-            await updated.get()
+        await until(lambda: "b2" in connections.kinds)
         await heard.until(False)
 
 
@@ -255,7 +249,7 @@ async def test_retransmissions_without_a_connection_are_given_up() -> None:
         pass
     transport.peer_directory.retransmit("b2", b"late")
 
-    assert not transport._state.peer_senders.send_threads()
+    assert not transport.session_state.peer_senders.send_threads()
 
 
 async def test_nothing_is_declared_without_an_advertisement() -> None:
@@ -286,9 +280,6 @@ async def test_closing_leaves_nothing_behind() -> None:
             peer_directory = transport.peer_directory
 
             assert not peer_directory.has_unannounced_peers
-            assert not peer_directory._declared
-            assert not peer_directory._known
-            assert not peer_directory._connected
             tokens = {
                 str(each.ok.key_expr) for each in session.liveliness().get("@aionode/**") if each.ok
             }
@@ -326,17 +317,19 @@ class Stuck:
         self.gate.wait()
 
 
-async def test_a_stuck_peer_holds_up_no_large_message_to_others() -> None:
+async def test_a_stuck_peer_holds_up_no_large_message_to_others(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Both waited in the thread that sends all large messages."""
     stuck = Stuck()
     done = asyncio.Event()
     async with context("a1") as transport:
         peer_directory: Any = transport.peer_directory
-        session, peer_directory._session = peer_directory._session, stuck
+        monkeypatch.setattr(peer_directory, "_session", stuck)
         peer_directory.retransmit("b2", b"late")
         await asyncio.to_thread(stuck.entered.wait)
-        queue: Any = transport._state.queue(lambda _: done.set())
-        transport._state.bulk.submit(lambda: queue.put(None))
+        queue: Any = transport.session_state.queue(lambda _: done.set())
+        transport.session_state.bulk.submit(lambda: queue.put(None))
         await done.wait()
-        peer_directory._session = session
+        monkeypatch.undo()
         stuck.gate.set()

@@ -26,6 +26,8 @@ from aionode.message import from_builtins
 from aionode.transport.zenoh import _services as services
 from aionode.transport.zenoh._request_room import RequestRoom
 from aionode.transport.zenoh._services import error_payload, parse_error
+from aionode.transport.zenoh._session_state import SessionState
+from aionode.transport.zenoh._transport import ZenohTransport
 from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
@@ -94,6 +96,13 @@ async def raw_reply(
 
 
 # Both ends aionode
+
+
+def state_of(context: Context) -> SessionState:
+    """Return the state that all of a context's entities in Zenoh share."""
+    transport = context.transports[1]
+    assert isinstance(transport, ZenohTransport)
+    return transport.session_state
 
 
 async def test_many_calls_at_once_each_get_their_answer() -> None:
@@ -184,20 +193,16 @@ async def test_requests_whose_answers_wait_to_be_sent_are_limited_in_bytes(
         quiet_node("client", second) as node,
         quiet_node("other", third) as other_node,
     ):
-        service = server.create_service(SetParameters, "set", lambda _: SetParameters.Response())
-        (registration,) = (
-            each for each in service._registrations if isinstance(each, services.ZenohServer)
-        )
+        server.create_service(SetParameters, "set", lambda _: SetParameters.Response())
+        senders = state_of(first).peer_senders
         client = node.create_client(SetParameters, "set")
         other = other_node.create_client(SetParameters, "set")
         await client.wait_for_service()
         await other.wait_for_service()
-        await until(lambda: len(registration._clients) == 2)
+        await server.graph.until(lambda: server.count_clients("/set") == 2)
         unsent: list[Callable[[], None]] = []
-        send = registration.state.peer_senders.send
-        monkeypatch.setattr(
-            registration.state.peer_senders, "send", lambda _to, _size, job: unsent.append(job)
-        )
+        send = senders.send
+        monkeypatch.setattr(senders, "send", lambda _to, _size, job: unsent.append(job))
         request = SetParameters.Request(parameters=[Parameter(name="x" * 10_000)])
         calls = [client.call_async(request) for _ in range(20)]
         await until(lambda: len(unsent) + sum(call.done() for call in calls) == 20)
@@ -210,7 +215,7 @@ async def test_requests_whose_answers_wait_to_be_sent_are_limited_in_bytes(
         await until(lambda: len(unsent) + other_call.done() == taken + 1)
         assert not other_call.done()
 
-        monkeypatch.setattr(registration.state.peer_senders, "send", send)
+        monkeypatch.setattr(senders, "send", send)
         for job in unsent:
             job()
         await asyncio.gather(other_call, *calls, return_exceptions=True)
@@ -285,8 +290,7 @@ async def test_a_request_that_was_given_up_is_not_served() -> None:
         client = node.create_client(AddTwoInts, "add")
         await client.wait_for_service()
         told = asyncio.Event()
-        transport: Any = first.transports[1]
-        cancellations = transport._state.cancellations
+        cancellations = state_of(first).cancellations
         cancellations.listen("/other", lambda _gid, _sequence: served.append(0))
         cancellations.listen("/add", lambda _gid, _sequence: told.set())
         busy = asyncio.gather(client.call(AddTwoInts.Request(a=1)))

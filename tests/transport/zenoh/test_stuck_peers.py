@@ -22,6 +22,7 @@ from aionode.transport.zenoh._defects.blocked_sends import UNREAD_MS
 from aionode.transport.zenoh._defects.closing import unanswered
 from aionode.transport.zenoh._session import close_session, open_router
 from aionode.transport.zenoh._sockets import connections, duplicates
+from tests.support.living import living
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until
 
@@ -77,16 +78,17 @@ async def test_a_connection_whose_peer_reads_nothing_is_given_up_before_its_leas
 
 async def test_a_closed_context_looks_for_sockets_no_more() -> None:
     """A timer that is left would hold the closed session."""
-    async with two_contexts() as both:
-        transports: list[Any] = [context.transports[1] for context in both]
-        setters = [transport._socket_options for transport in transports]
-        await until(lambda: all(each._timer for each in setters))
-        timers = [each._timer for each in setters]
 
-    for timer in timers:
+    def timers() -> list[threading.Timer]:
+        return [each for each in threading.enumerate() if isinstance(each, threading.Timer)]
+
+    async with two_contexts():
+        await until(lambda: len(timers()) >= 2)
+
+    for timer in timers():
         timer.join(10)
-    assert [timer.is_alive() for timer in timers] == [False, False]
-    assert [transport._socket_options for transport in transports] == [None, None]
+    assert timers() == []
+    assert living(lingering.SocketOptions) == 0
 
 
 async def test_no_connection_of_a_router_waits_for_its_peer_when_it_is_closed(

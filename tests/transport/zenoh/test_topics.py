@@ -31,6 +31,7 @@ from aionode.wire import _attachment as attachment
 from aionode.wire import cdr
 from aionode.wire._key_expression import buffer_key, data_key
 from aionode.wire.typehash import type_hash
+from tests.support.arrivals import writers_of
 from tests.support.peers import (
     DOMAIN_ID,
     KEEP_ALL,
@@ -42,7 +43,6 @@ from tests.support.peers import (
     ros_value,
     two_contexts,
 )
-from tests.support.spies import returns_of
 from tests.support.waiting import until
 
 VECTORS: dict[str, Any] = json.loads(
@@ -249,23 +249,14 @@ async def test_a_message_is_encoded_only_for_remote_subscriptions() -> None:
     async with quiet_node("a") as node:
         publisher = node.create_publisher(Int32, "n", 10)
         node.create_subscription(Int32, "n")
-        writer: Any = publisher._writers[1]
+        writer = writers_of(publisher)[1]
         assert not writer.active
 
         with raw_session() as session:
             subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", lambda _: None)
             await matched(publisher)
-            changed = asyncio.get_running_loop().create_future()
-            update = writer._update
-
-            def note() -> None:
-                update()
-                if not writer.active and not changed.done():
-                    changed.set_result(None)
-
-            writer._update = note
             subscriber.undeclare()
-            await changed
+            await until(lambda: not writer.active)
 
 
 # Large messages, many messages
@@ -448,23 +439,17 @@ def domain_lines(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
     ]
 
 
-async def test_many_other_domains_make_one_line(
-    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+async def test_many_other_domains_make_one_line(caplog: pytest.LogCaptureFixture) -> None:
     """It names a few, and counts the rest; they are forgotten when they are gone."""
     with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
         async with quiet_node("here") as here, quiet_node("elsewhere") as near:
             transport = transport_of(here)
-            added = returns_of(monkeypatch, transport._watcher, "_add")
-            removed = returns_of(monkeypatch, transport._watcher, "_remove")
             tokens = announced(session, range(200, 260))
-            while len(transport.other_domains) < 60:
-                await added.get()
+            await until(lambda: len(transport.other_domains) >= 60)
             before = domain_lines(caplog)
             for token in tokens:
                 token.undeclare()
-            while transport.other_domains:
-                await removed.get()
+            await until(lambda: not transport.other_domains)
             assert near.context.ok()
 
     assert len(before) <= 2 * 2  # of each of two contexts the first, and one with ten times as many
@@ -508,17 +493,15 @@ async def test_a_closed_context_leaves_no_thread_and_opens_again() -> None:
     context = Context()
     publisher_node = quiet_node("a", context)
     publisher = publisher_node.create_publisher(Int32, "n", 10)
-    await context._acquire()
-    await context._release()
+    async with quiet_node("other", context):
+        pass
     assert [t for t in threading.enumerate() if t not in before] == []
 
-    await context._acquire()
-    async with quiet_node("b") as b:
+    async with quiet_node("other", context), quiet_node("b") as b:
         subscription = b.create_subscription(Int32, "n")
         await publisher.wait_for_subscribers()
         publisher.publish(Int32(data=7))
         assert await first_numbers(subscription, 1) == [7]
-    await context._release()
     publisher_node.destroy_node()
 
 
@@ -560,19 +543,7 @@ def transport_of(node: Node) -> Any:
 
 async def matched(publisher: Any) -> None:
     """Wait until a subscriber without a token matches."""
-    writer = publisher._writers[1]
-    if writer.active:
-        return
-    future = asyncio.get_running_loop().create_future()
-    update = writer._update_with
-
-    def note(status: zenoh.MatchingStatus) -> None:
-        update(status)
-        if writer.active and not future.done():
-            future.set_result(None)
-
-    writer._matching_changed._handle = note
-    await future
+    await until(lambda: writers_of(publisher)[1].active)
 
 
 async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
@@ -583,7 +554,7 @@ async def test_without_a_hash_every_definition_of_a_type_is_heard() -> None:
         endpoint = EndpointInfo(
             EndpointKind.SUBSCRIPTION,
             node.context.graph.nodes()[0],
-            node.context._new_id(),
+            99,
             "/chatter",
             "std_msgs/msg/String",
             "",
