@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from aionode._node.graph import GraphQueries
 from aionode.graph import EndpointKind
-from aionode.rclpy._entities import wait_until
+from aionode.rclpy._entities import in_use, wait_until
+from aionode.rclpy._impl.node import NodeHandle
 from aionode.rclpy.qos import as_own
 from aionode.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from aionode.rclpy.type_hash import TypeHash
 
 if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
-    from aionode.rclpy._impl.node import NodeHandle
     from aionode.rclpy.context import Context
 
 __all__ = ["NodeGraph"]
@@ -43,20 +43,9 @@ class NodeGraph(GraphQueries):
     def handle(self, value: Any) -> None:
         raise AttributeError("handle cannot be modified after node creation")
 
-    def get_name(self) -> str:
-        """Return the name without namespace."""
-        with self._handle:
-            return self._handle.get_node_name()
-
-    def get_namespace(self) -> str:
-        """Return the namespace, which begins with a slash."""
-        with self._handle:
-            return self._handle.get_namespace()
-
-    def get_fully_qualified_name(self) -> str:
-        """Return namespace and name in one."""
-        with self._handle:
-            return self._handle.get_fully_qualified_name()
+    get_name = in_use(NodeHandle.get_node_name)
+    get_namespace = in_use(NodeHandle.get_namespace)
+    get_fully_qualified_name = in_use(NodeHandle.get_fully_qualified_name)
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Return the full name of a topic, remapped unless `only_expand`."""

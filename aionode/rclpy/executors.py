@@ -214,12 +214,12 @@ class Executor:
         future.add_done_callback(lambda _: self.wake())
         if timeout_sec is None or timeout_sec < 0:
             while self._goes_on(future):
-                self._spin_once_until_future_complete(future, timeout_sec)
+                self._spin_once_impl(timeout_sec, future.done)
             return
         ends_ns = steady_ns() + timeout_sec * 1e9
         left = TimeoutObject(timeout_sec)
         while self._goes_on(future):
-            self._spin_once_until_future_complete(future, left)
+            self._spin_once_impl(left, future.done)
             left_ns = ends_ns - steady_ns()
             if left_ns <= 0:
                 return
@@ -248,11 +248,6 @@ class Executor:
     ) -> None:
         """As `spin_once`, but no longer than until `future` is done."""
         future.add_done_callback(lambda _: self.wake())
-        self._spin_once_until_future_complete(future, timeout_sec)
-
-    def _spin_once_until_future_complete(
-        self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
-    ) -> None:
         self._spin_once_impl(timeout_sec, future.done)
 
     def _spin_once_impl(

@@ -38,6 +38,5 @@ class GuardCondition(HandleOwner[GuardConditionHandle]):
         self.callback = callback
         self.callback_group = callback_group
         self._executor_event = False  # whether an executor has a task for it that has not begun
-        self._executor_triggered = False
 
     trigger = in_use(GuardConditionHandle.trigger_guard_condition)

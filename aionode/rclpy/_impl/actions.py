@@ -18,10 +18,13 @@ from aionode.rclpy._impl.typesupport import message_like
 from aionode.rclpy._rosidl import aionode_class
 
 if TYPE_CHECKING:
+    from aionode.clock import Clock
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.qos import QoSProfile
     from aionode.rclpy._impl.node import NodeHandle
     from aionode.rclpy._impl.timers import ClockHandle
 
-__all__ = ["ActionClientHandle", "ActionServerHandle", "Expiry", "GoalEvent"]
+__all__ = ["ActionClientHandle", "ActionHandle", "ActionServerHandle", "Expiry", "GoalEvent"]
 
 RETRY_S = 0.001
 """Time for which states wait for a thread that is sending earlier ones, in seconds."""
@@ -105,10 +108,15 @@ class ActionHandle(Destroyable):
             elif isinstance(part, Expiry):
                 wait_set.add_timer(part)
 
-    def configure_introspection(self, clock: ClockHandle, qos_profile: Any, state: Any) -> None:
-        """Tell of the calls of the three services."""
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of the calls of the three services on ``…/_service_event``."""
         for service in (self.goal, self.result, self.cancel):
-            service.configure_introspection(clock, qos_profile, state)
+            service.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
     def _destroy(self) -> None:
         for part in getattr(self, "parts", ()):

@@ -13,6 +13,7 @@ from aionode.clock import MachineTime
 from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.endpoints._qos.lifespan import expires_ns
+from aionode.endpoints.subscription import decoding
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.endpoint import EndpointHandle
@@ -20,7 +21,6 @@ from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.typesupport import message_support
 from aionode.rclpy._rosidl import aionode_class
 from aionode.transport.base import SampleInfo
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -280,7 +280,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         super().__init__(node, topic, qos_profile, failure, is_service=False)
         self.msg_type = msg_type
         self._support = message_support(msg_type)
-        self._filter_options = content_filter_options
+        self._filter: tuple[str, list[str]] | None = None
         limit_bytes = node.bare.context.network.queue_bytes
         text = heavy_text(self.name, limit_bytes, "dropped, without another word")
         on_heavy = partial(logger.warning, text)
@@ -401,15 +401,13 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
 
     def _set_filter(self, expression: str, parameters: list[str]) -> None:
         if not expression:
-            self.inbox.accept = self._filter_options = None
+            self.inbox.accept = self._filter = None
             return
         from aionode.content_filter import compile_filter  # few subscriptions have a filter
 
         own_class = aionode_class(self.msg_type)
-        meets = compile_filter(own_class, expression, parameters)
-        decode = cdr.decoder(own_class)
-        self.inbox.accept = lambda data: meets(decode(data))
-        self._filter_options = (expression, list(parameters))
+        self.inbox.accept = decoding(own_class, compile_filter(own_class, expression, parameters))
+        self._filter = (expression, list(parameters))
 
     def get_content_filter(self) -> tuple[str, list[str]]:
         """Return the expression and its parameters.
@@ -417,6 +415,6 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         Raises:
             RCLError: no filter is set.
         """
-        if not isinstance(self._filter_options, tuple):
+        if self._filter is None:
             raise RCLError("Failed to get content filter: content filtered topic is not enabled")
-        return self._filter_options
+        return self._filter

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partialmethod
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
@@ -39,7 +40,7 @@ class WaitSet(Destroyable):
         super().__init__()
         self._context = context
         self._handles: dict[str, list[Any]] = {kind: [] for kind in KINDS}
-        self._ready: dict[str, list[int]] = {kind: [] for kind in KINDS}
+        self._ready: dict[str, list[Any]] = {kind: [] for kind in KINDS}
 
     def clear_entities(self) -> None:
         """Remove all handles."""
@@ -47,40 +48,24 @@ class WaitSet(Destroyable):
             handles.clear()
 
     def _add(self, kind: str, handle: Any) -> int:
+        """Add a handle; return its index among those of its kind."""
         self._handles[kind].append(handle)
         return len(self._handles[kind]) - 1
 
-    def add_subscription(self, handle: Any) -> int:
-        """Add a handle; return its index among those of its kind."""
-        return self._add("subscription", handle)
-
-    def add_guard_condition(self, handle: Any) -> int:
-        """Add a handle; return its index among those of its kind."""
-        return self._add("guard_condition", handle)
-
-    def add_timer(self, handle: Any) -> int:
-        """Add a handle; return its index among those of its kind."""
-        return self._add("timer", handle)
-
-    def add_client(self, handle: Any) -> int:
-        """Add a handle; return its index among those of its kind."""
-        return self._add("client", handle)
-
-    def add_service(self, handle: Any) -> int:
-        """Add a handle; return its index among those of its kind."""
-        return self._add("service", handle)
-
-    def add_event(self, handle: Any) -> int:
-        """Add a handle; return its index among those of its kind."""
-        return self._add("event", handle)
+    add_subscription = partialmethod(_add, "subscription")
+    add_guard_condition = partialmethod(_add, "guard_condition")
+    add_timer = partialmethod(_add, "timer")
+    add_client = partialmethod(_add, "client")
+    add_service = partialmethod(_add, "service")
+    add_event = partialmethod(_add, "event")
 
     def is_ready(self, kind: str, index: int) -> bool:
         """Return whether the handle of this index was ready when the last wait ended."""
-        return self._handles[kind][index].pointer in self._ready[kind]
+        return self._handles[kind][index] in self._ready[kind]
 
     def get_ready_entities(self, kind: str) -> list[int]:
         """Return the pointers of the handles of a kind that were ready when the last wait ended."""
-        return list(self._ready[kind])
+        return [handle.pointer for handle in self._ready[kind]]
 
     def may_be_ready(self) -> bool:
         """Return whether a handle is ready now."""
@@ -89,11 +74,9 @@ class WaitSet(Destroyable):
     def look(self) -> bool:
         """Note which handles are ready now, and return whether any is."""
         for kind, handles in self._handles.items():
-            self._ready[kind] = [handle.pointer for handle in handles if handle.ready()]
-            if kind == "guard_condition":
-                for handle in handles:
-                    if handle.pointer in self._ready[kind]:
-                        handle.take()
+            self._ready[kind] = [handle for handle in handles if handle.ready()]
+        for guard_condition in self._ready["guard_condition"]:
+            guard_condition.take()
         return any(self._ready.values())
 
     def watch(self, wakeup: Wakeup) -> None:

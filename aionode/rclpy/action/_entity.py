@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.rclpy._impl.actions import ActionClientHandle, ActionServerHandle
+from aionode.rclpy._entities import in_use
+from aionode.rclpy._impl.actions import ActionClientHandle, ActionHandle, ActionServerHandle
 from aionode.rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
     from aionode.rclpy._impl.wait_set import WaitSet
-    from aionode.rclpy.clock import Clock
     from aionode.rclpy.node import Node
-    from aionode.rclpy.qos import QoSProfile
-    from aionode.rclpy.service_introspection import ServiceIntrospectionState
 
 __all__ = ["ActionEntity"]
 
@@ -35,17 +33,7 @@ class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
     def __exit__(self, *exc: object) -> None:
         self._handle.__exit__(*exc)
 
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Tell of the calls of its services on ``…/_service_event``."""
-        with self._handle:
-            self._handle.configure_introspection(
-                clock.handle, service_event_qos_profile, introspection_state
-            )
+    configure_introspection = in_use(ActionHandle.configure_introspection)
 
     def destroy(self) -> None:
         """Destroy it; its futures are never completed."""
