@@ -176,7 +176,7 @@ def printable(line: str) -> str:
     """
     if line.isprintable():
         return line
-    return "".join(each if each.isprintable() else json.dumps(each)[1:-1] for each in line)
+    return "".join(char if char.isprintable() else json.dumps(char)[1:-1] for char in line)
 
 
 def shortened(arguments: Any) -> str:
@@ -197,10 +197,10 @@ def parts_of(value: Any, level: int = 0) -> Iterator[str]:
         members = ((f"{field.name}=", getattr(value, field.name)) for field in fields(type(value)))
         yield from joined(f"{value.__ros_type__.replace('/', '.')}(", members, ")", level)
     elif isinstance(value, Mapping):
-        items = ((f"{shown(key)}: ", each) for key, each in value.items())
+        items = ((f"{shown(key)}: ", part) for key, part in value.items())
         yield from joined("{", items, "}", level)
     elif isinstance(value, list | tuple):
-        yield from joined("[", (("", each) for each in value), "]", level)
+        yield from joined("[", (("", part) for part in value), "]", level)
     elif hasattr(value, "tolist") and hasattr(value, "__len__"):  # an array of numbers
         yield from parts_of(value[:MOST_TEXT].tolist(), level)
     elif isinstance(value, str | bytes | bytearray | memoryview):
@@ -215,7 +215,7 @@ def joined(
 ) -> Iterator[str]:
     """Yield the text of several values, each behind a label."""
     yield opening
-    for number, (label, each) in enumerate(items):
+    for number, (label, item) in enumerate(items):
         yield f", {label}" if number else label
-        yield from parts_of(each, level + 1)
+        yield from parts_of(item, level + 1)
     yield closing

@@ -95,10 +95,10 @@ class Received:
             make: Returns the encoding.
         """
         try:
-            found: T = self._kinds[key]
+            encoded: T = self._kinds[key]
         except KeyError:
-            found = self._kinds[key] = make(self)
-        return found
+            encoded = self._kinds[key] = make(self)
+        return encoded
 
 
 Taker = Callable[[Received], None]
@@ -207,7 +207,7 @@ class Feed:
             depth = min(max(offered.depth, 1), MOST_LATCHED)
             kept = self._latched.setdefault(gid, deque(maxlen=depth))
             kept.append(received)
-            while len(kept) > 1 and sum(len(each.raw) for each in kept) > MOST_LATCHED_BYTES:
+            while len(kept) > 1 and sum(len(older.raw) for older in kept) > MOST_LATCHED_BYTES:
                 kept.popleft()
         for taker in tuple(self._takers.values()):
             taker(received)

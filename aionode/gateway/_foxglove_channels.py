@@ -74,10 +74,10 @@ class Channels:
         gone = [known.pop(named) for named in set(known) - now]
         if not gone:
             return
-        for each in gone:
-            del self._names[each]
+        for channel in gone:
+            del self._names[channel]
         self.unsubscribe(
-            [each for each, (channel, _) in self._subscriptions.items() if channel in gone]
+            [number for number, (channel, _) in self._subscriptions.items() if channel in gone]
         )
         self._session.outbox.send(frames.op_frame(op, {field: sorted(gone)}))
 
@@ -184,14 +184,14 @@ class Channels:
 
     def unsubscribe(self, subscription_ids: Iterable[int]) -> None:
         """End subscriptions; those that are not known have ended with their channel."""
-        for each in list(subscription_ids):
-            if each in self._subscriptions:
-                self._subscriptions.pop(each)[1].close()
+        for number in list(subscription_ids):
+            if number in self._subscriptions:
+                self._subscriptions.pop(number)[1].close()
 
 
 def everyone(types: dict[str, list[str]]) -> set[Named]:
     """Return each name with each of its types."""
-    return {Named(name, each) for name, all_types in types.items() for each in all_types}
+    return {Named(name, kind) for name, kinds in types.items() for kind in kinds}
 
 
 def schema(type_name: str, cls: Any) -> dict[str, Any]:

@@ -334,7 +334,7 @@ def parameter_of(name: str, given: FoxgloveParameter, now: ParameterType) -> Par
             given.type == "float64_array"
             or (now is ParameterType.DOUBLE_ARRAY and all(map(is_number, value)))
         ):
-            return Parameter(name, ParameterType.DOUBLE_ARRAY, [float(each) for each in value])
+            return Parameter(name, ParameterType.DOUBLE_ARRAY, [float(number) for number in value])
         if value == [] and now is not ParameterType.NOT_SET:
             return Parameter(name, now, [])
         return Parameter(name, value=value)

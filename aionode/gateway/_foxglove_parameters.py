@@ -52,10 +52,10 @@ class Parameters:
         wanted = by_node(names) if names else await self._session.all_parameter_names()
         shown: list[dict[str, Any]] = []
         for node, own in wanted.items():
-            found = await self._session.get_parameters(node, own)
+            values = await self._session.get_parameters(node, own)
             shown += [
                 frames.shown_parameter(f"{node}.{name}", Parameter(name, value=value))
-                for name, value in found.items()
+                for name, value in values.items()
             ]
         self._send(shown, request_id)
 
@@ -68,7 +68,7 @@ class Parameters:
             MessageError: a value is none that parameters have, or its node refuses it.
             RefusedError: the policy refuses it.
         """
-        given = {each.name: each for each in parameters}
+        given = {parameter.name: parameter for parameter in parameters}
         for node, own in by_node(given).items():
             for name in own:  # before anything is read
                 self._session.decide("parameter", f"{node}:{name}", "")
@@ -122,11 +122,11 @@ class Parameters:
         """Return the frame for an event, if the client follows one of its parameters."""
         event = received.message
         shown = [
-            frames.shown_parameter(f"{event.node}.{each.name}", Parameter.from_parameter_msg(each))
-            for each in (*event.new_parameters, *event.changed_parameters)
+            frames.shown_parameter(f"{event.node}.{msg.name}", Parameter.from_parameter_msg(msg))
+            for msg in (*event.new_parameters, *event.changed_parameters)
         ]
-        shown += [{"name": f"{event.node}.{each.name}"} for each in event.deleted_parameters]
-        wanted = [each for each in shown if self._is_wanted(event.node, each["name"])]
+        shown += [{"name": f"{event.node}.{msg.name}"} for msg in event.deleted_parameters]
+        wanted = [item for item in shown if self._is_wanted(event.node, item["name"])]
         return frames.op_frame("parameterValues", {"parameters": wanted}) if wanted else None
 
     def _is_wanted(self, node: str, name: str) -> bool:
@@ -148,10 +148,10 @@ def by_node(names: Iterable[str]) -> dict[str, list[str]]:
     Raises:
         MessageError: a name has no dot.
     """
-    found: dict[str, list[str]] = defaultdict(list)
+    names_of: dict[str, list[str]] = defaultdict(list)
     for name in names:
         node, dot, own = name.partition(".")
         if not dot or not own:
             raise MessageError("parameters", f"{name!r} is not of the form /node.parameter")
-        found[node].append(own)
-    return found
+        names_of[node].append(own)
+    return names_of

@@ -282,10 +282,10 @@ async def until(
 def modified(path: str) -> tuple[int, int] | None:
     """Return when a file was written, and its number; None if it is not there."""
     try:
-        found = Path(path).stat()
+        status = Path(path).stat()
     except OSError:
         return None
-    return found.st_mtime_ns, found.st_ino
+    return status.st_mtime_ns, status.st_ino
 
 
 def is_loopback(host: str) -> bool:

@@ -58,8 +58,8 @@ def as_real(value: Any, present: Any) -> Any:
     """Return whole numbers as the parameter has them: JSON may write 1.0 as 1."""
     if isinstance(value, list):
         like = plain(present)
-        one = like[0] if isinstance(like, list) and like else None
-        return [as_real(item, one) for item in value]
+        example = like[0] if isinstance(like, list) and like else None
+        return [as_real(item, example) for item in value]
     if isinstance(present, float) and type(value) is int:
         return float(value)
     return value
@@ -68,7 +68,7 @@ def as_real(value: Any, present: Any) -> Any:
 def plain(value: Any) -> Any:
     """Return the value of a parameter, or of several by name, as JSON has it."""
     if isinstance(value, dict):
-        return {name: plain(each) for name, each in value.items()}
+        return {name: plain(item) for name, item in value.items()}
     if isinstance(value, bytes):
         return list(value)
     return value.tolist() if hasattr(value, "tolist") else value

@@ -99,7 +99,7 @@ def as_event(received: Received) -> Frame:
 
 def make_event(received: Received) -> bytes:
     """Return a message as an event."""
-    return event("", received.once("json", lambda each: json_of(each.message)))
+    return event("", received.once("json", lambda taken: json_of(taken.message)))
 
 
 async def frames(outbox: Outbox) -> AsyncGenerator[Frame, None]:

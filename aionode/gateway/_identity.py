@@ -106,20 +106,20 @@ def take_token(scope: Mapping[str, Any]) -> str:
     It is the header ``Authorization: Bearer TOKEN``, a subprotocol ``bearer.TOKEN``, or
     ``?token=``.
     """
-    found = ""
+    token = ""
     query = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
     if any(name == "token" for name, _ in query):
-        found = next(value for name, value in query if name == "token")
+        token = next(value for name, value in query if name == "token")
         kept = urlencode([pair for pair in query if pair[0] != "token"])
         scope["query_string"] = kept.encode()  # type: ignore[index]  # the server's own dict
     protocols = scope.get("subprotocols", [])
-    for protocol in [each for each in protocols if each.startswith(TOKEN_PROTOCOL)]:
-        found = protocol.removeprefix(TOKEN_PROTOCOL)
+    for protocol in [text for text in protocols if text.startswith(TOKEN_PROTOCOL)]:
+        token = protocol.removeprefix(TOKEN_PROTOCOL)
         protocols.remove(protocol)
     for name, value in scope["headers"]:
         if name == b"authorization" and value[:7].lower() == b"bearer ":
-            found = value[7:].decode("latin-1").strip()
-    return found
+            token = value[7:].decode("latin-1").strip()
+    return token
 
 
 def check_browser(
@@ -169,12 +169,12 @@ def is_same_origin(credentials: Credentials) -> bool:
 
 def is_known_host(host: str, names: Iterable[str]) -> bool:
     """Return whether a ``Host`` header names this machine: no page can have such a name rebound."""
-    found = HOST.fullmatch(host)
-    if found is None:
+    parts = HOST.fullmatch(host)
+    if parts is None:
         return False
-    name = found[1].strip("[]").lower()
+    name = parts[1].strip("[]").lower()
     is_local = name == "localhost" or name.endswith(".localhost")
-    return is_local or parsed_address(name) is not None or name in {each.lower() for each in names}
+    return is_local or parsed_address(name) is not None or name in map(str.lower, names)
 
 
 def parsed_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:

@@ -92,12 +92,12 @@ def is_large(values: object) -> bool:
         return len(values) > LARGE_BYTES
     waiting, count = [values], 0
     while waiting:
-        each = waiting.pop()
-        if not isinstance(each, dict | list):
+        value = waiting.pop()
+        if not isinstance(value, dict | list):
             continue
-        count += len(each)
+        count += len(value)
         if count > LARGE_ITEMS:
             return True
-        inner = each.values() if isinstance(each, dict) else each
+        inner = value.values() if isinstance(value, dict) else value
         waiting.extend(item for item in inner if isinstance(item, dict | list))
     return False

@@ -162,10 +162,10 @@ def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> lis
             labels = {"node": full_name, "entity": kind, "name": name}
             for attribute, family in counters.items():
                 if hasattr(stats[0], attribute):
-                    family.add(sum(getattr(each, attribute) for each in stats), **labels)
+                    family.add(sum(getattr(stat, attribute) for stat in stats), **labels)
             for attribute, family in durations.items():
                 if hasattr(stats[0], attribute):
-                    family.add_durations(merged(getattr(each, attribute) for each in stats), labels)
+                    family.add_durations(merged(getattr(stat, attribute) for stat in stats), labels)
     return [running, *counters.values(), *durations.values()]
 
 
@@ -174,15 +174,15 @@ def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str,
 
     Entities of one kind and name are one for Prometheus, which refuses the same labels twice.
     """
-    found: dict[tuple[str, str], list[Stats]] = {}
+    entities: dict[tuple[str, str], list[Stats]] = {}
     for entity in list(node._entities):
         kind = kind_of(entity)
         if kind is None:
             continue
         name, type_name = name_and_type(entity)
         if not name or (not is_hidden(name) and sees(name, type_name)):
-            found.setdefault((kind, name), []).append(entity.stats)  # type: ignore[attr-defined]  # of KINDS
-    return found
+            entities.setdefault((kind, name), []).append(entity.stats)  # type: ignore[attr-defined]  # of KINDS
+    return entities
 
 
 def kind_of(entity: object) -> str | None:

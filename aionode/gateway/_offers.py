@@ -45,14 +45,14 @@ async def offers(session: Session) -> list[Offer]:
             if verbs:
                 used.append((kind, name, type_name, verbs))
     classes = await classes_of(session, {(kind, type_name) for kind, _, type_name, _ in used})
-    found = [
+    offered = [
         Offer(kind, name, verbs, classes.get(type_name)) for kind, name, type_name, verbs in used
     ]
     for node in session.nodes():
         if f"{node}/list_parameters" in graph["service"]:
             sets = may(session, "parameter", node, "")
-            found.append(Offer("node", node, frozenset({"parameter"} if sets else ())))
-    return found
+            offered.append(Offer("node", node, frozenset({"parameter"} if sets else ())))
+    return offered
 
 
 async def classes_of(session: Session, types: set[tuple[Kind, str]]) -> dict[str, Any]:

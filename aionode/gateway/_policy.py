@@ -366,24 +366,24 @@ class Policy(Part, frozen=True):
             PolicyFileError: the text is not a policy (a ValueError).
         """
         try:
-            found = msgspec.toml.decode(text, type=cls)
+            policy = msgspec.toml.decode(text, type=cls)
         except (msgspec.DecodeError, ValueError) as error:
             raise PolicyFileError(path, str(error)) from error
-        if found.path:
+        if policy.path:
             raise PolicyFileError(path, "`path` is no key of a policy")
-        known = {each.name for each in found.who}
-        known |= {group for each in found.who for group in each.groups}
-        for rule in found.refuse:
+        known = {client.name for client in policy.who}
+        known |= {group for client in policy.who for group in client.groups}
+        for rule in policy.refuse:
             for key in LIMITED:
                 if key != "type" and has_key(rule, key):
                     raise PolicyFileError(
                         path, f"{key}: a [[refuse]] has no limits, an [[allow]] has"
                     )
-        for rule in (*found.allow, *found.refuse):
+        for rule in (*policy.allow, *policy.refuse):
             unknown = sorted(set(listed(rule.who)) - known)
             if unknown:
                 raise PolicyFileError(path, f"a rule is about {unknown[0]!r}, which no [[who]] is")
-        return msgspec.structs.replace(found, path=path)
+        return msgspec.structs.replace(policy, path=path)
 
     @classmethod
     def default(cls, *, allow_write: bool = False) -> Policy:
@@ -435,8 +435,8 @@ class Policy(Part, frozen=True):
                 f"{what}; send `Authorization: Bearer TOKEN` with one of the policy",
                 "unauthorized",
             )
-        found = fitting[0]
-        return Identity(found.name, frozenset(found.groups), credentials.address)
+        client = fitting[0]
+        return Identity(client.name, frozenset(client.groups), credentials.address)
 
     def decide(
         self, identity: Identity, verb: Verb, name: str, type_name: str, message: Any = None

@@ -105,10 +105,10 @@ class Robot:
         hashes = frozenset(e.type_hash for e in endpoints if e.type_name.startswith(full))
         key = (full, hashes)
         if key not in self._types:
-            found = await self.node.find_type(full)
+            message_type = await self.node.find_type(full)
             if len(self._types) >= MOST_TYPES:
                 self._types.clear()
-            self._types.setdefault(key, found)
+            self._types.setdefault(key, message_type)
         return self._types[key]
 
     def close(self) -> None:

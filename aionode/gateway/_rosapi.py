@@ -85,19 +85,19 @@ def short(type_name: str) -> str:
 
 @service("topics")
 async def topics(session: Session, _: Args) -> dict[str, Any]:
-    found = session.topics()
-    names = visible(found)
-    return {"topics": names, "types": [found[name][0] for name in names]}
+    types = session.topics()
+    names = visible(types)
+    return {"topics": names, "types": [types[name][0] for name in names]}
 
 
 @service("topics_and_raw_types")
 async def topics_and_raw_types(session: Session, _: Args) -> dict[str, Any]:
-    found = await topics(session, _)
+    listed = await topics(session, _)
     by_type = {}
-    for name in dict.fromkeys(found["types"]):
+    for name in dict.fromkeys(listed["types"]):
         by_type[name] = await text_of(session, name)
         await checkpoint()  # a text takes a while, and a robot has hundreds of types
-    return {**found, "typedefs_full_text": [by_type[name] for name in found["types"]]}
+    return {**listed, "typedefs_full_text": [by_type[name] for name in listed["types"]]}
 
 
 async def text_of(session: Session, name: str) -> str:
@@ -113,9 +113,9 @@ async def topics_for_type(session: Session, args: Args) -> dict[str, Any]:
     return {"topics": of_type(session.topics(), args["type"])}
 
 
-def of_type(found: dict[str, list[str]], wanted: str) -> list[str]:
+def of_type(names: dict[str, list[str]], wanted: str) -> list[str]:
     """Return the names that have a type, given with or without its kind."""
-    return [name for name, types in found.items() if short(wanted) in map(short, types)]
+    return [name for name, types in names.items() if short(wanted) in map(short, types)]
 
 
 @service("topic_type", "topic")
@@ -231,8 +231,8 @@ def details_of(name: str, kind: str, part: str) -> None:
     @service(name, "type")
     async def details(session: Session, args: Args) -> dict[str, Any]:
         find = {"msg": session.message_class, "srv": session.service_class}
-        found = await find.get(kind, session.action_class)(args["type"])
-        described: Any = getattr(found, part, None) if part else found
+        found_class = await find.get(kind, session.action_class)(args["type"])
+        described: Any = getattr(found_class, part, None) if part else found_class
         if not hasattr(described, "__ros_fields__"):
             raise InterfaceNotFoundError(args["type"], problem=f"it is no type of kind {kind}")
         return {"typedefs": type_definitions(described)}
@@ -319,10 +319,10 @@ async def set_param(session: Session, args: Args) -> dict[str, Any]:
 @service("has_param", "name")
 async def has_param(session: Session, args: Args) -> dict[str, Any]:
     try:
-        found = await parameter_value(session, args["name"])
+        value = await parameter_value(session, args["name"])
     except (AionodeError, TimeoutError):
         return {"exists": False}
-    return {"exists": found is not None}
+    return {"exists": value is not None}
 
 
 @service("delete_param", "name")
@@ -337,8 +337,8 @@ async def delete_param(session: Session, args: Args) -> dict[str, Any]:
 
 @service("get_param_names")
 async def get_param_names(session: Session, _: Args) -> dict[str, Any]:
-    found = await session.all_parameter_names()
-    return {"names": sorted(f"{node}:{name}" for node, names in found.items() for name in names)}
+    names_of = await session.all_parameter_names()
+    return {"names": sorted(f"{node}:{name}" for node, names in names_of.items() for name in names)}
 
 
 # Time and version

@@ -20,22 +20,22 @@ def short_name(cls: type[Message]) -> str:
 
 def type_definitions(cls: type[Message]) -> list[dict[str, Any]]:
     """Return a ``rosapi_msgs/msg/TypeDef`` for a message class, and for each that it contains."""
-    return [type_definition(each) for each in with_nested(cls)]
+    return [type_definition(message_class) for message_class in with_nested(cls)]
 
 
 def with_nested(cls: type[Message]) -> list[type[Message]]:
     """Return a message class and those of its fields, at any depth, each once."""
-    found = {type_name(cls): cls}
+    classes = {type_name(cls): cls}
 
     def visit(inner: type[Message]) -> None:
         for field in fields(inner):
             nested = field.type.nested
-            if nested is not None and type_name(nested) not in found:
-                found[type_name(nested)] = nested
+            if nested is not None and type_name(nested) not in classes:
+                classes[type_name(nested)] = nested
                 visit(nested)
 
     visit(cls)
-    return list(found.values())
+    return list(classes.values())
 
 
 def type_definition(cls: type[Message]) -> dict[str, Any]:
@@ -82,5 +82,5 @@ def full_text(cls: type[Message]) -> str:
     from aionode.idl import definition_text  # of all clients, Foxglove's asks for texts
 
     root, *needed = with_nested(cls)
-    parts = [f"{'=' * 80}\nMSG: {short_name(each)}\n{definition_text(each)}" for each in needed]
+    parts = [f"{'=' * 80}\nMSG: {short_name(part)}\n{definition_text(part)}" for part in needed]
     return "\n".join([definition_text(root), *parts])

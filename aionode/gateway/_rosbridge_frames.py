@@ -129,9 +129,9 @@ class Fragmented(str):
     @classmethod
     def of(cls, frame: str, size: int, message_id: str) -> Fragmented:
         """Return a frame that leaves in fragments of a size."""
-        made = cls(frame)
-        made.size, made.message_id = size, message_id
-        return made
+        fragmented = cls(frame)
+        fragmented.size, fragmented.message_id = size, message_id
+        return fragmented
 
     def parts(self) -> Iterator[str]:
         """Yield the fragments."""

@@ -178,10 +178,10 @@ def policy(name: str, value: object, path: str) -> Any:
     """Return one policy of a profile."""
     if name in POLICIES:
         options = POLICIES[name]
-        found = options.get(value.lower()) if isinstance(value, str) else None
-        if found is None:
+        choice = options.get(value.lower()) if isinstance(value, str) else None
+        if choice is None:
             raise MessageError(path, f"{shown(value)}, needs one of {', '.join(options)}")
-        return found
+        return choice
     if name == "depth":
         if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= 10_000:
             raise MessageError(path, f"{shown(value)}, needs a number of messages from 0 to 10000")

@@ -242,11 +242,11 @@ class Topics:
 
         def frame(received: Received) -> Frame | None:
             try:
-                made = received.once(kind, make)
+                encoded = received.once(kind, make)
             except AionodeError as error:  # a peer sent bytes that are no message of the type
                 self._link.status("error", f"subscribe: {error}")
                 return None
-            return self._fragments(made, wish) if wish.fragment_size else made
+            return self._fragments(encoded, wish) if wish.fragment_size else encoded
 
         return frame
 

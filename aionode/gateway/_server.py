@@ -205,11 +205,11 @@ class HttpConnection(H11Protocol):
         A client says at once what it wants; those who only keep connections must not keep it out.
         """
         waiting = [
-            each
-            for each in self.connections
-            if isinstance(each, HttpConnection) and each is not self and each.is_waiting
+            other
+            for other in self.connections
+            if isinstance(other, HttpConnection) and other is not self and other.is_waiting
         ]
-        oldest = min(waiting, key=lambda each: each._made_s, default=None)
+        oldest = min(waiting, key=lambda other: other._made_s, default=None)
         if oldest is not None:
             oldest.transport.abort()
             self.connections.discard(oldest)  # its end is told in the next turn only

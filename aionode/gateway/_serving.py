@@ -39,8 +39,8 @@ def serve(
         return as_message(cls.Response, await answer(request), node.get_clock())
 
     # The caller is told of an error; it is the client's, and nothing for the log of the robot.
-    made = node.create_service(cls, service, handle, concurrent=most, on_error=ignore)
-    return Served(made)
+    service_server = node.create_service(cls, service, handle, concurrent=most, on_error=ignore)
+    return Served(service_server)
 
 
 def serve_action(
@@ -58,7 +58,7 @@ def serve_action(
             goal.abort(error_text=str(error))
             return cls.Result()
 
-    made = ActionServer(
+    action_server = ActionServer(
         node,
         cls,
         action,
@@ -68,7 +68,7 @@ def serve_action(
         concurrent=True,
         on_error=ignore,
     )
-    return Served(made)
+    return Served(action_server)
 
 
 def ignore(error: Exception, context: object) -> None:  # an OnError

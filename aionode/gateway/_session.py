@@ -125,8 +125,8 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             self.decide("advertise", name, "")
             cls = await find(type_name)
             await self._allow("advertise", name, cls.__ros_type__, None)
-            made = make(cls, work, self._limits.calls)
-            return self._keep(name, cls.__ros_type__, made)
+            served = make(cls, work, self._limits.calls)
+            return self._keep(name, cls.__ros_type__, served)
 
     def _keep(self, name: str, type_name: str, served: Served) -> Served:
         """Keep a service or action until the client leaves; an older one of the same name ends."""
@@ -164,17 +164,18 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             for topic, (publisher, _) in self._published.items()
         ]
         held += [("advertise", name, self._served_types[name]) for name in self._served]
-        if not all(policy.decide(self.identity, *each).allowed for each in held):
+        if not all(policy.decide(self.identity, *request).allowed for request in held):
             self.ended.set()  # which cancels its goals, and sends the stops of its leases
 
     def _end_subscriptions(self) -> None:
         """End the subscriptions that the policy does not allow any more."""
         ended = []
-        for each in list(self._subscribed):
-            decide = self._robot.policy.decide
-            if not decide(self.identity, "subscribe", each.topic, each.type_name).allowed:
-                ended.append(each)
-                each.close()
+        decide = self._robot.policy.decide
+        for subscribed in list(self._subscribed):
+            topic, type_name = subscribed.topic, subscribed.type_name
+            if not decide(self.identity, "subscribe", topic, type_name).allowed:
+                ended.append(subscribed)
+                subscribed.close()
                 result = "ended: the policy has changed"
-                self._robot.audit.note(self.identity, "subscribe", each.topic, result=result)
+                self._robot.audit.note(self.identity, "subscribe", topic, result=result)
         self.on_policy(ended)

@@ -126,7 +126,7 @@ class SessionBase:
     def _sees(self, name: str, type_names: list[str]) -> bool:
         policy, identity = self._robot.policy, self.identity
         return any(
-            policy.decide(identity, "see", name, each).allowed for each in type_names or [""]
+            policy.decide(identity, "see", name, kind).allowed for kind in type_names or [""]
         )
 
     @contextmanager
@@ -206,10 +206,10 @@ class SessionBase:
             async with self._turn, self._robot.turn:
                 await checkpoint()
 
-    def _visible(self, found: Any, *, hidden: bool) -> dict[str, list[str]]:
+    def _visible(self, named: Any, *, hidden: bool) -> dict[str, list[str]]:
         return {
             name: types
-            for name, types in found
+            for name, types in named
             if (hidden or not is_hidden(name)) and self._sees(name, types)
         }
 

@@ -72,8 +72,8 @@ class SessionGraph(SessionBase):
 
     def nodes(self) -> list[str]:
         """Return the full names of the nodes that the client may see."""
-        found = {node.fully_qualified_name for node in self._robot.node.graph.nodes()}
-        return [name for name in sorted(found) if self._sees(name, [])]
+        names = {node.fully_qualified_name for node in self._robot.node.graph.nodes()}
+        return [name for name in sorted(names) if self._sees(name, [])]
 
     def node_details(self, node: str) -> NodeDetails:
         """Return the endpoints of a node.
@@ -105,21 +105,21 @@ class SessionGraph(SessionBase):
     def users(self, kind: EndpointKind, name: str) -> list[str]:
         """Return the nodes that have an endpoint of a kind and a full name, sorted."""
         endpoints = self._robot.node.graph.endpoints(kind, name=name)
-        if not endpoints or not self._sees(name, [each.type_name for each in endpoints]):
+        if not endpoints or not self._sees(name, [endpoint.type_name for endpoint in endpoints]):
             return []
-        found = {endpoint.node.fully_qualified_name for endpoint in endpoints}
-        return [node for node in sorted(found) if self._sees(node, [])]
+        nodes = {endpoint.node.fully_qualified_name for endpoint in endpoints}
+        return [node for node in sorted(nodes) if self._sees(node, [])]
 
     def connections(self, kind: EndpointKind) -> dict[str, list[str]]:
         """Return the nodes that have endpoints of a kind, sorted, by the names of those."""
         graph = self._robot.node.graph
-        found: dict[str, set[str]] = defaultdict(set)
+        nodes_of: dict[str, set[str]] = defaultdict(set)
         names, nodes = self._visible(graph.names_and_types(kind), hidden=False), set(self.nodes())
         for endpoint in graph.endpoints(kind):
             node = endpoint.node.fully_qualified_name
             if endpoint.name in names and node in nodes:
-                found[endpoint.name].add(node)
-        return {name: sorted(found[name]) for name in sorted(found)}
+                nodes_of[endpoint.name].add(node)
+        return {name: sorted(nodes_of[name]) for name in sorted(nodes_of)}
 
     # Parameters
 
@@ -153,23 +153,23 @@ class SessionGraph(SessionBase):
             TimeoutError: the node has not answered within 5 s.
         """
         async with self._parameters(node) as client:
-            found = await client.list_parameters()
-        return [name for name in found.names if self._sees(f"{node}:{name}", [])]
+            listed = await client.list_parameters()
+        return [name for name in listed.names if self._sees(f"{node}:{name}", [])]
 
     async def all_parameter_names(self) -> dict[str, list[str]]:
         """Return the names of the parameters that the client may see, by the nodes that answer."""
-        found: dict[str, list[str]] = {}
+        names_of: dict[str, list[str]] = {}
         room = asyncio.Semaphore(MOST_ASKED)
 
         async def ask(node: str) -> None:
             with suppress(AionodeError, TimeoutError):  # a node without parameters, or that ends
                 async with room:
-                    found[node] = await self.parameter_names(node)
+                    names_of[node] = await self.parameter_names(node)
 
         async with asyncio.TaskGroup() as tasks:
             for node in self.nodes():
                 tasks.create_task(ask(node))
-        return dict(sorted(found.items()))
+        return dict(sorted(names_of.items()))
 
     async def get_parameters(self, node: str, names: list[str]) -> dict[str, Any]:
         """Return the values of parameters; those that are not declared are left out.
@@ -186,11 +186,12 @@ class SessionGraph(SessionBase):
                     "see", f"{node}:{name}", "the policy does not show it", "not_allowed"
                 )
         async with self._parameters(node) as client:
-            found = await client.get_parameters(names)
-            if len(found) != len(names):  # one of them is not declared: then there are none
+            parameters = await client.get_parameters(names)
+            if len(parameters) != len(names):  # one of them is not declared: then there are none
                 declared = set((await client.list_parameters()).names)
-                found = await client.get_parameters([name for name in names if name in declared])
-        return {each.name: each.value for each in found}
+                names = [name for name in names if name in declared]
+                parameters = await client.get_parameters(names)
+        return {parameter.name: parameter.value for parameter in parameters}
 
     async def set_parameters(
         self, node: str, values: Mapping[str, Any]
@@ -215,10 +216,10 @@ class SessionGraph(SessionBase):
             changed.append(parameter)
         async with self._parameters(node) as client:
             results = await client.set_parameters(changed)
-        reasons = "; ".join(each.reason for each in results if not each.successful)
+        reasons = "; ".join(result.reason for result in results if not result.successful)
         self._robot.audit.note(
             self.identity, "parameter", node,
-            arguments={each.name: each.value for each in changed},
+            arguments={parameter.name: parameter.value for parameter in changed},
             result=f"failed: {reasons}" if reasons else "ok",
             duration_ns=self.steady_ns() - began_ns, way=self.kind,
         )  # fmt: skip

@@ -263,7 +263,7 @@ class SessionTopics(SessionBase):
             DecodeError: the bytes are no message of its type (a ValueError).
         """
         await prepared(self._robot, prepare_json, received)
-        return received.once("json", lambda each: json_of(each.message))
+        return received.once("json", lambda taken: json_of(taken.message))
 
     async def _type_to(self, verb: Verb, topic: str, type_name: str | None) -> Any:
         """Return the class of a topic's messages, if the policy may allow a verb.
@@ -279,10 +279,10 @@ class SessionTopics(SessionBase):
 
     def dropped(self) -> dict[str, int]:
         """Return how many frames of each topic were dropped, as the client was too slow."""
-        found: dict[str, int] = defaultdict(int)
+        counts: dict[str, int] = defaultdict(int)
         for subscribed in self._subscribed:
-            found[subscribed.topic] += subscribed.dropped
-        return dict(found)
+            counts[subscribed.topic] += subscribed.dropped
+        return dict(counts)
 
     def arrival_ns(self) -> int:
         """Return when the frame arrived that is handled, in nanoseconds of the steady clock."""
@@ -306,8 +306,8 @@ class SessionTopics(SessionBase):
         self._give_back(topic)
 
     def _give_back(self, topic: str) -> None:
-        found = self._published.pop(topic, None)
+        published = self._published.pop(topic, None)
         self._counts.pop(topic, None)
         self._noted_ns.pop(topic, None)
-        if found is not None:
-            found[1]()
+        if published is not None:
+            published[1]()

@@ -104,14 +104,14 @@ def parts_of(cls: Any) -> dict[str, type[Message]]:
     return {"": cls}
 
 
-def collect(cls: type[Message], found: dict[str, type[Message]]) -> None:
+def collect(cls: type[Message], classes: dict[str, type[Message]]) -> None:
     """Add a message and those nested in it to `found`, by name."""
-    if type_name(cls) in found:
+    if type_name(cls) in classes:
         return
-    found[type_name(cls)] = cls
+    classes[type_name(cls)] = cls
     for field in fields(cls):
         if field.type.nested is not None:
-            collect(field.type.nested, found)
+            collect(field.type.nested, classes)
 
 
 def dotted(name: str) -> str:
