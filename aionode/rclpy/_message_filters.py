@@ -64,17 +64,13 @@ class Cache(message_filters.Cache):
         self._stamps = Stamps(allow_headerless=allow_headerless)
 
 
-class TimeSynchronizer(message_filters.TimeSynchronizer):
-    """Calls back with one message of each input, all with the same stamp.
+class Locked(message_filters.TimeSynchronizer):
+    """A synchronizer whose inputs may be called in several threads at once."""
 
-    The inputs may be called in several threads at once.
-    """
-
-    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int, *options: Any) -> None:
         self.lock = threading.RLock()  # a callback may give another message to its own input
-        super().__init__(fs, queue_size)
+        super().__init__(fs, queue_size, *options)
         self.queue_size = queue_size
-        self._stamps = Stamps(allow_headerless=False)
 
     def add(self, msg: Any, index: int) -> None:
         """Add a message of an input."""
@@ -82,7 +78,18 @@ class TimeSynchronizer(message_filters.TimeSynchronizer):
             super().add(msg, index)
 
 
-class ApproximateTimeSynchronizer(message_filters.ApproximateTimeSynchronizer):
+class TimeSynchronizer(Locked, message_filters.TimeSynchronizer):
+    """Calls back with one message of each input, all with the same stamp.
+
+    The inputs may be called in several threads at once.
+    """
+
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
+        super().__init__(fs, queue_size)
+        self._stamps = Stamps(allow_headerless=False)
+
+
+class ApproximateTimeSynchronizer(Locked, message_filters.ApproximateTimeSynchronizer):
     """Calls back with one message of each input, whose stamps differ by less than `slop` seconds.
 
     The inputs may be called in several threads at once.
@@ -95,13 +102,6 @@ class ApproximateTimeSynchronizer(message_filters.ApproximateTimeSynchronizer):
         slop: float,
         allow_headerless: bool = False,
     ) -> None:
-        self.lock = threading.RLock()  # as in TimeSynchronizer
         super().__init__(fs, queue_size, slop, allow_headerless)
-        self.queue_size = queue_size
         self.allow_headerless = allow_headerless
         self._stamps = Stamps(allow_headerless=allow_headerless)
-
-    def add(self, msg: Any, index: int) -> None:
-        """Add a message of an input."""
-        with self.lock:
-            super().add(msg, index)

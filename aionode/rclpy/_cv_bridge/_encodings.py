@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import re
-from typing import Final
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import MessageError
+from aionode.image import OPENCV_TYPES as DEPTHS
+from aionode.image import encoding_of
+
+if TYPE_CHECKING:
+    import numpy as np
 
 __all__ = [
     "DEPTHS",
@@ -15,35 +22,23 @@ __all__ = [
     "type_name",
 ]
 
-DEPTHS: Final = {
-    "8U": "uint8",
-    "8S": "int8",
-    "16U": "uint16",
-    "16S": "int16",
-    "32S": "int32",
-    "32F": "float32",
-    "64F": "float64",
-}
-"""OpenCV's names for the types of a channel, in the order of their numbers, and numpy's."""
-
 CHANNELS: Final = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 COLOURS: Final = re.compile(r"(mono|rgba?|bgra?|bayer_(?:rggb|bggr|gbrg|grbg))(8|16)")
 YUV: Final = ("yuv422", "yuv422_yuy2")
-OPENCV: Final = re.compile(r"(8U|8S|16U|16S|32S|32F|64F)(?:C([0-9]+))?")
+NOT_OF_CV_BRIDGE: Final = ("uyvy", "yuyv")
 
 
-def parts_of(encoding: str) -> tuple[str, int, str]:
-    """Return the type of a channel, their number, and what they mean: empty if nothing.
+def pixel_of(encoding: str) -> tuple[np.dtype[Any], int]:
+    """Return the type of a channel, and their number.
 
     Raises:
         RuntimeError: The encoding is unknown.
     """
-    if match := COLOURS.fullmatch(encoding):
-        return f"{match[2]}U", CHANNELS.get(match[1], 1), match[1]
-    if encoding in YUV:
-        return "8U", 2, encoding
-    if match := OPENCV.fullmatch(encoding):
-        return match[1], int(match[2] or 1), ""
+    try:
+        if encoding not in NOT_OF_CV_BRIDGE:
+            return encoding_of(encoding)
+    except MessageError:  # cv_bridge has a text of its own
+        pass
     raise RuntimeError(f"Unrecognized image encoding [{encoding}]")
 
 
@@ -70,8 +65,8 @@ def getCvType(encoding: str) -> int:  # noqa: N802  # cv_bridge's name
     Raises:
         RuntimeError: The encoding is unknown.
     """
-    depth, channels, _ = parts_of(encoding)
-    return cv_type(list(DEPTHS).index(depth), channels)
+    dtype, channels = pixel_of(encoding)
+    return cv_type(list(DEPTHS.values()).index(dtype.name), channels)
 
 
 def channels_of(encoding: str) -> int:
@@ -80,7 +75,7 @@ def channels_of(encoding: str) -> int:
     Raises:
         RuntimeError: The encoding is unknown.
     """
-    return parts_of(encoding)[1]
+    return pixel_of(encoding)[1]
 
 
 def bit_depth(encoding: str) -> int:
@@ -89,7 +84,7 @@ def bit_depth(encoding: str) -> int:
     Raises:
         RuntimeError: The encoding is unknown.
     """
-    return int(parts_of(encoding)[0][:-1])
+    return pixel_of(encoding)[0].itemsize * 8
 
 
 def dtype_of(encoding: str) -> str:
@@ -98,7 +93,7 @@ def dtype_of(encoding: str) -> str:
     Raises:
         RuntimeError: The encoding is unknown.
     """
-    return DEPTHS[parts_of(encoding)[0]]
+    return pixel_of(encoding)[0].name
 
 
 def colour_of(encoding: str) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from aionode.image import OPENCV_TYPES, encoding_of
 from aionode.rclpy._arrays import array_over
 from aionode.rclpy._ros2_numpy.registry import converts_from_numpy, converts_to_numpy
 from aionode.rclpy._rosidl import message_class
@@ -17,27 +18,15 @@ __all__ = ["image_to_numpy", "name_to_dtypes", "numpy_to_image"]
 
 Image = message_class("sensor_msgs/msg/Image")
 
-COLOURS = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
+COLOURS = ("mono", "rgb", "bgr", "rgba", "bgra")
 BAYER = ("bayer_rggb", "bayer_bggr", "bayer_gbrg", "bayer_grbg")
-OPENCV: dict[str, type[Any]] = {
-    "8U": np.uint8,
-    "8S": np.int8,
-    "16U": np.uint16,
-    "16S": np.int16,
-    "32S": np.int32,
-    "32F": np.float32,
-    "64F": np.float64,
-}
-DEPTHS: dict[int, type[Any]] = {8: np.uint8, 16: np.uint16}
+ENCODINGS = [
+    *(f"{name}{bits}" for name in (*COLOURS, *BAYER) for bits in (8, 16)),
+    *(f"{name}C{count}" for name in OPENCV_TYPES for count in range(1, 5)),
+]
 
 name_to_dtypes: dict[str, tuple[type[Any], int]] = {
-    **{
-        f"{name}{bits}": (DEPTHS[bits], count) for name, count in COLOURS.items() for bits in DEPTHS
-    },
-    **{f"{name}{bits}": (DEPTHS[bits], 1) for name in BAYER for bits in DEPTHS},
-    **{
-        f"{name}C{count}": (dtype, count) for name, dtype in OPENCV.items() for count in range(1, 5)
-    },
+    name: (dtype.type, channels) for name in ENCODINGS for dtype, channels in [encoding_of(name)]
 }
 """The type and number of the channels of each encoding."""
 

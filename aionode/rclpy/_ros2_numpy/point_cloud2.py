@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from aionode.point_cloud2 import fields_from_dtype
 from aionode.rclpy._arrays import array_over
 from aionode.rclpy._ros2_numpy.registry import converts_from_numpy, converts_to_numpy
-from aionode.rclpy._rosidl import message_class
+from aionode.rclpy._rosidl import from_aionode, message_class
 
 __all__ = [
     "DUMMY_FIELD_PREFIX",
@@ -72,15 +73,12 @@ def fields_of(dtype: np.dtype[Any]) -> Mapping[str, Any]:
 
 @converts_from_numpy(PointField, plural=True)
 def dtype_to_fields(dtype: np.dtype[Any]) -> list[Any]:
-    """Return the fields of a cloud whose points are of a structured type."""
-    fields = []
-    for name in dtype.names or ():
-        whole, offset = fields_of(dtype)[name][:2]
-        count = int(np.prod(whole.shape)) if whole.shape else 1
-        fields.append(
-            PointField(name=name, offset=offset, datatype=nptype_to_pftype[whole.base], count=count)
-        )
-    return fields
+    """Return the fields of a cloud whose points are of a structured type.
+
+    Raises:
+        TypeError: It is not structured, or has what no field can have.
+    """
+    return [from_aionode(field) for field in fields_from_dtype(dtype)]
 
 
 @converts_to_numpy(PointCloud2)

@@ -58,9 +58,7 @@ class TransformRegistration:
         Raises:
             TypeException: there is none.
         """
-        if key not in TransformRegistration.__type_map:
-            raise TypeException(f"Type {key} is not loaded or supported")
-        return TransformRegistration.__type_map[key]
+        return entry_of(TransformRegistration.__type_map, key)
 
 
 class ConvertRegistration:
@@ -95,7 +93,7 @@ class ConvertRegistration:
         return entry_of(ConvertRegistration.__convert_map, key)
 
 
-def entry_of(table: dict[Any, Callable[[Any], Any]], key: Any) -> Callable[[Any], Any]:
+def entry_of(table: dict[Any, Callable[..., Any]], key: Any) -> Callable[..., Any]:
     """Return an entry of a table; TypeException if it has none."""
     if key not in table:
         raise TypeException(f"Type {key} is not loaded or supported")
