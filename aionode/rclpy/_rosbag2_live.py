@@ -330,20 +330,22 @@ class Live:
         assert self._thread is not None  # noqa: S101  # it has started
         return self._thread
 
+    def _call(self, work: Callable[[Any], Any]) -> Any:
+        """Return the result of `work` with the recorder or player, in the thread of its loop."""
+        thread = self._live()
+        return thread.call(lambda: work(thread.entity))
+
     def pause(self) -> None:
         """Pause."""
-        thread = self._live()
-        thread.call(thread.entity.pause)
+        self._call(lambda entity: entity.pause())
 
     def resume(self) -> None:
         """Go on."""
-        thread = self._live()
-        thread.call(thread.entity.resume)
+        self._call(lambda entity: entity.resume())
 
     def is_paused(self) -> bool:
         """Whether it is paused."""
-        thread = self._live()
-        return bool(thread.call(lambda: thread.entity.paused))
+        return bool(self._call(lambda entity: entity.paused))
 
 
 class Recorder(Live):
@@ -509,14 +511,12 @@ class Player(Live):
 
     def stop(self) -> None:
         """Stop playing."""
-        thread = self._live()
-        thread.call(thread.entity.stop)
+        self._call(lambda player: player.stop())
         self.wait_for_playback_to_finish()
 
     def play_next(self) -> bool:
         """Publish the next message, while paused; return whether there was one."""
-        thread = self._live()
-        return bool(thread.call(thread.entity.play_next))
+        return bool(self._call(lambda player: player.play_next()))
 
     def burst(self, *given: Any) -> int:
         """Publish so many of the next messages at once, while paused, and return how many.
@@ -528,8 +528,7 @@ class Player(Live):
             self._storage, self._options = given[0], msgspec.structs.replace(given[1])
             self._options.start_paused = True
             self.play()
-        thread = self._live()
-        count = int(thread.call(lambda: thread.entity.burst(int(given[-1]))))
+        count = int(self._call(lambda player: player.burst(int(given[-1]))))
         if len(given) > 1:
             self.stop()
             self.stop_spin()
@@ -537,21 +536,15 @@ class Player(Live):
 
     def seek(self, time_point: int) -> None:
         """Go on at another time, in nanoseconds."""
-        thread = self._live()
-        thread.call(lambda: thread.entity.seek(Time(nanoseconds=int(time_point))))
+        self._call(lambda player: player.seek(Time(nanoseconds=int(time_point))))
 
     def get_starting_time(self) -> int:
         """Return the time of the first message in nanoseconds."""
-        thread = self._live()
-        return int(thread.call(lambda: thread.entity.start.nanoseconds))
+        return int(self._call(lambda player: player.start.nanoseconds))
 
     def get_playback_duration(self) -> int:
         """Return how long the bags are, in nanoseconds."""
-        thread = self._live()
-        length = thread.call(
-            lambda: thread.entity.end.nanoseconds - thread.entity.start.nanoseconds
-        )
-        return int(length)
+        return int(self._call(lambda player: player.end.nanoseconds - player.start.nanoseconds))
 
     @staticmethod
     def cancel() -> None:

@@ -54,6 +54,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
     from aionode.logging import RcutilsLogger
+    from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy.context import Context
     from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
     from aionode.rclpy.waitable import Waitable
@@ -343,9 +344,7 @@ class Node(NodeParameters, NodeGraph):
         except BaseException:
             handle.destroy_when_not_in_use()
             raise
-        group.add_entity(subscription)
-        self._subscriptions.append(subscription)
-        self._handle.messages.note()  # some may wait already
+        self._add(subscription, self._subscriptions, self._handle.messages)
         self._add_event_handlers(subscription)
         return subscription
 
@@ -370,9 +369,7 @@ class Node(NodeParameters, NodeGraph):
         client: Client[Any, Any] = Client(
             self.context, handle, srv_type, srv_name, qos_profile, group
         )
-        group.add_entity(client)
-        self._clients.append(client)
-        self._handle.responses.note()
+        self._add(client, self._clients, self._handle.responses)
         return client
 
     def create_service(
@@ -397,9 +394,7 @@ class Node(NodeParameters, NodeGraph):
         service: Service[Any, Any] = Service(
             handle, srv_type, srv_name, callback, group, qos_profile
         )
-        group.add_entity(service)
-        self._services.append(service)
-        self._handle.requests.note()
+        self._add(service, self._services, self._handle.requests)
         return service
 
     def create_timer(
@@ -431,9 +426,7 @@ class Node(NodeParameters, NodeGraph):
                 autostart=autostart,
             )
         timer.handle.signal = self._handle.signal
-        group.add_entity(timer)
-        self._timers.append(timer)
-        self._wake_executor()
+        self._add(timer, self._timers)
         return timer
 
     def create_guard_condition(
@@ -444,9 +437,7 @@ class Node(NodeParameters, NodeGraph):
         with self.handle:
             guard = GuardCondition(callback, group, context=self.context)
         guard.handle.signal = self._handle.signal
-        group.add_entity(guard)
-        self._guards.append(guard)
-        self._wake_executor()
+        self._add(guard, self._guards)
         return guard
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -463,6 +454,21 @@ class Node(NodeParameters, NodeGraph):
             raise ValueError("frequency must be > 0")
         timer = self.create_timer(1.0 / frequency, None, self._rate_group, clock)
         return Rate(timer, context=self.context)
+
+    def _add(self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None) -> None:
+        """Own an entity, and have the executor look at it.
+
+        Args:
+            entity: The entity.
+            entities: Those of its kind.
+            arrivals: Says that something may wait for it already, if something arrives for it.
+        """
+        entity.callback_group.add_entity(entity)
+        entities.append(entity)
+        if arrivals is None:
+            self._wake_executor()
+        else:
+            arrivals.note()
 
     def add_waitable(self, waitable: Waitable[Any]) -> None:
         """Have its executor wait for `waitable` as well."""

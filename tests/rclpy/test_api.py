@@ -377,6 +377,17 @@ async def test_an_async_node_needs_no_executor() -> None:
         await node.get_clock().sleep(0.01)
 
 
+@pytest.mark.usefixtures("initialised")
+async def test_an_async_node_calls_guard_conditions_that_it_creates_while_it_runs() -> None:
+    """As it calls what else is created then."""
+    async with AsyncNode("awaited") as node, asyncio.timeout(LIMIT_S):
+        called = asyncio.Event()
+
+        node.create_guard_condition(called.set).trigger()
+
+        await called.wait()
+
+
 ENDING = """\
 import sys
 import rclpy

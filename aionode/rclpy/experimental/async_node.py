@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from types import TracebackType
 
+    from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy.qos import QoSProfile
     from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
 
@@ -228,7 +229,8 @@ class AsyncNode(Node):
             content_filter_options=content_filter_options,
             **options,
         )
-        self._begin(subscription, concurrent)
+        if concurrent:
+            self._concurrent.add(subscription)
         return subscription
 
     def create_service(
@@ -245,7 +247,8 @@ class AsyncNode(Node):
         service = super().create_service(
             srv_type, srv_name, callback, qos_profile=qos_profile, **options
         )
-        self._begin(service, concurrent)
+        if concurrent:
+            self._concurrent.add(service)
         return service
 
     def create_client(
@@ -268,14 +271,11 @@ class AsyncNode(Node):
         self, timer_period_sec: float, callback: Callable[..., Any], autostart: bool = True
     ) -> Timer:
         """Return a timer; the callback may take a `TimerInfo`."""
-        timer = super().create_timer(timer_period_sec, callback, autostart=autostart)
-        self._begin(timer, concurrent=False)
-        return timer
+        return super().create_timer(timer_period_sec, callback, autostart=autostart)
 
-    def _begin(self, entity: Any, concurrent: bool) -> None:
-        if concurrent:
-            self._concurrent.add(entity)
-        if self._tasks is not None:
+    def _add(self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None) -> None:
+        super()._add(entity, entities, arrivals)
+        if self._tasks is not None and entities is not self._clients:  # whose calls are awaited
             self._start(entity)
 
     def _destroy(self, entity: Any, entities: list[Any]) -> bool:
