@@ -257,6 +257,7 @@ def test_a_command_that_has_answered_ends(
 ) -> None:
     """Closing waits for Zenoh, which may wait for a peer that is frozen or overloaded."""
     program = f"{hanging}\nimport sys\nfrom aionode.cli import main\n"
+    program += "from aionode.cli._support import session; session.CLOSE_S = 0.1\n"
     program += f"sys.argv = ['aionode', {arguments}]\nsys.exit(main())"
 
     done = subprocess.run(

@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from click.shell_completion import BashComplete
 
+from aionode import Context
 from aionode.cli import main
 from aionode.cli._main import root
 from aionode.cli._support import completion
@@ -297,6 +298,17 @@ def test_bad_input_is_one_line_on_stderr(
     *waiting, line = stderr.splitlines()
     assert all(text.startswith("Waiting for discovery") for text in waiting)  # a busy machine
     assert says in line
+
+
+@pytest.mark.usefixtures("in_robot")
+def test_a_command_in_a_program_has_a_context_of_its_own(
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """The default one has the environment of its first use, and belongs to the program."""
+    with Context.as_default(Context(transport="local")):
+        assert main(["topic", "type", "/chatter"]) == 0
+
+    assert capfd.readouterr().out == "std_msgs/msg/String\n"
 
 
 def test_an_invalid_domain_is_an_error(terminals: Terminals) -> None:

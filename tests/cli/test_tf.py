@@ -208,6 +208,13 @@ def test_static_refuses_what_every_buffer_would_refuse(
         static_transform(*frames, NUMBERS | numbers)
 
 
+@pytest.fixture
+def _brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let the doctor listen for a few messages of a node in the same process."""
+    monkeypatch.setattr("aionode.cli._nouns.doctor_transforms.LISTEN_S", 0.2)
+
+
+@pytest.mark.usefixtures("_brief")
 async def test_doctor_says_why_a_transform_is_missing(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:
@@ -232,6 +239,7 @@ async def test_doctor_says_why_a_transform_is_missing(
     assert "base_link: its transform in odom is " in screen.text
 
 
+@pytest.mark.usefixtures("_brief")
 async def test_doctor_does_not_compare_simulated_stamps_with_this_clock(
     tool: Node, node_factory: Callable[..., Node], screen: Any
 ) -> None:

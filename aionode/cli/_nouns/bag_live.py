@@ -164,10 +164,11 @@ def set_level(node: Node, level: str | None) -> None:
 def record_command(**values: Any) -> None:
     """Record topics, until Ctrl-C. SPACE pauses and resumes."""
     from aionode.bag import Recorder
+    from aionode.context import Context
 
     options = recorder_options(values)
     out, output = values["out"] or output_folder(), Output(json=values["json"])
-    recorder = Recorder(out, **options)
+    recorder = Recorder(out, context=Context(), **options)
 
     async def record() -> None:
         try:
@@ -345,6 +346,7 @@ def play_command(**values: Any) -> None:
     """
     from aionode.bag import Player
     from aionode.clock import Time
+    from aionode.context import Context
 
     paths, options = player_options(values)
     length, until_ns = values["playback_duration"], values["playback_until_nsec"]
@@ -367,6 +369,7 @@ def play_command(**values: Any) -> None:
         send_requests=[kind for kind, option in asks.items() if values[option]],
         requests_source=values["service_requests_source"],
         wait_acked_sec=None if acked_ms is None else acked_ms / 1000,
+        context=Context(),
         **options,
     )
 
@@ -385,9 +388,10 @@ def play_command(**values: Any) -> None:
 def burst_command(**values: Any) -> None:
     """Play messages as fast as possible."""
     from aionode.bag import Player
+    from aionode.context import Context
 
     paths, options = player_options(values)
-    player = Player(paths, start_paused=True, **options)
+    player = Player(paths, start_paused=True, context=Context(), **options)
 
     async def burst() -> None:
         async with player, asyncio.TaskGroup() as tasks:

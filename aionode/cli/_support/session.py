@@ -45,15 +45,20 @@ UNLIMITED_MS = 3_600_000.0
 def make_node(
     context: Context | None = None, node_name: str | None = None, *, use_sim_time: bool = False
 ) -> Node:
-    """Return the node of a command: hidden, and without services or logs of its own."""
+    """Return the node of a command: hidden, and without services or logs of its own.
+
+    Without a `context` it gets one of its own: the default context of the process has the
+    environment of its first use, and belongs to the program that runs the command.
+    """
     # Imported when a command runs; its help does not need them.
+    from aionode.context import Context
     from aionode.node import Node
     from aionode.parameter import Parameter
 
     settings = {"start_type_description_service": False, "use_sim_time": use_sim_time}
     return Node(
         node_name or f"_aionode_cli_{os.getpid()}",
-        context=context,
+        context=Context() if context is None else context,
         enable_rosout=False,
         start_parameter_services=False,
         parameter_overrides=[Parameter(name, value=value) for name, value in settings.items()],
