@@ -9,7 +9,6 @@ import shutil
 import signal
 import socket
 import subprocess
-import sys
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,7 +22,7 @@ from aionode.examples.quality_of_service.incompatible_qos import POLICIES
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from examples.fastapi_app import make_app
-from tests.support.fork_server import start
+from tests.support.fork_server import run, start
 from tests.support.peers import isolated_environment
 from tests.system.left import MARK, left
 
@@ -488,11 +487,7 @@ def test_the_arm_says_where_its_gripper_is(domain: int) -> None:
         arm.line_with("cup in the gripper")
         arm.line_with("height of the gripper")
         command = ["-m", "aionode", "tf", "tree"]
-        tree = subprocess.run(
-            [sys.executable, *command],
-            env={**os.environ, "ROS_DOMAIN_ID": str(domain)},
-            capture_output=True, text=True, timeout=40, check=True,
-        ).stdout  # fmt: skip
+        tree = run(command, env={**os.environ, "ROS_DOMAIN_ID": str(domain)}, timeout=40).stdout
 
     assert abs(place[0] - 2) < 1.3
     assert tree.splitlines()[0] == "map"
@@ -598,14 +593,7 @@ def test_the_web_application_runs_where_it_is_copied_to(
     """A reader takes one file, and has no package `examples`."""
     copied = shutil.copy(ROOT / "examples" / "web_control.py", tmp_path)
     script = "import runpy, sys; sys.modules['examples'] = None; runpy.run_path(sys.argv[1])"
-    done = subprocess.run(
-        [sys.executable, "-c", script, copied],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    done = run(["-c", script, str(copied)], env=os.environ, timeout=50, cwd=tmp_path)
 
     assert (done.returncode, done.stderr) == (0, "")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import gc
 import os
-import subprocess
 import sys
 import threading
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from aionode.errors import AionodeError, ConfigurationError
 from aionode.node import Node
 from aionode.runner import FROZEN_BY_PYTHON, best_loop_factory, failure_text
 from aionode.testing import local_context
+from tests.support import fork_server
 from tests.support.program import PREAMBLE, Program
 
 
@@ -87,14 +87,7 @@ def test_an_error_of_aionode_in_a_callback_says_where(
     at = program.read_text().splitlines().index(f"        {line}") + 1
 
     def run(environment: dict[str, str]) -> str:
-        done = subprocess.run(
-            [sys.executable, program],
-            capture_output=True,
-            text=True,
-            timeout=20,
-            check=False,
-            env={**os.environ, **environment},
-        )
+        done = fork_server.run([str(program)], env={**os.environ, **environment}, timeout=20)
         assert done.returncode == 1
         return done.stderr
 

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from tests.support import fork_server
 from tests.support.peers import DOMAIN_ID, isolated_environment, raw_session
 
 AIONODE = [sys.executable, "-m", "aionode"]
@@ -37,14 +38,7 @@ def env() -> Iterator[dict[str, str]]:
 
 def run(env: dict[str, str], *arguments: str, **variables: str) -> subprocess.CompletedProcess[str]:
     """Return the result of a command."""
-    return subprocess.run(
-        [*AIONODE, *arguments],
-        env=env | variables,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
+    return fork_server.run(["-m", "aionode", *arguments], env=env | variables, timeout=50)
 
 
 def test_a_command_says_that_the_robot_is_humble(env: dict[str, str]) -> None:

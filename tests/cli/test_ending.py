@@ -16,6 +16,7 @@ from pathlib import Path
 import pytest
 
 from aionode.cli import main
+from tests.support import fork_server
 from tests.support.peers import isolated_environment
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="pipes whose size can be set")
@@ -90,10 +91,11 @@ def test_a_signal_ends_a_command_whose_output_is_not_read(
     (tmp_path / "chatterbox.py").write_text(CHATTERBOX)
     with (
         unread() as pipe,
-        subprocess.Popen(
-            [*AIONODE, *arguments],
+        fork_server.start(
+            ["-m", "aionode", *arguments],
             env=env | {"PYTHONPATH": str(ROOT)},
             cwd=tmp_path,
+            stdin=subprocess.DEVNULL,
             stdout=pipe if stream == "stdout" else subprocess.DEVNULL,
             stderr=pipe if stream == "stderr" else subprocess.PIPE,
         ) as child,
@@ -104,9 +106,9 @@ def test_a_signal_ends_a_command_whose_output_is_not_read(
             child.wait(ENDS_S)
         finally:
             child.kill()
-        errors = child.stderr.read() if child.stderr is not None else b""
+        errors = child.stderr.read() if child.stderr is not None else ""
 
-    assert (child.returncode, errors) == (0, b"")
+    assert (child.returncode, errors) == (0, "")
 
 
 @pytest.mark.parametrize(
@@ -116,15 +118,7 @@ def test_a_signal_ends_a_command_whose_output_is_not_read(
 def test_a_full_disk_is_one_line(arguments: list[str], env: dict[str, str]) -> None:
     """Instead of 45 lines of traceback, and with a status that says that output is missing."""
     with Path("/dev/full").open("w") as full:
-        done = subprocess.run(
-            [*AIONODE, *arguments],
-            env=env,
-            stdout=full,
-            stderr=subprocess.PIPE,
-            text=True,
-            timeout=60,
-            check=False,
-        )
+        done = fork_server.run(["-m", "aionode", *arguments], env=env, stdout=full, timeout=50)
 
     assert done.stderr == (
         "cannot write to stdout: No space left on device; the output is incomplete\n"
@@ -208,14 +202,11 @@ def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_
     """They are the user's, as in any Python program."""
     (tmp_path / "threaded.py").write_text(THREADED)
 
-    done = subprocess.run(
-        [*AIONODE, "run", "threaded.py:Threaded"],
+    done = fork_server.run(
+        ["-m", "aionode", "run", "threaded.py:Threaded"],
         env=env | {"PYTHONPATH": str(ROOT)},
         cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
+        timeout=50,
     )
 
     assert (done.returncode, done.stdout, done.stderr) == (0, "finished\n", "")
@@ -260,14 +251,7 @@ def test_a_command_that_has_answered_ends(
     program += "from aionode.cli._support import session; session.CLOSE_S = 0.1\n"
     program += f"sys.argv = ['aionode', {arguments}]\nsys.exit(main())"
 
-    done = subprocess.run(
-        [sys.executable, "-c", program],
-        env=env,
-        capture_output=True,
-        text=True,
-        timeout=ENDS_S,
-        check=False,
-    )
+    done = fork_server.run(["-c", program], env=env, timeout=ENDS_S)
 
     assert (done.returncode, done.stdout, done.stderr) == (status, stdout, stderr)
 
@@ -300,14 +284,8 @@ def test_a_program_that_runs_a_command_keeps_its_process(
 
     A library is a guest in its process: only what the shell started may end so.
     """
-    done = subprocess.run(
-        [sys.executable, "-c", GUEST],
-        env=env | {"PYTHONPATH": str(ROOT)},
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=ENDS_S,
-        check=False,
+    done = fork_server.run(
+        ["-c", GUEST], env=env | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, timeout=ENDS_S
     )
 
     assert (done.returncode, done.stdout, done.stderr) == (0, "0\nstill here [0, 3]\n", "")
@@ -336,12 +314,8 @@ def test_a_signal_that_interrupts_the_start_of_a_thread_sets_a_deadline(
     env: dict[str, str], tmp_path: Path
 ) -> None:
     """The handler runs while the interrupted thread holds the lock that starting threads takes."""
-    done = subprocess.run(
-        [sys.executable, "-c", INSIDE_START],
-        env=env | {"PYTHONPATH": str(ROOT)},
-        cwd=tmp_path,
-        timeout=ENDS_S,
-        check=False,
+    done = fork_server.run(
+        ["-c", INSIDE_START], env=env | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, timeout=ENDS_S
     )
 
     assert done.returncode == 7
@@ -361,12 +335,8 @@ threading.Event().wait(0.5)
 
 def test_a_deadline_that_is_cancelled_ends_nothing(env: dict[str, str], tmp_path: Path) -> None:
     """A command that ends in time leaves its process to others, as to a test that runs several."""
-    done = subprocess.run(
-        [sys.executable, "-c", CANCELLED],
-        env=env | {"PYTHONPATH": str(ROOT)},
-        cwd=tmp_path,
-        timeout=ENDS_S,
-        check=False,
+    done = fork_server.run(
+        ["-c", CANCELLED], env=env | {"PYTHONPATH": str(ROOT)}, cwd=tmp_path, timeout=ENDS_S
     )
 
     assert done.returncode == 0

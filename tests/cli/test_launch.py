@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
+import os
 from pathlib import Path
 
 import pytest
 
 from aionode.cli import main
+from tests.support import fork_server
 
 FILE = """
 <launch>
@@ -114,10 +114,10 @@ def test_its_exit_status_is_that_of_the_first_failure(
     """
     path = tmp_path / "a.launch.xml"
     path.write_text("""<launch><executable cmd="sh -c 'echo no device; exit 3'"/></launch>""")
-    command = [sys.executable, "-m", "aionode", "launch", str(path), *options]
+    command = ["-m", "aionode", "launch", str(path), *options]
     command += ["--log-folder", str(tmp_path / "log")]
 
-    assert subprocess.run(command, stdout=subprocess.DEVNULL, check=False).returncode == status
+    assert fork_server.run(command, env=os.environ, timeout=50).returncode == status
     assert (tmp_path / "log" / "sh-1.log").read_text().endswith(" no device\n")
 
 

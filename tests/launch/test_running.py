@@ -21,6 +21,7 @@ from aionode.launch import Plan, run_plan
 from aionode.lifecycle import LifecycleNode
 from aionode.system import System, SystemLog
 from tests.launch.conftest import BODY, HEAD
+from tests.support import fork_server
 from tests.support.waiting import until
 
 if TYPE_CHECKING:
@@ -493,12 +494,7 @@ service.include_launch_description(LaunchDescription([LogInfo(msg=LaunchConfigur
 print('status', status, service.run())
 """,
     )
-    done = subprocess.run(
-        [sys.executable, "-m", "aionode.rclpy", program],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = fork_server.run(["-m", "aionode.rclpy", str(program)], env=os.environ, timeout=50)
 
     assert "| hello\n" in done.stdout, done.stderr
     assert "shutdown: enough" in done.stdout
@@ -517,12 +513,7 @@ def test_the_command_starts_nothing_of_a_bad_file(files: Files) -> None:
         <executable cmd="echo $(var nope)"/>
         </launch>""",
     )
-    done = subprocess.run(
-        [sys.executable, "-m", "aionode", "launch", path],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = fork_server.run(["-m", "aionode", "launch", str(path)], env=os.environ, timeout=50)
 
     assert done.returncode != 0
     assert done.stderr.startswith(f"{path}:3: ExecuteProcess: launch configuration 'nope'")

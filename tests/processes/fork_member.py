@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import subprocess
 import sys
+import warnings
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 
@@ -19,6 +20,8 @@ from tests.support.peers import quiet_node
 
 FORK = multiprocessing.get_context("fork")
 CHILD_S = 10.0
+
+warnings.simplefilter("ignore", DeprecationWarning)  # of a fork beside threads
 
 
 def tell(*words: object) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import subprocess
-import sys
 from contextlib import suppress
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import pytest
 from tests.support.links import folder
 
 __all__ = ["folder"]  # a fixture
+from tests.support import fork_server
 
 MEMBER = Path(__file__).with_name("fork_member.py")
 ROOT = Path(__file__).parents[2]
@@ -23,14 +23,14 @@ pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system doe
 
 def told(how: str) -> list[str]:
     """Return what the program tells; nothing of it is left in the end."""
-    with subprocess.Popen(
-        [sys.executable, "-W", "ignore::DeprecationWarning", str(MEMBER), how],
+    with fork_server.start(
+        [str(MEMBER), how],
+        stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        text=True,
         cwd=ROOT,
         env={**os.environ, "PYTHONPATH": str(ROOT)},
-        start_new_session=True,
+        process_group=0,
     ) as process:
         try:
             output, _ = process.communicate(timeout=30)

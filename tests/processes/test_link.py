@@ -8,7 +8,6 @@ import shutil
 import signal
 import socket
 import subprocess
-import sys
 import tempfile
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
@@ -28,6 +27,7 @@ from aionode.transport.link._publisher import LinkWriter
 from aionode.transport.link._subscription import Route
 from aionode.transport.link._transport import LinkTransport
 from tests.processes.link_member import STREAMED_BYTES
+from tests.support import fork_server
 from tests.support.arrivals import reader_of, writers_of
 from tests.support.links import fd_of, freeze, thaw
 from tests.support.peers import isolated_environment, quiet_node
@@ -49,11 +49,15 @@ def isolated(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @contextmanager
-def other_process(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+def other_process(*arguments: str) -> Iterator[subprocess.Popen[str]]:
     """Run the echoing process meanwhile."""
-    root = Path(__file__).parents[2]
-    with subprocess.Popen(
-        [sys.executable, MEMBER, *arguments], stdin=subprocess.PIPE, cwd=root, env=os.environ.copy()
+    with fork_server.start(
+        [str(MEMBER), *arguments],
+        env=os.environ,
+        cwd=Path(__file__).parents[2],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
     ) as process:
         try:
             yield process
@@ -177,8 +181,10 @@ class Stream:
         ):
             await self.next()
 
-    async def freeze_in_mid_frame(self, process: subprocess.Popen[bytes]) -> None:
+    async def freeze_in_mid_frame(self, process: subprocess.Popen[str]) -> None:
         """Read no more, and stop the sender when it waits to send the rest of a frame."""
+        while self.link.held:  # the link has read a part of a frame
+            await self.next()
         freeze(self.link)
         while True:
             stop(process)
@@ -192,7 +198,7 @@ class Stream:
         thaw(self.link)
 
 
-def stop(process: subprocess.Popen[bytes]) -> None:
+def stop(process: subprocess.Popen[str]) -> None:
     """Freeze a process, and see it frozen."""
     process.send_signal(signal.SIGSTOP)
     os.waitpid(process.pid, os.WUNTRACED)

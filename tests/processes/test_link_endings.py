@@ -6,7 +6,6 @@ import asyncio
 import os
 import signal
 import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -21,6 +20,7 @@ from tests.support.links import folder, freeze, manager_of
 from tests.support.peers import KEEP_ALL, quiet_node
 
 __all__ = ["folder"]  # a fixture
+from tests.support import fork_server
 
 pytestmark = pytest.mark.one_loop  # tests/transport/link reads ended links on both loops
 
@@ -28,14 +28,17 @@ ENDER = Path(__file__).with_name("link_ender.py")
 
 
 @contextmanager
-def publishing_process(count: int, end: str) -> Iterator[subprocess.Popen[bytes]]:
+def publishing_process(count: int, end: str) -> Iterator[subprocess.Popen[str]]:
     """Run the process that publishes `count` numbers when it is told to."""
     root = Path(__file__).parents[2]
     environ = {**os.environ, "PYTHONPATH": str(root)}
-    command = [sys.executable, str(ENDER), str(count), end]
-    with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stderr=subprocess.PIPE, cwd=root, env=environ
-    ) as process:
+    pipes: dict[str, Any] = {
+        "stdin": subprocess.PIPE,
+        "stdout": subprocess.DEVNULL,
+        "stderr": subprocess.PIPE,
+    }
+    command = [str(ENDER), str(count), end]
+    with fork_server.start(command, cwd=root, env=environ, **pipes) as process:
         try:
             yield process
         finally:
@@ -63,7 +66,7 @@ async def numbers_until(last: int, subscription: Any) -> list[int]:
     return got
 
 
-def tell(process: subprocess.Popen[bytes]) -> None:
+def tell(process: subprocess.Popen[str]) -> None:
     """Let it publish and end."""
     assert process.stdin is not None
     process.stdin.close()
@@ -106,7 +109,7 @@ async def test_a_frozen_reader_holds_a_process_up_for_a_second_and_is_told_of() 
             tell(process)
             assert await asyncio.to_thread(process.wait, 10) == 0
             assert process.stderr is not None
-            said = process.stderr.read().decode()
+            said = process.stderr.read()
         assert "/numbers: the last" in said
         assert "given up" in said
         assert len(said.splitlines()) == 1

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from typing import Any
 import pytest
 
 from aionode.rclpy._impl import uninterrupted
+from tests.support import fork_server
 from tests.support.peers import isolated_environment
 
 PROGRAM = Path(__file__).parent / "interruptions.py"
@@ -33,13 +33,10 @@ pytestmark = [
 def run(name: str) -> dict[str, Any]:
     """Return what a program says. Its lines are not counted: that takes minutes."""
     counting = {name: "" for name in os.environ if name.startswith("COVERAGE_PROCESS")}
-    process = subprocess.run(
-        [sys.executable, "-m", "aionode.rclpy", str(PROGRAM), name],
-        capture_output=True,
-        text=True,
+    process = fork_server.run(
+        ["-m", "aionode.rclpy", str(PROGRAM), name],
         timeout=PATIENCE_S,
         env={**os.environ, **counting, **isolated_environment()},
-        check=False,
     )
     assert process.stdout, process.stderr
     said: dict[str, Any] = json.loads(process.stdout)

@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support import fork_server
+
 PROGRAM = """\
 import sys
 
@@ -61,19 +63,12 @@ def folder(tmp_path: Path) -> Path:
 
 
 def run(
-    folder: Path, *command: str, module: str = "aionode.rclpy"
+    folder: Path, *command: str, module: str = "aionode.rclpy", fresh: bool = False
 ) -> subprocess.CompletedProcess[str]:
     """Run a command in a folder."""
     path = (folder / SHADOW, Path(__file__).parents[2])
-    return subprocess.run(
-        [sys.executable, "-m", module, *command],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=50,
-        env={**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))},
-    )
+    env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, path))}
+    return fork_server.run(["-m", module, *command], env=env, timeout=50, cwd=folder, fresh=fresh)
 
 
 @pytest.mark.parametrize(
@@ -291,7 +286,7 @@ def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
         "print([n for n in sys.modules if n.startswith(('aionode.rclpy._', 'cv2'))])\n"
     )
 
-    loaded = run(folder, "own.py").stdout
+    loaded = run(folder, "own.py", fresh=True).stdout
 
     assert "aionode.rclpy._finder" in loaded
     for package in ("_cv_bridge", "_message_filters", "_ros2_numpy", "_tf_transformations"):

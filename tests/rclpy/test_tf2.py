@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
+import os
 import threading
 from pathlib import Path
 from typing import Any
@@ -19,6 +18,7 @@ from aionode.rclpy._tf2_ros import Buffer, TransformRegistration, TypeException,
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
 from aionode.tf._waiters import Waiter
+from tests.support import fork_server
 from tests.support.living import living
 
 TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
@@ -100,10 +100,7 @@ def test_a_program_of_tf2_runs_unchanged(tmp_path: Path) -> None:
     """Listener, broadcasters, a wait that blocks its thread, a conversion and a future."""
     program = tmp_path / "program.py"
     program.write_text(PROGRAM, encoding="utf-8")
-    run = subprocess.run(
-        [sys.executable, "-m", "aionode.rclpy", program],
-        capture_output=True, text=True, timeout=50, check=False,
-    )  # fmt: skip
+    run = fork_server.run(["-m", "aionode.rclpy", str(program)], env=os.environ, timeout=50)
     assert run.stdout.splitlines() == ["LookupException", "2.0 True", "2.0", "True camera"], (
         run.stderr
     )

@@ -6,13 +6,13 @@ import contextlib
 import os
 import signal
 import subprocess
-import sys
 import threading
 from typing import TYPE_CHECKING, Self
 from uuid import uuid4
 
 import pytest
 
+from tests.support import fork_server
 from tests.support.peers import isolated_environment
 from tests.system.left import MARK, left
 
@@ -65,10 +65,11 @@ class Supervised:
 
     def __init__(self, text: str, transport: str = "local") -> None:
         self.mark = uuid4().hex
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", text],
+        self.process = fork_server.start(
+            ["-c", text],
+            stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
-            text=True,
+            stderr=subprocess.DEVNULL,
             env={**os.environ, MARK: self.mark, "AIONODE_TRANSPORT": transport},
         )
         self.lines: list[str] = []
