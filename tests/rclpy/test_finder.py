@@ -7,7 +7,6 @@ import logging
 import pickle
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -24,18 +23,6 @@ std_msgs/Header header
 string[] words
 Score[<=3] scores
 """
-
-
-@pytest.fixture
-def installed() -> Iterator[None]:
-    """A process in which aionode stands in for ROS, and afterwards does not."""
-    before = dict(sys.modules)
-    aionode.rclpy.install()
-    yield
-    sys.meta_path.remove(_finder.FINDER)
-    for name in set(sys.modules) - set(before):
-        if not name.startswith("aionode"):
-            del sys.modules[name]
 
 
 @pytest.fixture

@@ -18,8 +18,6 @@ from typing import Any
 
 import pytest
 
-import aionode.rclpy
-from aionode.rclpy import _finder
 from aionode.rclpy._rosidl import message_class
 
 HERE = Path(__file__).parent
@@ -77,18 +75,6 @@ SHARED = {
     "typing": "a name for annotations",
 }
 """The modules whose classes keep their `__module__`, and why."""
-
-
-@pytest.fixture
-def installed() -> Iterator[None]:
-    """A process in which aionode stands in for ROS, and afterwards does not."""
-    before = dict(sys.modules)
-    aionode.rclpy.install()
-    yield
-    sys.meta_path.remove(_finder.FINDER)
-    for name in set(sys.modules) - set(before):
-        if not name.startswith("aionode"):
-            del sys.modules[name]
 
 
 def imported(module: str) -> Any:

@@ -20,6 +20,7 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 __all__ = [
     "KEEP_ALL",
     "Collector",
+    "contexts_over",
     "free_ports",
     "isolated_environment",
     "kept",
@@ -29,6 +30,7 @@ __all__ = [
     "ros_router",
     "ros_session",
     "ros_value",
+    "router_client",
     "two_contexts",
 ]
 
@@ -92,6 +94,36 @@ async def two_contexts(**options: Any) -> AsyncIterator[tuple[Context, Context]]
     """Two participants that know each other, in one process."""
     async with Context(**options) as first, Context(**options) as second:
         yield first, second
+
+
+@asynccontextmanager
+async def contexts_over(way: str, **options: Any) -> AsyncIterator[tuple[Context, Context]]:
+    """One context twice, or two that a link or only Zenoh connects, as it connects processes.
+
+    Args:
+        way: ``local``, ``link`` or ``zenoh``.
+        options: Further options of the contexts.
+    """
+    if way == "local":
+        async with Context(transport="local", **options) as context:
+            yield context, context
+    else:
+        async with two_contexts(link=way == "link", **options) as both:
+            yield both
+
+
+@contextmanager
+def router_client(port: str) -> Iterator[zenoh.Session]:
+    """A plain Zenoh program that sees only the session that it dials."""
+    config = zenoh_config(
+        {
+            "mode": "client",
+            "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
+            "scouting/multicast/enabled": False,
+        }
+    )
+    with closing(zenoh.open(config)) as session:
+        yield session
 
 
 def quiet_node(name: str, context: Context | None = None, **options: Any) -> Node:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import base64
 from collections.abc import Callable
-from contextlib import AsyncExitStack
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pytest
@@ -14,12 +13,11 @@ from hypothesis import strategies as st
 
 from aionode import Publisher, Subscription
 from aionode.content_filter import ContentFilterOptions, compile_filter
-from aionode.context import Context
 from aionode.errors import ContentFilterError, EntityDestroyedError, MessageError
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.testing import local_context, settle
+from aionode.testing import settle
 from aionode.transport import _content_filters as content_filters
 from aionode.transport._content_filters import (
     ContentFilters,
@@ -28,7 +26,7 @@ from aionode.transport._content_filters import (
     text_of_filter,
 )
 from aionode.wire import cdr
-from tests.support.peers import Collector, quiet_node, raw_session
+from tests.support.peers import Collector, contexts_over, quiet_node, raw_session
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -50,19 +48,15 @@ class Pair(NamedTuple):
 @pytest.fixture(params=["local", "zenoh", "link"])
 async def pair(request: pytest.FixtureRequest) -> AsyncIterator[Pair]:
     """Two nodes that know each other."""
-    route = request.param
-    async with AsyncExitStack() as stack, asyncio.timeout(30):
-        if route == "local":
-            left = right = await stack.enter_async_context(local_context())
-        else:
-            left = await stack.enter_async_context(Context(link=route == "link"))
-            right = await stack.enter_async_context(Context(link=route == "link"))
-        nodes = (quiet_node("left", left), quiet_node("right", right))
-        for node in nodes:
-            await stack.enter_async_context(node)
-        await nodes[0].wait_for_node("/right")
-        await nodes[1].wait_for_node("/left")
-        yield Pair(*nodes, route)
+    async with (
+        asyncio.timeout(30),
+        contexts_over(request.param) as (first, second),
+        quiet_node("left", first) as left,
+        quiet_node("right", second) as right,
+    ):
+        await left.wait_for_node("/right")
+        await right.wait_for_node("/left")
+        yield Pair(left, right, request.param)
 
 
 async def received(subscription: Subscription[Any], last: int) -> list[int]:

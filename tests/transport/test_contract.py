@@ -25,11 +25,11 @@ from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.parameter_client import AsyncParameterClient
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.testing import local_context
 from aionode.transport.rcl import RclTransport
 from aionode.wire import cdr
 from tests.support import fake_rcl
 from tests.support.arrivals import direct_subscription, reader_of
+from tests.support.peers import contexts_over, two_contexts
 from tests.support.ros import gids_of_a_client, ros_domain, ros_missing
 from tests.support.waiting import until
 
@@ -65,10 +65,7 @@ async def pair(
     """Two nodes that know each other."""
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     async with AsyncExitStack() as stack, asyncio.timeout(30):
-        if request.param == "local":
-            context = await stack.enter_async_context(local_context())
-            contexts = (context, context)
-        elif request.param in {"rcl", "fake_rcl"}:
+        if request.param in {"rcl", "fake_rcl"}:
             why_not = OVER_RCL.get(request.function.__name__)
             if request.param == "fake_rcl":
                 fake_rcl.install(monkeypatch)
@@ -76,15 +73,10 @@ async def pair(
                 why_not = why_not or ros_missing(*getattr(request.module, "ROS_PACKAGES", ()))
             if why_not:
                 pytest.skip(why_not)
-            contexts = (
-                await stack.enter_async_context(Context(transport="rcl", domain_id=ros_domain())),
-                await stack.enter_async_context(Context(transport="rcl", domain_id=ros_domain())),
-            )
+            over = two_contexts(transport="rcl", domain_id=ros_domain())
         else:
-            contexts = (
-                await stack.enter_async_context(Context(link=request.param == "link")),
-                await stack.enter_async_context(Context(link=request.param == "link")),
-            )
+            over = contexts_over(request.param)
+        contexts = await stack.enter_async_context(over)
         left = await stack.enter_async_context(Node("left", context=contexts[0]))
         right = await stack.enter_async_context(Node("right", context=contexts[1]))
         await left.wait_for_node("/right")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import gc
 from collections.abc import AsyncIterator, Callable, Coroutine
-from contextlib import AsyncExitStack, suppress
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import anyio
@@ -21,11 +21,11 @@ from aionode.endpoints.client import Exchange
 from aionode.errors import ServiceUnavailableError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
-from aionode.testing import FaultyTransport, local_context, settle
+from aionode.testing import FaultyTransport, settle
 from aionode.transport.local import LocalTransport
 from tests.support.actions import Goal, Worker, end_of
 from tests.support.living import living
-from tests.support.peers import isolated_environment
+from tests.support.peers import contexts_over, isolated_environment, quiet_node
 from tests.support.spies import returns_of
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -49,19 +49,12 @@ async def ends(
     """Two nodes: in one context, or in two that are connected as two processes would be."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
-    quiet: Any = {"enable_rosout": False, "start_parameter_services": False}
-    async with AsyncExitStack() as stack, asyncio.timeout(30):
-        if request.param == "local":
-            context = await stack.enter_async_context(local_context())
-            contexts = (context, context)
-        else:
-            link = request.param == "link"
-            contexts = (
-                await stack.enter_async_context(Context(link=link)),
-                await stack.enter_async_context(Context(link=link)),
-            )
-        serving = await stack.enter_async_context(Node("serving", context=contexts[0], **quiet))
-        asking = await stack.enter_async_context(Node("asking", context=contexts[1], **quiet))
+    async with (
+        asyncio.timeout(30),
+        contexts_over(request.param) as (first, second),
+        quiet_node("serving", first) as serving,
+        quiet_node("asking", second) as asking,
+    ):
         worker = Worker()
         server: Server = serving.create_action_server(
             Fibonacci, "fibonacci", worker, cancel_callback=lambda _goal: CancelResponse.ACCEPT

@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import logging
 from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack
 from typing import Any, NamedTuple
 
 import pytest
@@ -20,7 +19,6 @@ from aionode.action import (
     GoalResponse,
     GoalStatus,
 )
-from aionode.context import Context
 from aionode.errors import (
     CallbackSignatureError,
     EntityDestroyedError,
@@ -36,9 +34,9 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.qos import qos_profile_action_status_default
-from aionode.testing import local_context, settle
+from aionode.testing import settle
 from tests.support.actions import Goal, PlainClient, Worker, end_of, endpoint_count, uuid_of
-from tests.support.peers import isolated_environment
+from tests.support.peers import contexts_over, isolated_environment, quiet_node
 from tests.support.spies import returns_of
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
@@ -65,18 +63,12 @@ async def ends(
     """Two nodes: in one context, or in two that only Zenoh connects, as two processes would be."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
-    quiet: Any = {"enable_rosout": False, "start_parameter_services": False}
-    async with AsyncExitStack() as stack, asyncio.timeout(30):
-        if request.param == "local":
-            context = await stack.enter_async_context(local_context())
-            contexts = (context, context)
-        else:
-            contexts = (
-                await stack.enter_async_context(Context()),
-                await stack.enter_async_context(Context()),
-            )
-        serving = await stack.enter_async_context(Node("serving", context=contexts[0], **quiet))
-        asking = await stack.enter_async_context(Node("asking", context=contexts[1], **quiet))
+    async with (
+        asyncio.timeout(30),
+        contexts_over(request.param) as (first, second),
+        quiet_node("serving", first) as serving,
+        quiet_node("asking", second) as asking,
+    ):
         requests: list[Goal] = []
 
         def decide(goal: Goal) -> CancelResponse:

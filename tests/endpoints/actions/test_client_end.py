@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Callable, Coroutine
-from contextlib import AsyncExitStack, suppress
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import pytest
@@ -15,9 +15,8 @@ from aionode.context import Context
 from aionode.errors import EntityDestroyedError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
-from aionode.testing import local_context
 from tests.support.actions import Worker, end_of
-from tests.support.peers import isolated_environment
+from tests.support.peers import contexts_over, isolated_environment, quiet_node
 
 Client = ActionClient[Fibonacci.Goal, Fibonacci.Result, Fibonacci.Feedback]
 
@@ -86,15 +85,11 @@ async def ends(
     """A server: in the context of the program, or in one that is connected as processes are."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
-    quiet: Any = {"enable_rosout": False, "start_parameter_services": False}
-    async with AsyncExitStack() as stack, asyncio.timeout(30):
-        if request.param == "local":
-            context = other = await stack.enter_async_context(local_context())
-        else:
-            link = request.param == "link"
-            context = await stack.enter_async_context(Context(link=link))
-            other = await stack.enter_async_context(Context(link=link))
-        serving = await stack.enter_async_context(Node("serving", context=other, **quiet))
+    async with (
+        asyncio.timeout(30),
+        contexts_over(request.param) as (context, other),
+        quiet_node("serving", other) as serving,
+    ):
         worker = Worker()
         server: ActionServer[Any, Any, Any] = serving.create_action_server(
             Fibonacci, "fibonacci", worker, cancel_callback=lambda _goal: CancelResponse.ACCEPT

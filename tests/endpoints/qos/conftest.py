@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator
-from contextlib import AsyncExitStack
 from typing import Any, NamedTuple, TypeVar
 
 import pytest
 
 from aionode.clock import Time
-from aionode.context import Context
 from aionode.endpoints.events import EventStream
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.subscription import Subscription
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.testing import ManualClock, local_context
+from aionode.testing import ManualClock
 from tests.support.links import folder
-from tests.support.peers import isolated_environment, quiet_node
+from tests.support.peers import contexts_over, isolated_environment, quiet_node
 
 __all__ = ["folder"]  # a fixture
 
@@ -91,15 +89,11 @@ async def pair(
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
     clock = ManualClock(Time(seconds=1000))
-    async with AsyncExitStack() as stack:
-        if request.param == "local":
-            first = second = await stack.enter_async_context(local_context(clock=clock))
-        else:
-            link = request.param == "link"
-            first = await stack.enter_async_context(Context(link=link, clock=clock))
-            second = await stack.enter_async_context(Context(link=link, clock=clock))
-        talker = await stack.enter_async_context(quiet_node("talker", first))
-        listener = await stack.enter_async_context(quiet_node("listener", second))
+    async with (
+        contexts_over(request.param, clock=clock) as (first, second),
+        quiet_node("talker", first) as talker,
+        quiet_node("listener", second) as listener,
+    ):
         yield Pair(talker, listener, clock, request.param)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import os
-from collections.abc import AsyncIterator, Iterator
-from contextlib import AsyncExitStack, asynccontextmanager, closing, contextmanager
+from collections.abc import AsyncIterator
+from contextlib import AsyncExitStack, asynccontextmanager
 from typing import Any
 
 import pytest
@@ -20,7 +20,14 @@ from aionode.wire import cdr
 from aionode.wire._key_expression import data_key
 from aionode.wire.typehash import type_hash
 from tests.support.links import Counting, Two, folder, link_of, transport_of, two_nodes, writer_of
-from tests.support.peers import DOMAIN_ID, Collector, free_ports, ros_router, zenoh_config
+from tests.support.peers import (
+    DOMAIN_ID,
+    Collector,
+    free_ports,
+    ros_router,
+    router_client,
+    zenoh_config,
+)
 
 __all__ = ["folder"]  # a fixture
 
@@ -50,20 +57,6 @@ async def router(settings: dict[str, Any] | None = None) -> AsyncIterator[zenoh.
 def here() -> str:
     """Return the port of the router of this machine."""
     return os.environ["AIONODE_ROUTER_PORT"]
-
-
-@contextmanager
-def client(port: str) -> Iterator[zenoh.Session]:
-    """A plain Zenoh program that knows nothing but a router."""
-    config = zenoh_config(
-        {
-            "mode": "client",
-            "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
-            "scouting/multicast/enabled": False,
-        }
-    )
-    with closing(zenoh.open(config)) as session:
-        yield session
 
 
 def number_of(sample: Any) -> int:
@@ -144,7 +137,7 @@ async def test_a_plain_subscriber_behind_a_router_gets_the_next_message(
             port = str(free_ports(1)[0])
             settings = router_settings([f"tcp/127.0.0.1:{port}"], [f"tcp/127.0.0.1:{here()}"])
             await stack.enter_async_context(router(settings))
-        session = stack.enter_context(client(port))
+        session = stack.enter_context(router_client(port))
         samples, numbers = Collector(), both.numbers
         subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", samples)
         await both.until_it_needs_zenoh(True)
@@ -225,7 +218,7 @@ async def test_the_router_is_not_asked_for_its_admin_space(monkeypatch: pytest.M
     """It could deadlock; declarations tell."""
     asked: list[object] = []
     async with router():
-        with client(here()) as session:
+        with router_client(here()) as session:
             session.declare_queryable("@/**", asked.append)
             session.declare_subscriber("@/**", asked.append)
             async with linked(monkeypatch):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import os
 import threading
-from collections.abc import AsyncIterator, Iterator
-from contextlib import ExitStack, asynccontextmanager, closing, contextmanager
+from collections.abc import AsyncIterator
+from contextlib import ExitStack, asynccontextmanager
 from typing import Any
 
 import pytest
@@ -16,7 +16,14 @@ from aionode.graph import Graph
 from aionode.transport._network import network_from
 from aionode.transport.zenoh._session import close_session, open_router
 from aionode.transport.zenoh._transport import ZenohTransport
-from tests.support.peers import DOMAIN_ID, Collector, known, raw_session, ros_router, zenoh_config
+from tests.support.peers import (
+    DOMAIN_ID,
+    Collector,
+    known,
+    raw_session,
+    ros_router,
+    router_client,
+)
 from tests.support.waiting import until
 
 PATIENCE_S = 20.0
@@ -83,20 +90,6 @@ async def router() -> AsyncIterator[zenoh.Session]:
         yield session
     finally:
         await asyncio.to_thread(session.close)
-
-
-@contextmanager
-def client(port: str) -> Iterator[zenoh.Session]:
-    """A plain Zenoh program that sees only the session that it dials."""
-    config = zenoh_config(
-        {
-            "mode": "client",
-            "connect/endpoints": [f"tcp/127.0.0.1:{port}"],
-            "scouting/multicast/enabled": False,
-        }
-    )
-    with closing(zenoh.open(config)) as session:
-        yield session
 
 
 def router_port() -> str:
@@ -204,7 +197,7 @@ async def test_our_own_router_answers_no_question_of_its_admin_space() -> None:
     """A query for its routing table can deadlock it."""
     session = await open_router([f"tcp/127.0.0.1:{router_port()}"])
     try:
-        with client(router_port()) as asking:
+        with router_client(router_port()) as asking:
             remote = zenoh.Locality.REMOTE  # a session answers for itself
             replies = await asyncio.to_thread(
                 lambda: list(asking.get("@/**", timeout=1, allowed_destination=remote))
@@ -221,7 +214,7 @@ async def test_a_client_of_one_context_is_an_unannounced_peer_to_all(heard: Hear
         other = Heard(second)
         await heard.past()
         await other.until(False)
-        with client(meeting_port()):
+        with router_client(meeting_port()):
             await heard.until(True)
             await other.until(True)
         await heard.until(False)
