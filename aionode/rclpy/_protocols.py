@@ -53,21 +53,6 @@ class NodeLike(Protocol):
     def get_parameter(self, name: str) -> Any:
         """Return a parameter."""
 
-    def get_parameters(self, names: list[str]) -> list[Any]:
-        """Return parameters."""
-
-    def get_parameter_types(self, names: list[str]) -> list[Any]:
-        """Return types of parameters."""
-
-    def describe_parameters(self, names: list[str]) -> list[Any]:
-        """Return descriptors."""
-
-    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
-        """Return names of parameters."""
-
-    def set_parameters_atomically(self, parameter_list: list[Any]) -> Any:
-        """Set parameters."""
-
     def add_on_set_parameters_callback(self, callback: Callable[[list[Any]], Any]) -> None:
         """Add a callback."""
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
-from aionode.qos import QoSPresetProfiles, QoSProfile
+from aionode.qos import QoSProfile
 
 __all__ = ["profile_of", "rmw_qos_profile_t"]
 
@@ -15,17 +15,6 @@ class rmw_qos_profile_t:  # noqa: N801  # rclpy's name
     Attributes:
         profile: The profile that it stands for.
     """
-
-    PREDEFINED: ClassVar[dict[str, str]] = {
-        "qos_profile_unknown": "UNKNOWN",
-        "qos_profile_default": "DEFAULT",
-        "qos_profile_system_default": "SYSTEM_DEFAULT",
-        "qos_profile_sensor_data": "SENSOR_DATA",
-        "qos_profile_services_default": "SERVICES_DEFAULT",
-        "qos_profile_parameters": "PARAMETERS",
-        "qos_profile_parameter_events": "PARAMETER_EVENTS",
-        "qos_profile_best_available": "BEST_AVAILABLE",
-    }
 
     def __init__(self, profile: QoSProfile) -> None:
         self.profile = profile
@@ -47,11 +36,6 @@ class rmw_qos_profile_t:  # noqa: N801  # rclpy's name
                 "avoid_ros_namespace_conventions",
             )
         }
-
-    @classmethod
-    def predefined(cls, name: str) -> rmw_qos_profile_t:
-        """Return a profile that the middleware defines, such as ``qos_profile_sensor_data``."""
-        return cls(QoSPresetProfiles[cls.PREDEFINED[name]].value)
 
 
 def profile_of(given: Any) -> QoSProfile:

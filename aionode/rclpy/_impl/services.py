@@ -106,11 +106,6 @@ class CallHandle(EndpointHandle[BareT]):
         self._support = service_support(srv_type)
         self._introspection = Introspection(node, srv_type, self.name)
 
-    @property
-    def service_name(self) -> str:
-        """The full name of the service."""
-        return self.name
-
     def configure_introspection(
         self,
         clock: Clock,
@@ -148,11 +143,6 @@ class ServiceHandle(CallHandle[BareEndpoint]):
         # Threads that spin add each request, and pop it, in one step.
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
-
-    @property
-    def qos(self) -> Any:
-        """The resolved profile."""
-        return self.endpoint.qos
 
     def ready(self) -> bool:
         """Return whether a request waits."""

@@ -28,8 +28,6 @@ class ClockHandle(Destroyable, Clock):
         Destroyable.__init__(self)
         Clock.__init__(self, ClockType(clock_type))
 
-    get_now = Clock.now
-
 
 class GuardConditionHandle(Destroyable):
     """A condition that any thread triggers; whoever takes it resets it."""

@@ -113,10 +113,6 @@ class PublisherHandle(EndpointHandle[BarePublisher]):
         self.refuse_after_shutdown("failed to get subscription count")
         return self._count_matched()
 
-    def get_topic_name(self) -> str:
-        """Return the full name of the topic."""
-        return self.name
-
     def assert_liveliness(self) -> None:
         """Show that the publisher is alive.
 
@@ -376,17 +372,11 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         """Return how many publishers are matched."""
         return self._count_matched()
 
-    def get_topic_name(self) -> str:
-        """Return the full name of the topic."""
-        return self.name
-
     # Content filters
 
     def is_cft_enabled(self) -> bool:
         """Return whether a filter is set."""
         return self.inbox.accept is not None
-
-    is_cft_supported = is_cft_enabled
 
     def set_content_filter(self, filter_expression: str, expression_parameters: list[str]) -> None:
         """Take only messages that meet the expression; an empty one takes all.
