@@ -34,6 +34,11 @@ FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
 """Strings accepted as floats: NaN and infinity in JSON, and 1e5, which is text in YAML 1.1."""
 
 
+def elements_of(values: Any) -> list[Any]:
+    """Return the elements of an array, with Python's own numbers."""
+    return values.tolist() if hasattr(values, "tolist") else list(values)
+
+
 @dataclass(frozen=True, slots=True)
 class Form:
     """How values are written that have more than one form.
@@ -41,6 +46,7 @@ class Form:
     Attributes:
         as_float: Returns a float.
         as_byte: Returns a `byte`, given as its number.
+        elements: Returns the elements of an array.
         truncate: Most elements of an array and characters of a string; None for all.
         no_arr: Whether arrays are described, by type and length.
         no_str: Whether strings are described, by their length.
@@ -48,6 +54,7 @@ class Form:
 
     as_float: Callable[[float], object] = float
     as_byte: Callable[[int], object] = int
+    elements: Callable[[Any], list[Any]] = elements_of
     truncate: int | None = None
     no_arr: bool = False
     no_str: bool = False
@@ -193,7 +200,7 @@ def plain_value(type_: FieldType, value: Any, form: Form) -> object:
         return described(type_, value)
     cut = form.truncate is not None and len(value) > form.truncate
     shown = value[: form.truncate] if cut else value
-    items = shown.tolist() if type_.form == "ndarray" else list(shown)
+    items = form.elements(shown)
     items = items if convert is None else list(map(convert, items))
     return [*items, "..."] if cut else items
 

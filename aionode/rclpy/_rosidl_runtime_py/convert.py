@@ -3,22 +3,13 @@
 from __future__ import annotations
 
 import sys
-from array import array
 from collections import OrderedDict
-from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import yaml
 
-from aionode.rclpy._rosidl_parser.definition import (
-    AbstractString,
-    AbstractWString,
-    Array,
-    BasicType,
-    BoundedSequence,
-    NamespacedType,
-)
+from aionode.message._conversion import Form, plain
+from aionode.rclpy._rosidl import to_aionode
 
 __all__ = [
     "get_message_slot_types",
@@ -44,7 +35,16 @@ def message_to_ordereddict(
         no_arr: Show type and length instead of arrays and sequences.
         no_str: Show the length instead of strings.
     """
-    return Conversion(truncate_length, no_arr, no_str).message(msg)
+    form = Form(as_byte=chr, truncate=truncate_length, no_arr=no_arr, no_str=no_str)
+    mapping: OrderedDict[str, Any] = ordered(plain(to_aionode(msg), form))
+    return mapping
+
+
+def ordered(value: Any) -> Any:
+    """Return a value with an `OrderedDict` in the place of each dict."""
+    if isinstance(value, dict):
+        return OrderedDict((name, ordered(part)) for name, part in value.items())
+    return list(map(ordered, value)) if isinstance(value, list) else value
 
 
 def message_to_yaml(
@@ -56,113 +56,34 @@ def message_to_yaml(
     flow_style: bool = False,
 ) -> str:
     """Return a message as YAML; see `message_to_ordereddict`."""
-    shown = message_to_ordereddict(
-        msg, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str
-    )
-    return yaml.dump(
-        shown,
-        Dumper=OrderedDumper,
+    form = Form(as_byte=chr, truncate=truncate_length, no_arr=no_arr, no_str=no_str)
+    text: str = yaml.dump(
+        plain(to_aionode(msg), form),
         allow_unicode=True,
         width=sys.maxsize,
         default_flow_style=flow_style,
+        sort_keys=False,
     )
+    return text
 
 
 def message_to_csv(
     msg: Any, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> str:
     """Return the values of a message in a line; see `message_to_ordereddict`."""
-    conversion = Conversion(truncate_length, no_arr, no_str)
-    values = (
-        conversion.text(getattr(msg, name), type_)
-        for name, type_ in get_message_slot_types(msg).items()
+    form = Form(
+        as_float=lambda number: number,  # float32 in arrays have fewer digits than as floats
+        as_byte=lambda number: bytes((number,)),
+        elements=list,
+        truncate=truncate_length,
+        no_arr=no_arr,
+        no_str=no_str,
     )
-    return ",".join(values)
+    return line(plain(to_aionode(msg), form))
 
 
-class OrderedDumper(yaml.Dumper):
-    """Writes dictionaries in their order."""
-
-
-OrderedDumper.add_representer(
-    OrderedDict,
-    lambda dumper, data: dumper.represent_mapping("tag:yaml.org,2002:map", data.items()),
-)
-
-
-@dataclass(frozen=True)
-class Conversion:
-    """The extent to which a message is shown."""
-
-    truncate_length: int | None
-    no_arr: bool
-    no_str: bool
-
-    def message(self, msg: Any) -> OrderedDict[str, Any]:
-        """Return a message as a dictionary."""
-        return OrderedDict(
-            (name, self.value(getattr(msg, name, None), type_))
-            for name, type_ in get_message_slot_types(msg).items()
-        )
-
-    def value(self, value: Any, type_: Any = None) -> Any:
-        """Return the value of a field, or an element if no type is given."""
-        if isinstance(value, bytes):
-            return self.shortened(value.decode("latin-1"))
-        if isinstance(value, str):
-            return f"<string length: <{len(value)}>>" if self.no_str else self.shortened(value)
-        if isinstance(value, list | tuple | array | np.ndarray):
-            if self.no_arr and type_ is not None:
-                return described(value, type_)
-            shown = [self.value(element) for element in value[: self.truncate_length]]
-            if self.is_long(value):
-                shown.append("...")
-            return tuple(shown) if isinstance(value, tuple) else shown
-        if isinstance(value, np.number):
-            return value.item()
-        if isinstance(value, bool | float | int):
-            return value
-        return self.message(value)
-
-    def text(self, value: Any, type_: Any = None) -> str:
-        """Return the value of a field, or an element if no type is given, for a line of values."""
-        if isinstance(value, list | tuple | array | np.ndarray):
-            if self.no_arr and type_ is not None:
-                return described(value, type_)
-            shown = [self.text(element) for element in value[: self.truncate_length]]
-            return ",".join([*shown, "..."] if self.is_long(value) else shown)
-        if isinstance(value, str):
-            return f"<string length: <{len(value)}>>" if self.no_str else self.shortened(value)
-        if isinstance(value, bytes):
-            short = value[: self.truncate_length]
-            return str(short + b"..." if self.is_long(value) else short)
-        if isinstance(value, bool | float | int | np.number):
-            return str(value)
-        return message_to_csv(
-            value, truncate_length=self.truncate_length, no_arr=self.no_arr, no_str=self.no_str
-        )
-
-    def shortened(self, text: str) -> str:
-        """Return a string, with dots for what is left out."""
-        return f"{text[: self.truncate_length]}..." if self.is_long(text) else text
-
-    def is_long(self, value: Any) -> bool:
-        """Return whether a part of a string or collection is left out."""
-        return self.truncate_length is not None and len(value) > self.truncate_length
-
-
-def described(value: Any, type_: Any) -> str:
-    """Return type and length of an array or sequence."""
-    element = type_.value_type
-    name = "unknown"
-    if isinstance(element, BasicType):
-        name = element.typename
-    elif isinstance(element, NamespacedType):
-        name = "/".join(element.namespaced_name())
-    elif isinstance(element, AbstractString | AbstractWString):
-        name = "string" if isinstance(element, AbstractString) else "wstring"
-    if isinstance(type_, Array):
-        return f"<array type: {name}[{type_.size}]>"
-    if isinstance(type_, BoundedSequence):
-        name = f"{name}[{type_.maximum_size}]"
-    return f"<sequence type: {name}, length: {len(value)}>"
+def line(value: Any) -> str:
+    """Return the values in a dict or list, separated by commas."""
+    if isinstance(value, dict | list):
+        return ",".join(map(line, value.values() if isinstance(value, dict) else value))
+    return str(value)
