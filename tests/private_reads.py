@@ -27,6 +27,7 @@ def is_private(name: str) -> bool:
 
 OTHERS: Final = frozenset(
     {
+        "_AXES2TUPLE",  # tf_transformations
         "_TYPE_SUPPORT",  # the classes that ROS generates
         "_allFramesAsDot",  # tf2
         "_chain",
@@ -54,6 +55,8 @@ def reads_in(tree: ast.Module) -> Iterable[str]:
     for node in ast.walk(tree):
         match node:
             case ast.Attribute(value=ast.Name(id=owner)) if owner in {"self", "cls", *MODULES}:
+                pass
+            case ast.Attribute(value=ast.Call(func=ast.Name(id="super"))):
                 pass
             case ast.Attribute() if is_private(node.attr):
                 yield node.attr

@@ -23,7 +23,8 @@ from aionode.interfaces.std_msgs.msg import Float64
 from aionode.node import Node
 from aionode.testing import local_context, settle
 from aionode.transport.base import Registration, Writer
-from aionode.transport.local import LocalTransport
+from aionode.transport.local import LocalReader, LocalTransport, LocalWriter
+from tests.support.living import living
 
 
 def heard_in(node: Node) -> list[float]:
@@ -311,8 +312,7 @@ async def test_half_a_node_does_not_stay_in_its_context(refused: str) -> None:
             Node("robot", context=context)
         assert "nodes=0" in repr(context)
         assert not context.graph.nodes()
-        assert not first._writers
-        assert not first._readers
+        assert living(LocalWriter) == living(LocalReader) == 0
 
         transport.refused = ""
         async with Node("robot", context=context) as robot:

@@ -6,6 +6,7 @@ import asyncio
 import threading
 from collections.abc import AsyncIterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -162,7 +163,9 @@ def test_bags_are_written_anew_by_a_file(tmp_path: Path) -> None:
         rosbag2_py.bag_rewrite(places, str(options))
 
 
-def test_a_recorder_takes_the_topics_of_a_file_and_repeats_latched_ones(tmp_path: Path) -> None:
+def test_a_recorder_takes_the_topics_of_a_file_and_repeats_latched_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Options of Lyrical, which programs set as attributes."""
     file = tmp_path / "topics.yaml"
     file.write_text("static_topics_and_types_list:\n- [map, std_msgs/msg/String]\n")
@@ -171,9 +174,11 @@ def test_a_recorder_takes_the_topics_of_a_file_and_repeats_latched_ones(tmp_path
     record.repeat_all_transient_local_depth = 3
     record.repeat_transient_local_messages = {"/map": 1}
     recorder = rosbag2_py.Recorder(options_of(tmp_path / "run"), record)
-    made = recorder._make(Context(transport="local"))
-    assert made._static_topics == {"/map": "std_msgs/msg/String"}
-    assert made._repeated == {"*": 3, "/map": 1}
+    given: dict[str, Any] = {}
+    monkeypatch.setattr(bag, "Recorder", lambda _, **options: given.update(options))
+    recorder._make(Context(transport="local"))
+    assert given["static_topics"] == {"/map": "std_msgs/msg/String"}
+    assert given["repeat_latched"] == {"*": 3, "/map": 1}
     file.write_text("static_topics_and_types_list: [1]")
     with pytest.raises(RuntimeError, match=r"topics\.yaml"):
         rosbag2_py.Recorder(options_of(tmp_path / "run"), record).record()

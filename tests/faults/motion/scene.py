@@ -219,7 +219,7 @@ class Scene:
         Args:
             busy: Held while processes start.
         """
-        outcomes = await self._outcomes(busy)
+        outcomes = await self.outcomes(busy)
         for _ in range(REPEATS):
             void = [
                 number
@@ -229,11 +229,12 @@ class Scene:
             if not void:
                 break
             scene = Scene([self.motions[number] for number in void], self._watch_s)
-            for number, outcome in zip(void, await scene._outcomes(busy), strict=True):
+            for number, outcome in zip(void, await scene.outcomes(busy), strict=True):
                 outcomes[number] = outcome
         return list(zip(self.motions, outcomes, strict=True))
 
-    async def _outcomes(self, busy: asyncio.Semaphore) -> list[Stopped | Exception]:
+    async def outcomes(self, busy: asyncio.Semaphore) -> list[Stopped | Exception]:
+        """Run the robots once; an error counts for each of them."""
         try:
             return [*await self._run(busy)]
         except Exception as error:  # noqa: BLE001 - it is told
