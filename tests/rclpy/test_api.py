@@ -14,6 +14,7 @@ import pytest
 
 from aionode import rclpy
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
+from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
 from aionode.message import SerializedMessage
@@ -28,6 +29,7 @@ from aionode.rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
 from aionode.rclpy.parameter import Parameter
 from aionode.rclpy.qos import QoSProfile
 from aionode.rclpy.serialization import serialize_message
+from aionode.rclpy.service_introspection import ServiceIntrospectionState
 from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
 from aionode.rclpy.task import Future
 from aionode.transport.base import SampleInfo
@@ -143,6 +145,27 @@ def test_a_content_filter_lets_malformed_messages_pass(caplog: pytest.LogCapture
 
     assert subscription.handle.take_message(String, raw=False) is None
     assert "not a message of this type" in caplog.text
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.parametrize("srv_type", [AddTwoInts, OwnAddTwoInts], ids=["rclpy's", "aionode's"])
+def test_events_of_services_have_stamps_in_either_family_of_messages(srv_type: Any) -> None:
+    """The clock of a node has rclpy's times, and the event the class of its own family."""
+    node = rclpy.create_node("introspected")
+    service = node.create_service(srv_type, "add", lambda _, response: response)
+    service.configure_introspection(
+        node.get_clock(), QoSProfile(depth=10), ServiceIntrospectionState.METADATA
+    )
+    events: list[Any] = []
+    node.create_subscription(srv_type.Event, "add/_service_event", events.append, 10)
+    before = node.get_clock().now()
+
+    spin_until(node, node.create_client(srv_type, "add").call_async(srv_type.Request()))
+    while len(events) < 2:
+        rclpy.spin_once(node, timeout_sec=LIMIT_S)
+
+    assert [event.info.event_type for event in events] == [1, 2]
+    assert all(event.info.stamp.sec >= before.nanoseconds // 10**9 for event in events)
 
 
 @pytest.mark.usefixtures("initialised")
