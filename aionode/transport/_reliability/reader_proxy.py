@@ -22,6 +22,8 @@ class ReaderProxy:
         interval_ns: The time from one heartbeat to the next while it does not answer.
         away_until_ns: Until when its return is waited for; 0 while it is present.
         returned_ns: When it came back after it had vanished; 0 if it never vanished.
+        is_cut_off: Whether the connection to it was lost while it answered: it is expected to
+            return at once, or never.
         resent: When each missing message was sent again.
     """
 
@@ -35,6 +37,7 @@ class ReaderProxy:
         "heard_ns",
         "heartbeat_ns",
         "interval_ns",
+        "is_cut_off",
         "participant",
         "resent",
         "returned_ns",
@@ -52,4 +55,5 @@ class ReaderProxy:
         self.asked_ticks = 0
         self.away_until_ns = 0
         self.returned_ns = 0
+        self.is_cut_off = False
         self.resent: dict[int, int] = {}

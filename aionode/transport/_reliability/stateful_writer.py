@@ -54,7 +54,8 @@ UNHEARD_NS: Final = 500_000_000
 """A reader that has everything, and from which nothing came for so long, is probed."""
 
 FLAPPING_NS: Final = 10_000_000_000
-"""A reader that vanishes within this time after its return is waited for as long again."""
+"""A reader that vanishes within this time after its return is waited for as long again, and so is
+one that was cut off."""
 
 RETURN_NS: Final = 120_000_000_000
 """Time for which messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
@@ -194,6 +195,7 @@ class StatefulWriter:
             self.readers[gid] = reader
         else:
             reader.away_until_ns = 0
+            reader.is_cut_off = False
             reader.returned_ns = now_ns
             reader.resent.clear()
         reader.heartbeat_ns = now_ns
@@ -205,10 +207,15 @@ class StatefulWriter:
         """Return the contexts of all readers, by gid."""
         return {gid: reader.participant for gid, reader in self.readers.items()}
 
-    def remove(self, gid: bytes) -> None:
+    def remove(self, gid: bytes, has_lost: Callable[[str], bool] = lambda _: False) -> None:
         """Remove a reader that has vanished, or wait for its return.
 
-        While connections are made anew, a reader can vanish and return more than once.
+        While connections are made anew, a reader can vanish and return more than once. A KEEP_LAST
+        writer, which no reader holds up, keeps its messages for one that was cut off, too.
+
+        Args:
+            gid: The reader.
+            has_lost: Tells whether the connection to a context was lost.
         """
         reader = self.readers.get(gid)
         if reader is None or reader.away_until_ns:
@@ -220,6 +227,9 @@ class StatefulWriter:
             reader.away_until_ns = now_ns + RETURN_NS
         elif reader.returned_ns and now_ns - reader.returned_ns < FLAPPING_NS:
             reader.away_until_ns = now_ns + FLAPPING_NS
+        elif reader.answered and not self._keep_all and has_lost(reader.participant):
+            reader.away_until_ns = now_ns + FLAPPING_NS
+            reader.is_cut_off = True
         else:
             del self.readers[gid]
         self._window_end = -1
@@ -379,8 +389,8 @@ class StatefulWriter:
 
     @property
     def done(self) -> bool:
-        """Whether every reader has acknowledged everything."""
-        return not self.entries
+        """Whether every reader has acknowledged everything, those that were cut off left out."""
+        return not self.entries or self.entries[-1][0] <= self._acked
 
     @property
     def unsent(self) -> bool:
@@ -506,9 +516,10 @@ class StatefulWriter:
         return bool(self.entries) or any(reader.away_until_ns for reader in self.readers.values())
 
     def _give_up(self, reader: ReaderProxy) -> None:
-        """Wait for a reader no longer; it has lost what it lacks."""
+        """Wait for a reader no longer; it has lost what it lacks, unless it has ended."""
         del self.readers[reader.gid]
-        self._lose(max(reader.acked + 1, self._jumped_to), self.sent)
+        if not reader.is_cut_off:
+            self._lose(max(reader.acked + 1, self._jumped_to), self.sent)
         self._update_window()
         self._trim()
         self.pump()
@@ -529,9 +540,15 @@ class StatefulWriter:
                 self._heartbeat(reader, reader.acked + 1, self.sent)
         return bool(self.readers)
 
+    @property
+    def _acked(self) -> int:
+        """The last message that all readers have, those that were cut off left out."""
+        readers = self.readers.values()
+        return min((reader.acked for reader in readers if not reader.is_cut_off), default=self.sent)
+
     def give_up(self) -> int:
         """Drop everything; return how many messages some reader does not have."""
-        acked = min((reader.acked for reader in self.readers.values()), default=self.sent)
+        acked = self._acked
         missing = sum(1 for entry in self.entries if entry[0] > acked)
         self.entries.clear()
         self._unsent.clear()

@@ -74,9 +74,11 @@ class Connections:
         self._queue = ThreadsafeQueue(waker, self._take)
         self._changed = asyncio.Event()
         self._listener: zenoh.TransportEventsListener[None] | None = None
+        self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
         """Begin with the connections that a session has, and listen to changes."""
+        self._session = session
         self._changed = asyncio.Event()  # an event belongs to the loop that first waits for it
         with translated("connections"):
             self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
@@ -86,12 +88,22 @@ class Connections:
 
     def stop(self) -> None:
         """Listen no more, and forget all connections."""
+        self._session = None
         listener, self._listener = self._listener, None
         if listener is not None:
             listener.undeclare()
         self._queue.clear()
         self.kinds.clear()
         self.lost.clear()
+
+    def has_lost(self, zid: str) -> bool:
+        """Return whether a connection was lost, and not made anew; also if that is still queued.
+
+        What a session has declared vanishes with its connection, which is told elsewhere.
+        """
+        if self._session is None or not (zid in self.kinds or zid in self.lost):
+            return False
+        return zid not in {str(transport.zid) for transport in self._session.info.transports()}
 
     def _take(self, event: zenoh.TransportEvent) -> None:
         transport = event.transport

@@ -295,7 +295,7 @@ class ZenohWriter(Declaration, Writer):
         acknowledging = self._matched.acknowledging
         for vanished in list(history.readers) if gid is None else (gid,):
             if vanished not in acknowledging:
-                history.remove(vanished)
+                history.remove(vanished, self.state.connections.has_lost)
         if not self._closed:
             for known in acknowledging if gid is None else acknowledging.keys() & {gid}:
                 reader = history.readers.get(known)
@@ -304,6 +304,8 @@ class ZenohWriter(Declaration, Writer):
                     history.add(known, acknowledging[known])
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(self)
+        elif not self._is_watched and history.readers:  # one that is away may be to be given up
+            self._watch()
         self._progress()
         # Messages that are published while a reader is away are sent again. A subscriber without a
         # token may match too; beside readers that acknowledge, none is known.

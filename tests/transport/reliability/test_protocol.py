@@ -599,6 +599,41 @@ def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() ->
     assert wire.writer.done
 
 
+def test_a_reader_whose_connection_breaks_for_a_moment_misses_nothing() -> None:
+    """It answers, so it is not frozen: a KEEP_LAST writer keeps its depth for it as well."""
+    wire = Wire(1, keep_all=False, depth=10)
+    (reader,) = wire.subscriptions
+    wire.settle()
+    wire.writer.remove(reader.name, {reader.name.hex()}.__contains__)
+    for _ in range(10):
+        wire.publish()
+
+    wire.writer.add(reader.name, reader.name.hex())
+
+    wire.settle()
+    assert reader.heard == list(range(1, 11))
+    assert wire.lost_count == 0
+
+
+@pytest.mark.parametrize("keep_all", [True, False])
+def test_a_reader_that_ends_with_its_process_holds_up_no_end_and_has_lost_nothing(
+    *, keep_all: bool
+) -> None:
+    """Its connection breaks as well, and nobody can tell which of both it is."""
+    wire = Wire(1, keep_all=keep_all, depth=10)
+    (reader,) = wire.subscriptions
+    wire.settle()
+    wire.writer.remove(reader.name, {reader.name.hex()}.__contains__)
+    wire.publish()
+
+    assert wire.writer.done
+    wire.clock.ns += FLAPPING_NS
+    assert not wire.writer.tick()
+    assert not wire.writer.entries
+    assert wire.lost_count == 0
+    assert wire.writer.give_up() == 0
+
+
 def test_the_stop_of_a_lease_waits_for_no_window() -> None:
     """What waits before it is dropped and counted; the reader gets the rest, and the stop last."""
     wire = Wire(1, keep_all=False, depth=1000)
