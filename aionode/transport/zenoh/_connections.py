@@ -71,7 +71,7 @@ class Connections:
         self.kinds: dict[str, zenoh.WhatAmI] = {}
         self.lost: set[str] = set()
         self.on_change: list[Callable[[ConnectionChange], None]] = []
-        self._queue = ThreadsafeQueue(waker, self._take)
+        self._queue = ThreadsafeQueue(waker, self.take)
         self._changed = asyncio.Event()
         self._listener: zenoh.TransportEventsListener[None] | None = None
         self._session: zenoh.Session | None = None
@@ -105,7 +105,8 @@ class Connections:
             return False
         return zid not in {str(transport.zid) for transport in self._session.info.transports()}
 
-    def _take(self, event: zenoh.TransportEvent) -> None:
+    def take(self, event: zenoh.TransportEvent) -> None:
+        """Take what Zenoh tells of one connection; on the event loop."""
         transport = event.transport
         zid = str(transport.zid)
         is_made = event.kind == zenoh.SampleKind.PUT

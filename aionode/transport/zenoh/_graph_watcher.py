@@ -81,6 +81,7 @@ class Answer:
 
     def __init__(self, answered: asyncio.Future[bool]) -> None:
         self.answered = answered
+        # Zenoh's thread sets it before it reports the end, and the loop reads it after that.
         self.complete = True
 
     def take(self, reply: zenoh.Reply) -> None:
@@ -103,6 +104,8 @@ class Check:
         self.attempt = attempt
         self.tokens: set[str] = set()
         self.changed: set[str] = set()
+        # The thread that asks may set it, but only before it puts the check into the queue, from
+        # which the loop takes it: the two never use it at the same time.
         self.failed = False
 
 

@@ -67,7 +67,8 @@ class LocalRouter:
         self._closed = True
         state.connections.on_change.append(self._take_change)
         self._timer: asyncio.TimerHandle | None = None
-        # Held while a router is opened, so that `close` finds it.
+        # Held to read and change `_router`, and while a router is opened, so that `close` finds it.
+        # `close` sets `_closed` before it takes the lock: no router is opened after that.
         self._opening = threading.Lock()
 
     async def open(self) -> None:

@@ -1,4 +1,7 @@
-"""The connected sessions, and the tokens of aionode contexts beside the ROS graph."""
+"""The tokens of aionode contexts beside the ROS graph, and unannounced peers.
+
+An unannounced peer is a connected session that has no such token and no ROS node.
+"""
 
 from __future__ import annotations
 

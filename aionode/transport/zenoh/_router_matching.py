@@ -99,6 +99,8 @@ class RouterSession:
         self.failures = failures
         self.known: dict[str, KeyMatching] = {}
         self.declared: set[str] = set()
+        # The thread of `RouterMatching` does everything with a session in order, so that none of it
+        # is used after `close`.
         self.session: zenoh.Session | None = None
         self.listener: zenoh.TransportEventsListener[None] | None = None
 

@@ -85,7 +85,7 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
     Cancelling gives the result up, to `late` if there is one.
     """
     loop = asyncio.get_running_loop()
-    done: asyncio.Future[T] = loop.create_future()
+    done: asyncio.Future[T] = loop.create_future()  # the loop's; the thread calls `deliver` there
 
     def deliver(result: T | None, error: BaseException | None) -> None:
         if error is None and done.cancelled() and late is not None:

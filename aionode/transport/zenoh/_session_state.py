@@ -142,6 +142,8 @@ class SessionState:
         self.request_room = RequestRoom(queue_bytes)
         self.participant = participant
         self.domain_id = domain_id
+        # Threads that send read it, and only the loop sets it: each of them takes it once, and
+        # expects that Zenoh refuses, as the session may be closed by then.
         self.session: zenoh.Session | None = None
         self.graph: Graph | None = None
         self.waker = LoopWaker() if waker is None else waker

@@ -1,4 +1,6 @@
-"""Finding Zenoh's sockets among the descriptors of the process, without touching any other.
+"""Zenoh's sockets: finding them among the descriptors of the process, reading and cutting them.
+
+No other descriptor is touched. To cut a connection is to shut its socket down, as a network does.
 
 Zenoh names the two addresses of each connection, but not its socket. Duplicating every descriptor
 to ask for its addresses would do harm: closing a duplicate of a file drops the POSIX locks that the

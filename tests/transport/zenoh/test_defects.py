@@ -39,10 +39,10 @@ def test_a_defect_is_described(name: str) -> None:
 @pytest.mark.parametrize("name", sorted(defects()))
 def test_a_defect_has_a_switch(name: str) -> None:
     """It is asked for by the name of its module, wherever the mend is."""
-    asked = f'is_mended("{name}")'
+    asked = (f'is_mended("{name}")', f'defect = "{name}"')
     modules = sorted((ROOT / "aionode/transport/zenoh").rglob("*.py"))
 
-    assert any(asked in module.read_text(encoding="utf-8") for module in modules)
+    assert any(text in module.read_text(encoding="utf-8") for module in modules for text in asked)
 
 
 def test_mends_are_switched_off_by_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,6 +21,7 @@ from aionode.transport.zenoh import _config, _sockets
 from aionode.transport.zenoh._config import PROBE_IDS, is_probe
 from aionode.transport.zenoh._defects import forgotten_peers as recovery
 from aionode.transport.zenoh._defects import stale_transports
+from aionode.transport.zenoh._defects._connection_mend import ATTEMPTS
 from aionode.transport.zenoh._defects.forgotten_peers import (
     GossipSource,
     Recovery,
@@ -486,11 +487,11 @@ async def test_an_unreachable_participant_is_given_up(comparisons: Comparisons) 
             await until_seen(ours, "theirs", "one")
             await asyncio.to_thread(one.close)
             async with asyncio.timeout(3 * LIMIT_S):
-                await until(lambda: times_found(comparisons, zid) == recovery.ATTEMPTS)
+                await until(lambda: times_found(comparisons, zid) == ATTEMPTS)
             await have_more(comparisons, 3)
             token.undeclare()
 
-    assert times_found(comparisons, zid) == recovery.ATTEMPTS
+    assert times_found(comparisons, zid) == ATTEMPTS
 
 
 def times_found(comparisons: Comparisons, zid: str) -> int:
@@ -616,13 +617,13 @@ async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None
     put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
     async with context("a1") as first:
         watch = first._stale_transports
-        take = first._state.connections._take
+        take = first._state.connections.take
         take(change(put, "new"))
         take(change(delete, "b2"))
         assert not watch._returned
         take(change(put, "b2"))
         assert watch._returned == {"b2"}
-        assert watch._check is not None
+        assert watch._timer is not None
         take(change(delete, "b2"))
         assert not watch._returned
 
@@ -737,7 +738,7 @@ async def test_many_that_declare_nothing_are_waited_for_longer() -> None:
         )
         first._stale_transports._check_returned()
         assert not first._stale_transports._cuts
-        assert first._stale_transports._check is not None
+        assert first._stale_transports._timer is not None
 
         first._stale_transports._returned.discard(names[0])
         first._stale_transports._check_returned()

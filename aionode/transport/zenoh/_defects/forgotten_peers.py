@@ -31,7 +31,11 @@ import zenoh
 from aionode.errors import ConfigurationError
 from aionode.transport._send_thread import start_thread
 from aionode.transport.zenoh._config import gossip_endpoints, open_probe
-from aionode.transport.zenoh._defects._switch import is_mended
+from aionode.transport.zenoh._defects._connection_mend import (
+    ATTEMPTS,
+    POSTPONED_S,
+    ConnectionMend,
+)
 from aionode.transport.zenoh._defects.incomplete_answers import ANSWER_S, tokens
 from aionode.transport.zenoh._sockets import connections, cut, pair_of, split_locator
 from aionode.wire._liveliness import PREFIX as ROS_PREFIX
@@ -54,10 +58,6 @@ FIRST_S: Final = 0.5
 """Delay of the first comparison after a connection was lost or made, in seconds; Zenoh needs
 milliseconds."""
 
-POSTPONED_S: Final = 3.0
-"""Time for which connections that go on being made or lost may postpone a comparison, in
-seconds."""
-
 AGAIN_S: Final = 3.0
 """The interval of further comparisons, in seconds: a process that was frozen returns without a
 sign."""
@@ -70,9 +70,6 @@ SURE_S: Final = 0.3
 
 NODES_S: Final = 3.0
 """The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
-
-ATTEMPTS: Final = 4
-"""Number of cuts for one participant; some participants are visible, but not reachable."""
 
 CHECKS: Final = 3
 """Number of comparisons of the graph after connections have come or gone."""
@@ -90,7 +87,7 @@ class GossipSource(NamedTuple):
     endpoint: str
 
 
-class Recovery:
+class Recovery(ConnectionMend):
     """Finds processes that are alive, but not connected any more.
 
     Args:
@@ -99,43 +96,31 @@ class Recovery:
         watcher: The graph, which is compared a few times after connections were made or lost.
     """
 
+    defect = "forgotten_peers"
+
     def __init__(self, state: SessionState, network: Network, watcher: Watcher) -> None:
-        self._state = state
-        self._network = network
+        super().__init__(state, network)
         self._watcher = watcher
         self._checks = 0
         self._comparisons = state.queue(self._take_comparison)
-        state.connections.on_change.append(self._take_change)
-        self._session: zenoh.Session | None = None
-        self._timer: asyncio.TimerHandle | None = None
         self._is_comparing = False
         self._until_s = 0.0
         self._changing_since_s = 0.0  # when the first change was seen after the last comparison
         # Those that were missing in the last comparison; used by its thread only.
         self._suspected: set[str] = set()
-        # Number of cuts for each missing participant.
+        # Number of cuts for each missing participant. The thread of a comparison reads this, and
+        # the loop replaces it when that thread has ended.
         self._attempts: dict[str, int] = {}
 
-    def start(self, session: zenoh.Session) -> None:
-        """Start watching the connections of a session."""
-        if gossip_endpoints(self._network) and is_mended("forgotten_peers"):
-            self._session = session  # else no endpoint is dialled again
-
     def stop(self) -> None:
-        """Stop watching; a comparison that is under way ends by itself."""
-        self._session = None
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        """Act no more; a comparison that is under way ends by itself."""
+        super().stop()
         self._comparisons.clear()
         self._is_comparing = False
         self._until_s = 0.0
-        self._attempts.clear()
+        self._attempts = {}  # not cleared: a thread may read the old one
 
-    def _take_change(self, change: ConnectionChange) -> None:
-        if self._session is None or change.kind == zenoh.WhatAmI.CLIENT:
-            return  # a client dials by itself
-        now_s = asyncio.get_running_loop().time()
+    def _take_change(self, change: ConnectionChange, now_s: float) -> None:
         if not change.is_made:
             self._until_s = now_s + WATCH_S
         elif now_s >= self._until_s:
@@ -148,10 +133,8 @@ class Recovery:
 
     def _compare_in(self, delay_s: float) -> None:
         """Compare in a while; processes that saw the same end do not all do so at once."""
-        if self._timer is not None:
-            self._timer.cancel()
         spread = 1 + int(self._state.participant[-4:], 16) / 0x10000
-        self._timer = asyncio.get_running_loop().call_later(delay_s * spread, self._compare)
+        self._call_in(delay_s * spread, self._compare)
 
     def _compare(self) -> None:
         self._timer = None

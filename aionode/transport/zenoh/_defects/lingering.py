@@ -60,6 +60,8 @@ class SocketOptions:
     """
 
     # Of all sessions: those of one process are often connected with each other at the same time.
+    # Zenoh's threads, that of the timer and the loop hold it to use `_new`, `_timer` and `_closed`;
+    # nothing that may wait is done meanwhile.
     _lock: ClassVar = threading.Lock()
     # The connections whose options are not set yet, and what Zenoh has named their peers.
     _new: ClassVar[dict[Pair, str]] = {}

@@ -25,10 +25,12 @@ from typing import TYPE_CHECKING, Final
 import zenoh
 
 from aionode.transport._send_thread import start_thread
-from aionode.transport.zenoh._config import gossip_endpoints
 from aionode.transport.zenoh._connections import REMEMBERED
-from aionode.transport.zenoh._defects._switch import is_mended
-from aionode.transport.zenoh._defects.forgotten_peers import ATTEMPTS, POSTPONED_S
+from aionode.transport.zenoh._defects._connection_mend import (
+    ATTEMPTS,
+    POSTPONED_S,
+    ConnectionMend,
+)
 from aionode.transport.zenoh._sockets import connections, cut
 
 if TYPE_CHECKING:
@@ -51,44 +53,32 @@ FEW: Final = 3
 """Number of participants without tokens from which on they may be slow, and have more time."""
 
 
-class StaleTransports:
+class StaleTransports(ConnectionMend):
     """Connects participants anew that have returned, but declare nothing.
 
     Args:
         state: The session state of the context.
-        network: The settings of the context.
+        network: The settings of the context, with the endpoints that it dials.
     """
 
+    defect = "stale_transports"
+
     def __init__(self, state: SessionState, network: Network) -> None:
-        self._state = state
-        self._network = network
-        state.connections.on_change.append(self._take_change)
-        self._session: zenoh.Session | None = None
-        self._check: asyncio.TimerHandle | None = None
+        super().__init__(state, network)
         self._changed_s = 0.0  # when a connection was made or lost last
         # Participants whose connection was made anew, until it is known that they have declared.
         self._returned: set[str] = set()
         # Number of cuts of the connection to each participant that declared nothing.
         self._cuts: Counter[str] = Counter()
 
-    def start(self, session: zenoh.Session) -> None:
-        """Start watching the connections of a session."""
-        if gossip_endpoints(self._network) and is_mended("stale_transports"):
-            self._session = session  # else no endpoint is dialled again
-
     def stop(self) -> None:
-        """Stop watching."""
-        self._session = None
-        if self._check is not None:
-            self._check.cancel()
-            self._check = None
+        """Act no more."""
+        super().stop()
         self._cuts.clear()
         self._returned.clear()
 
-    def _take_change(self, change: ConnectionChange) -> None:
-        if self._session is None or change.kind == zenoh.WhatAmI.CLIENT:
-            return  # a client dials by itself
-        self._changed_s = asyncio.get_running_loop().time()
+    def _take_change(self, change: ConnectionChange, now_s: float) -> None:
+        self._changed_s = now_s
         if not change.is_made:
             self._returned.discard(change.zid)
         elif change.is_return:
@@ -100,15 +90,15 @@ class StaleTransports:
         return DECLARED_S * max(len(self._state.connections.kinds) / PEERS_PER_SECOND, 1)
 
     def _check_in(self, delay_s: float) -> None:
-        if self._check is None:
-            self._check = asyncio.get_running_loop().call_later(delay_s, self._check_returned)
+        if self._timer is None:
+            self._call_in(delay_s, self._check_returned)
 
     def _check_returned(self) -> None:
         """Cut the connections to participants that have returned, but have not declared anything.
 
         All at once: each cut is itself a change, after which the others would have to wait again.
         """
-        self._check = None
+        self._timer = None
         session, acknowledgements = self._session, self._state.acknowledgements
         if session is None:
             return

@@ -1,0 +1,78 @@
+"""The connections of a session, which all parts of a context share."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import zenoh  # noqa: TID251  # tells of connections, as Zenoh does
+
+from aionode.transport._loop_waker import LoopWaker
+from aionode.transport.zenoh import _connections
+from aionode.transport.zenoh._connections import ConnectionChange, Connections
+
+pytestmark = pytest.mark.one_loop
+
+
+def tell(
+    connections: Connections, zid: str, kind: zenoh.WhatAmI = zenoh.WhatAmI.PEER, *, is_made: bool
+) -> None:
+    """Have Zenoh tell of a connection."""
+    transport = SimpleNamespace(zid=zid, whatami=kind)
+    event_kind = zenoh.SampleKind.PUT if is_made else zenoh.SampleKind.DELETE
+    event: Any = SimpleNamespace(kind=event_kind, transport=transport)
+    connections.take(event)
+
+
+@pytest.fixture
+def connections() -> Connections:
+    """Return those of a session that is not open."""
+    return Connections(LoopWaker())
+
+
+async def test_a_peer_that_was_lost_and_is_connected_again_has_returned(
+    connections: Connections,
+) -> None:
+    """A peer that is new has not: its tokens are on their way."""
+    told: list[ConnectionChange] = []
+    connections.on_change.append(told.append)
+    tell(connections, "b2", is_made=True)
+    tell(connections, "b2", is_made=False)
+    assert (connections.kinds, connections.lost) == ({}, {"b2"})
+    tell(connections, "b2", is_made=True)
+
+    assert [(change.is_made, change.is_return) for change in told] == [
+        (True, False),
+        (False, False),
+        (True, True),
+    ]
+    assert (set(connections.kinds), connections.lost) == ({"b2"}, set())
+
+
+async def test_a_client_that_leaves_is_not_lost(connections: Connections) -> None:
+    """It dials by itself, and nobody else can."""
+    tell(connections, "c3", zenoh.WhatAmI.CLIENT, is_made=True)
+    tell(connections, "c3", zenoh.WhatAmI.CLIENT, is_made=False)
+
+    assert not connections.lost
+
+
+async def test_a_change_is_known_before_it_is_told(connections: Connections) -> None:
+    """Each part of a context may rely on what the others see."""
+    seen: list[bool] = []
+    connections.on_change.append(lambda change: seen.append(change.zid in connections.kinds))
+    tell(connections, "b2", is_made=True)
+    tell(connections, "b2", is_made=False)
+
+    assert seen == [True, False]
+
+
+async def test_lost_sessions_are_remembered_up_to_a_limit(
+    connections: Connections, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Any process may open and close any number of sessions."""
+    monkeypatch.setattr(_connections, "REMEMBERED", 3)
+    for number in range(20):
+        tell(connections, f"a{number}", is_made=False)
+        assert len(connections.lost) <= 3
