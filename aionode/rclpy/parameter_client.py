@@ -26,6 +26,16 @@ if TYPE_CHECKING:
 
 __all__ = ["AsyncParameterClient"]
 
+SERVICES: dict[str, Any] = {
+    "get_parameters": msg.GetParameters,
+    "list_parameters": msg.ListParameters,
+    "set_parameters": msg.SetParameters,
+    "get_parameter_types": msg.GetParameterTypes,
+    "describe_parameters": msg.DescribeParameters,
+    "set_parameters_atomically": msg.SetParametersAtomically,
+}
+"""The services of a node's parameters, by their names below that of the node."""
+
 
 class AsyncParameterClient:
     """Reads and sets the parameters of another node; each call returns a future of the response.
@@ -49,37 +59,19 @@ class AsyncParameterClient:
     ) -> None:
         self.remote_node_name = remote_node_name
         self.node = node
-
-        def client(srv_type: Any, name: str) -> Client[Any, Any]:
-            return node.create_client(
+        self._clients: dict[str, Client[Any, Any]] = {
+            name: node.create_client(
                 srv_type,
                 f"{remote_node_name}/{name}",
                 qos_profile=qos_profile,
                 callback_group=callback_group,
             )
-
-        self._get_parameter_client = client(msg.GetParameters, "get_parameters")
-        self._list_parameter_client = client(msg.ListParameters, "list_parameters")
-        self._set_parameter_client = client(msg.SetParameters, "set_parameters")
-        self._get_parameter_types_client = client(msg.GetParameterTypes, "get_parameter_types")
-        self._describe_parameters_client = client(msg.DescribeParameters, "describe_parameters")
-        self._set_parameters_atomically_client = client(
-            msg.SetParametersAtomically, "set_parameters_atomically"
-        )
+            for name, srv_type in SERVICES.items()
+        }
 
     def services_are_ready(self) -> bool:
         """Return whether all services are there."""
-        return all(
-            client.service_is_ready()
-            for client in (
-                self._list_parameter_client,
-                self._set_parameter_client,
-                self._get_parameter_client,
-                self._get_parameter_types_client,
-                self._describe_parameters_client,
-                self._set_parameters_atomically_client,
-            )
-        )
+        return all(client.service_is_ready() for client in self._clients.values())
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
         """Block the thread until all services are there; return whether they are in time."""
@@ -92,19 +84,13 @@ class AsyncParameterClient:
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
         """Ask for names."""
-        request = msg.ListParameters.Request()
-        if prefixes:
-            request.prefixes = prefixes
-        if depth:
-            request.depth = depth
-        return ask(self._list_parameter_client, request, callback)
+        return self._ask("list_parameters", callback, prefixes=prefixes or [], depth=depth or 0)
 
     def get_parameters(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
     ) -> Future[Any]:
         """Ask for values."""
-        request = msg.GetParameters.Request(names=names)
-        return ask(self._get_parameter_client, request, callback)
+        return self._ask("get_parameters", callback, names=names)
 
     def set_parameters(
         self,
@@ -112,22 +98,19 @@ class AsyncParameterClient:
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
         """Set parameters, given as `Parameter` or as messages, one by one."""
-        request = msg.SetParameters.Request(parameters=as_messages(parameters))
-        return ask(self._set_parameter_client, request, callback)
+        return self._ask("set_parameters", callback, parameters=as_messages(parameters))
 
     def describe_parameters(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
     ) -> Future[Any]:
         """Ask for descriptors."""
-        request = msg.DescribeParameters.Request(names=names)
-        return ask(self._describe_parameters_client, request, callback)
+        return self._ask("describe_parameters", callback, names=names)
 
     def get_parameter_types(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
     ) -> Future[Any]:
         """Ask for types."""
-        request = msg.GetParameterTypes.Request(names=names)
-        return ask(self._get_parameter_types_client, request, callback)
+        return self._ask("get_parameter_types", callback, names=names)
 
     def set_parameters_atomically(
         self,
@@ -135,8 +118,8 @@ class AsyncParameterClient:
         callback: Callable[[Future[Any]], None] | None = None,
     ) -> Future[Any]:
         """Set parameters, given as `Parameter` or as messages, all or none."""
-        request = msg.SetParametersAtomically.Request(parameters=as_messages(parameters))
-        return ask(self._set_parameters_atomically_client, request, callback)
+        messages = as_messages(parameters)
+        return self._ask("set_parameters_atomically", callback, parameters=messages)
 
     def delete_parameters(
         self, names: list[str], callback: Callable[[Future[Any]], None] | None = None
@@ -161,6 +144,15 @@ class AsyncParameterClient:
     ) -> Future[Any]:
         """Set the parameters that a file has for the other node, all or none."""
         return self.set_parameters_atomically(self._in_file(parameter_file, use_wildcard), callback)
+
+    def _ask(
+        self, service: str, callback: Callable[[Future[Any]], None] | None, **fields: Any
+    ) -> Future[Any]:
+        """Send a request, and have `callback` called with its future."""
+        future = self._clients[service].call_async(SERVICES[service].Request(**fields))
+        if callback is not None:
+            future.add_done_callback(callback)
+        return future
 
     def _in_file(self, parameter_file: str, use_wildcard: bool) -> list[Any]:
         parameters = parameter_dict_from_yaml_file(
@@ -189,18 +181,6 @@ class AsyncParameterClient:
             qos_overriding_options=qos_overriding_options,
             raw=raw,
         )
-
-
-def ask(
-    client: Client[Any, Any],
-    request: Any,
-    callback: Callable[[Future[Any]], None] | None,
-) -> Future[Any]:
-    """Send a request, and have `callback` called with its future."""
-    future = client.call_async(request)
-    if callback is not None:
-        future.add_done_callback(callback)
-    return future
 
 
 def as_messages(parameters: Sequence[Any]) -> list[Any]:
