@@ -78,10 +78,8 @@ class Timer(HandleOwner[TimerHandle]):
         self._clock = clock
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized before create a _rclpy.Timer.")
-        with clock.handle, self._context.handle:
-            self._handle = TimerHandle(
-                clock.handle, self._context.handle, int(timer_period_ns), autostart
-            )
+        with self._context.handle as context_handle:
+            self._handle = TimerHandle(clock, context_handle, int(timer_period_ns), autostart)
         self.callback = callback
         self.callback_group = callback_group
         self._executor_event = False

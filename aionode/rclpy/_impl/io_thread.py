@@ -62,7 +62,9 @@ class IoThread:
         # it will look again. The loop looks once it runs.
         self._looks = 0
         self._woken_after = 0
-        self._ended = False  # set by the thread as its last step; what is posted later runs at once
+        self._ended = (
+            False  # set by the thread as it ends; from then on, whoever posts work does it
+        )
         self._loop: LendableLoop | None = None
         self._stopping: asyncio.Event | None = None
         self._opened = Wakeup()
