@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import functools
-import gc
-import weakref
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from itertools import pairwise
@@ -18,9 +16,11 @@ from aionode.clock import Clock, ClockType, ROSClock, Time
 from aionode.endpoints._core.callback_runner import CallbackRunner, Callbacks
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer import Timer, TimerInfo
+from aionode.endpoints.timer._ticker import Ticker
 from aionode.endpoints.timer._timer import to_period_ns
 from aionode.errors import AionodeError, EntityDestroyedError
 from aionode.testing import ManualClock, settle
+from tests.support.living import living
 
 MS = 1_000_000
 S = 1_000_000_000
@@ -390,6 +390,7 @@ async def test_another_callback_can_be_set() -> None:
 
 async def test_destroying_ends_the_callback_that_runs() -> None:
     """And the timer forgets its clock. Twice is allowed, as is cancelling a destroyed timer."""
+    tickers = living(Ticker)
     bench = Bench()
     ended: list[str] = []
 
@@ -410,10 +411,8 @@ async def test_destroying_ends_the_callback_that_runs() -> None:
         timer.cancel()
         with pytest.raises(EntityDestroyedError):
             timer.reset()
-    kept = weakref.ref(timer)
     del timer
-    gc.collect()
-    assert kept() is None
+    assert living(Ticker) == tickers
     assert "waiting=0" in repr(bench.manual)
 
 
