@@ -38,7 +38,7 @@ class MessageSupport:
 
     encode = staticmethod(encode)
 
-    def __init__(self, msg_type: type[Any], wire_type: Any) -> None:
+    def __init__(self, msg_type: Any, wire_type: Any) -> None:
         self.wire_type = wire_type
         self._msg_type = msg_type
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable
+from functools import cache
 from typing import Any, Final
 
 from aionode.message import Field, FieldType, Message, fields, type_name
@@ -14,8 +15,6 @@ from aionode.wire.cdr import Data, MessageFamily, decoder, encoder
 __all__ = ["decode", "decoder_of", "encode", "from_aionode", "to_aionode"]
 
 ENCODERS: dict[type[Any], Callable[[Any], bytes]] = {}
-DECODERS: dict[type[Any], Callable[[Data], Any]] = {}
-CONSTRUCTORS: dict[type[Message], Callable[..., Any]] = {}
 
 OCTETS: Final = [bytes((value,)) for value in range(256)]
 
@@ -38,7 +37,7 @@ def encode(msg: Any) -> bytes:
     return function(msg)
 
 
-def decode(cls: type[Any], data: Data) -> Any:
+def decode(cls: Any, data: Data) -> Any:
     """Return the message of this class in `data`; it shares no memory with `data`.
 
     Raises:
@@ -48,16 +47,16 @@ def decode(cls: type[Any], data: Data) -> Any:
     return decoder_of(cls)(data)
 
 
-def decoder_of(cls: type[Any]) -> Callable[[Data], Any]:
+@cache
+def decoder_of(cls: Any) -> Callable[[Data], Any]:
     """Return the function that decodes messages of one class, as `decode` does.
 
     Raises:
         TypeError: `cls` is not a message class.
     """
-    function = DECODERS.get(cls)
-    if function is None:
-        function = DECODERS[cls] = new_decoder(cls)
-    return function
+    if issubclass(cls, Message):
+        return decoder(cls)
+    return decoder(described(cls), FAMILY)
 
 
 def new_encoder(cls: type[Any]) -> Callable[[Any], bytes]:
@@ -65,13 +64,6 @@ def new_encoder(cls: type[Any]) -> Callable[[Any], bytes]:
     if issubclass(cls, Message):
         return encoder(cls)
     return encoder(described(cls), FAMILY)
-
-
-def new_decoder(cls: type[Any]) -> Callable[[Data], Any]:
-    """Return the decoder of a message class."""
-    if issubclass(cls, Message):
-        return decoder(cls)
-    return decoder(described(cls), FAMILY)
 
 
 def described(cls: type[Any]) -> type[Message]:
@@ -139,15 +131,12 @@ def adopted_element(value: Any, type_: FieldType) -> Any:
     return value.item() if type(value).__module__ == "numpy" else value  # a single number
 
 
+@cache
 def constructor(cls: type[Message]) -> Callable[..., Any]:
-    """Return what makes a message from its fields, without the checks of ``__init__``."""
-    if cls not in CONSTRUCTORS:
-        CONSTRUCTORS[cls] = new_constructor(cls)
-    return CONSTRUCTORS[cls]
+    """Return a function that makes a message from its fields, without the checks of ``__init__``.
 
-
-def new_constructor(cls: type[Message]) -> Callable[..., Any]:
-    """Return a new constructor; its source holds validated field names and numbers only."""
+    Its source holds validated field names and numbers only.
+    """
     own = python_class(cls)
     names = [field.name for field in fields(cls)]
     namespace: dict[str, Any] = {
