@@ -56,7 +56,7 @@ KNOWN_S = 0.3
 """Time for which `open` waits for the graph of connected peers, in seconds; it takes a
 millisecond."""
 
-LOOK_AGAIN_S = 0.2
+ASK_AGAIN_S = 0.2
 """The interval at which expected nodes and arriving bytes are looked at, in seconds."""
 
 TOKEN_BYTES = 100
@@ -178,7 +178,7 @@ class ZenohTransport(Transport):
         ends_ns = perf_ns() + NAMED_NS
         while missing:
             with suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_AGAIN_S):
+                async with asyncio.timeout(ASK_AGAIN_S):
                     await graph.until(partial(known_all, self._watcher, missing))
             left = await self._missing_nodes(session, quiet_s)
             if left is None:
@@ -217,7 +217,7 @@ class ZenohTransport(Transport):
         before: dict[str, tuple[int, int]] = {}
         while answered is not None:
             with suppress(TimeoutError):
-                async with asyncio.timeout(min(quiet_s, LOOK_AGAIN_S)):
+                async with asyncio.timeout(min(quiet_s, ASK_AGAIN_S)):
                     return await asyncio.shield(answered)
             arrived = await run_in_own_thread(partial(arrived_bytes, session))
             for peer, (received, unread) in arrived.items():

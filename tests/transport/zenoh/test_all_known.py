@@ -22,7 +22,7 @@ ENOUGH = 20
 @pytest.fixture
 async def transport(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[ZenohTransport]:
     """An open transport, whose peers have not answered yet."""
-    monkeypatch.setattr(_transport, "LOOK_AGAIN_S", 0.002)
+    monkeypatch.setattr(_transport, "ASK_AGAIN_S", 0.002)
     async with quiet_node("asking") as node:
         opened: Any = node.context.transports[1]
         opened._answered = asyncio.get_running_loop().create_future()
