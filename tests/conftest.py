@@ -1,4 +1,4 @@
-"""What every test of the project runs under: debug mode, event loops, hypothesis, compiled code."""
+"""The surroundings of every test: debug mode, event loops, hypothesis, compiled code."""
 
 from __future__ import annotations
 

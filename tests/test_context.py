@@ -1,4 +1,4 @@
-"""When a context opens and closes, whatever its nodes do meanwhile."""
+"""A context opens with its first node and closes after the last."""
 
 from __future__ import annotations
 

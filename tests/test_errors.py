@@ -1,4 +1,4 @@
-"""What errors say, whatever they are given."""
+"""The texts of errors, for any values."""
 
 from __future__ import annotations
 

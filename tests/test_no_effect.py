@@ -1,4 +1,4 @@
-"""What is accepted without effect says so, once: arguments. Policies all have an effect."""
+"""An argument that is accepted without effect says so, once. Policies all have an effect."""
 
 from __future__ import annotations
 

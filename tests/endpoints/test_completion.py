@@ -1,4 +1,4 @@
-"""What completion offers on each object of a node: what is for users, and nothing else."""
+"""Completion on each object of a node offers the names for users, and no others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What tasks get that wait for an entity while it is destroyed."""
+"""The end of tasks that wait for an entity while it is destroyed."""
 
 from __future__ import annotations
 

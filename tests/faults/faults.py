@@ -1,4 +1,4 @@
-"""What may happen to the processes of a case. Each fault returns when it is over."""
+"""The faults that strike the processes of a case. Each fault returns when it is over."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What clients can have the gateway hold is bounded, and the policy decides first.
+"""The gateway holds a bounded number of things for its clients, and the policy decides first.
 
 Also for a client that asks for several things at once, while each of them waits.
 """

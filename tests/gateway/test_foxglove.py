@@ -1,4 +1,4 @@
-"""What a client of Foxglove's protocol gets, and what the policy keeps from it."""
+"""Clients of Foxglove's protocol: their topics, and the refusals of the policy."""
 
 from __future__ import annotations
 

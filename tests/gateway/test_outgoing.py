@@ -1,4 +1,4 @@
-"""How frames leave a WebSocket: framed once for all clients, large ones in slices."""
+"""Frames leave a WebSocket framed once for all clients, large ones in slices."""
 
 from __future__ import annotations
 

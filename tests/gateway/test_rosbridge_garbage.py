@@ -1,4 +1,4 @@
-"""Whatever a client of rosbridge sends, it harms nobody but itself."""
+"""A client of rosbridge harms nobody but itself by garbage."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What clients of rosbridge send is checked before anything is done."""
+"""Frames of rosbridge clients are checked before anything is done."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much memory messages take."""
+"""The memory that messages take."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What every node offers by itself: log, parameters, types, time, and arguments."""
+"""The offers of every node: log, parameters, types, time, and arguments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a program sees on a node and its context: the documented names, and nothing else."""
+"""The names that a program sees on a node and its context: the documented ones, and no others."""
 
 from __future__ import annotations
 

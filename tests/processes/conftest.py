@@ -1,4 +1,4 @@
-"""What tests with several processes share."""
+"""Fixtures of tests with several processes."""
 
 from __future__ import annotations
 

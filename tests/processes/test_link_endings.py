@@ -1,4 +1,4 @@
-"""What a process has published before it ends reaches the processes that it is linked to."""
+"""The last messages of a process that ends reach the processes that it is linked to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What Windows and macOS lack is not needed; simulated, by taking it away from Python."""
+"""aionode runs without the calls that Windows and macOS lack; they are taken away from Python."""
 
 from __future__ import annotations
 

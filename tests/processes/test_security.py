@@ -1,4 +1,4 @@
-"""What a node shows to the network, and what certificates keep out."""
+"""Traffic of a node that the network sees, and clients that certificates keep out."""
 
 from __future__ import annotations
 

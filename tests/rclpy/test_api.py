@@ -1,4 +1,4 @@
-"""What rclpy's API does on aionode where no other rclpy is at hand to compare with."""
+"""rclpy's API on aionode, where no other rclpy is at hand to compare with."""
 
 from __future__ import annotations
 

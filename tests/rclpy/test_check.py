@@ -1,4 +1,4 @@
-"""What programs import is listed without running them."""
+"""The imports of programs are listed without running them."""
 
 from __future__ import annotations
 

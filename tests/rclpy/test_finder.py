@@ -1,4 +1,4 @@
-"""What programs of rclpy import: packages of ROS, from aionode."""
+"""Imports of rclpy's programs: packages of ROS, from aionode."""
 
 from __future__ import annotations
 

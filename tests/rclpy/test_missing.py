@@ -1,4 +1,4 @@
-"""What is said about a package of ROS that is missing."""
+"""The errors about a package of ROS that is missing."""
 
 from __future__ import annotations
 

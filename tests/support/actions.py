@@ -1,4 +1,4 @@
-"""What tests of actions share: a server that does what it is told, and a client of plain calls."""
+"""Helpers of tests of actions: a server that does as it is told, and a client of plain calls."""
 
 from __future__ import annotations
 

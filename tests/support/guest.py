@@ -1,4 +1,4 @@
-"""What a program has that is not the library's, and whether all of it is as before."""
+"""The belongings of a program that are not the library's, and whether all of them are as before."""
 
 from __future__ import annotations
 

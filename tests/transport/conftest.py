@@ -1,4 +1,4 @@
-"""What tests of transports share."""
+"""Fixtures of tests of transports."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who a context talks to: environment and arguments to a Zenoh configuration."""
+"""The network of a context: environment and arguments become a Zenoh configuration."""
 
 from __future__ import annotations
 

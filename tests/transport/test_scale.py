@@ -1,4 +1,4 @@
-"""What an endpoint costs does not depend on how many others there are."""
+"""The cost of an endpoint does not depend on the number of others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the programs have in common: sessions of Zenoh, and other processes that freeze.
+"""Parts that the programs share: sessions of Zenoh, and other processes that freeze.
 
 Each program shows one defect of Zenoh, without aionode, and fails when Zenoh no longer has it. They
 are no part of the tests: ``make zenoh-defects`` runs them.

@@ -1,4 +1,4 @@
-"""What clients send to an action server, in any order: its node goes on."""
+"""Requests to an action server in any order: its node goes on."""
 
 from __future__ import annotations
 

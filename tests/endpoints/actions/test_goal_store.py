@@ -1,4 +1,4 @@
-"""How many goals a server takes and keeps, and how often it lists them."""
+"""The number of goals that a server takes and keeps, and how often it lists them."""
 
 from __future__ import annotations
 

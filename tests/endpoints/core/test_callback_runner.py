@@ -1,4 +1,4 @@
-"""What happens around a callback: errors, limits, threads, measurements, fairness."""
+"""Around a callback: errors, limits, threads, measurements, fairness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When messages were published, whatever the clock of their publisher's host shows."""
+"""The times of publication, for any error of the clock of the publisher's host."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a process of a fault case does that is the wheels of robots."""
+"""The process of a fault case that is the wheels of robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What continues a link over Zenoh, and who is believed to have sent it."""
+"""Batches that continue a link over Zenoh, and the senders that are believed."""
 
 from __future__ import annotations
 

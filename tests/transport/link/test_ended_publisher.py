@@ -1,4 +1,4 @@
-"""What a publisher sent over the link and over Zenoh comes once, also when it has ended since."""
+"""Copies of a message over the link and over Zenoh count once, also after its publisher's end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How many objects a subscription is made of: each is memory, and a place to look for a reader."""
+"""The number of objects in a subscription: each is memory, and a place to look for a reader."""
 
 from __future__ import annotations
 

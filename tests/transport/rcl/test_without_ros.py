@@ -1,4 +1,4 @@
-"""What is said where rcl cannot be used, and where it would help."""
+"""The texts where rcl cannot be used, and where it would help."""
 
 from __future__ import annotations
 

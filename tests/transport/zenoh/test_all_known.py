@@ -1,4 +1,4 @@
-"""How long it is waited for the tokens of connected peers."""
+"""The wait for the tokens of connected peers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How much is kept of what others announce."""
+"""The number of announcements of others that a context keeps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What goes to the keys of bridges, which must never be what a robot's bridge does not survive."""
+"""Payloads for the keys of bridges, none of which a robot's bridge may fail to survive."""
 
 from __future__ import annotations
 

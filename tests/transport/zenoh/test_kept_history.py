@@ -1,4 +1,4 @@
-"""What a publisher on Zenoh does not send any more."""
+"""Messages that a publisher on Zenoh does not send any more."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What Zenoh's sockets do while a peer has stopped reading."""
+"""Zenoh's sockets while a peer has stopped reading."""
 
 from __future__ import annotations
 

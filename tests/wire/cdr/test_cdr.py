@@ -1,4 +1,4 @@
-"""What the codec takes, gives and refuses."""
+"""Values that the codec takes, gives and refuses."""
 
 from __future__ import annotations
 
