@@ -36,7 +36,7 @@ SHARED = {
     "aionode.endpoints._core": "nodes are made of it, and tools report callbacks by it",
     "aionode.endpoints._qos": "rclpy's publishers and subscriptions have the same events",
     "aionode.endpoints.actions": "aionode.action is its public name",
-    "aionode.endpoints.timer._ticker": "timers of rclpy's API go by the same schedule",
+    "aionode.endpoints.timer._schedule": "timers of rclpy's API go by the same schedule",
     "aionode.endpoints.timer._timer": "Node.create_timer builds one",
     "aionode.errors._base": "times and field types need its texts, not the exceptions",
     "aionode.idl._named": "programs of rclpy are started with folders of interfaces",

@@ -1,21 +1,182 @@
-"""The parameters of a node: the overrides they begin with, and parameters as a class."""
+"""The parameters of a node: declared, read and changed, and the overrides they begin with.
+
+Whether a new value is accepted is decided in `aionode/parameter/_store.py`.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode._node.base import NodeBase
-from aionode._node.parameter_methods import ParameterMethods
 from aionode.parameter import Parameter, ParameterStore, declare_struct
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from aionode.context import Context
+    from aionode.interfaces.rcl_interfaces.msg import (
+        ListParametersResult,
+        ParameterDescriptor,
+        ParameterValue,
+        SetParametersResult,
+    )
+    from aionode.parameter import (
+        OnSetCallback,
+        ParameterType,
+        PostSetCallback,
+        PreSetCallback,
+    )
 
-__all__ = ["NodeParameters"]
+__all__ = ["NodeParameters", "ParameterMethods"]
 
 StructT = TypeVar("StructT")
+
+
+class ParameterMethods:
+    """The methods of a node over its `ParameterStore`, which describes each step and exception."""
+
+    _parameter_store: ParameterStore
+
+    # Declaring
+
+    def declare_parameter(
+        self,
+        name: str,
+        value: Any = None,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,  # rclpy's signature
+    ) -> Parameter:
+        """Declare a parameter and return it; an override of its name gives the value.
+
+        Args:
+            name: Its name.
+            value: Its initial value, or its type (`Parameter.Type`) to declare it without a value.
+            descriptor: Description, range, and whether it is read-only.
+            ignore_override: Whether to ignore overrides.
+
+        Raises:
+            ParameterAlreadyDeclaredException: the parameter is already declared.
+            InvalidParameterException: the name is empty.
+            InvalidParameterTypeException: the override is of another type than `value`.
+            InvalidParameterValueException: the descriptor or a callback rejects the value.
+        """
+        return self._parameter_store.declare_parameter(name, value, descriptor, ignore_override)
+
+    def declare_parameters(
+        self,
+        namespace: str,
+        parameters: Iterable[tuple[Any, ...]],
+        ignore_override: bool = False,  # rclpy's signature
+    ) -> list[Parameter]:
+        """Declare parameters, each given as ``(name, value or type, descriptor)``, in order."""
+        return self._parameter_store.declare_parameters(namespace, parameters, ignore_override)
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Remove a parameter. No callback is called and no event is published."""
+        self._parameter_store.undeclare_parameter(name)
+
+    # Reading
+
+    def has_parameter(self, name: str) -> bool:
+        """Whether the parameter is declared."""
+        return self._parameter_store.has_parameter(name)
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter.
+
+        Raises:
+            ParameterNotDeclaredException: it is undeclared, and undeclared parameters are not
+                allowed.
+            ParameterUninitializedException: it was declared without a value and never set.
+        """
+        return self._parameter_store.get_parameter(name)
+
+    def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
+        """Return several parameters; see `get_parameter`."""
+        return self._parameter_store.get_parameters(names)
+
+    def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
+        """Return a parameter, or `alternative_value` if it is undeclared or not set."""
+        return self._parameter_store.get_parameter_or(name, alternative_value)
+
+    def get_parameter_type(self, name: str) -> ParameterType:
+        """Return the type of a parameter."""
+        return self._parameter_store.get_parameter_type(name)
+
+    def get_parameter_types(self, names: Sequence[str]) -> list[ParameterType]:
+        """Return the types of several parameters."""
+        return self._parameter_store.get_parameter_types(names)
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
+        """Return the parameters below `prefix`, keyed by the rest of their names."""
+        return self._parameter_store.get_parameters_by_prefix(prefix)
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
+        """Return the names below `prefixes`, at most `depth` dots deep; 0 means any depth."""
+        return self._parameter_store.list_parameters(prefixes, depth)
+
+    def describe_parameter(self, name: str) -> ParameterDescriptor:
+        """Return the descriptor of a parameter."""
+        return self._parameter_store.describe_parameter(name)
+
+    def describe_parameters(self, names: Sequence[str]) -> list[ParameterDescriptor]:
+        """Return the descriptors of several parameters."""
+        return self._parameter_store.describe_parameters(names)
+
+    # Changing
+
+    def set_parameters(self, parameter_list: Sequence[Parameter]) -> list[SetParametersResult]:
+        """Set parameters one by one, and return a result for each.
+
+        Raises:
+            ParameterNotDeclaredException: one is undeclared, and undeclared parameters are not
+                allowed; those before it are set.
+        """
+        return self._parameter_store.set_parameters(parameter_list)
+
+    def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> SetParametersResult:
+        """Set all parameters, or none if one is rejected.
+
+        Raises:
+            ParameterNotDeclaredException: one is undeclared, and undeclared parameters are not
+                allowed.
+        """
+        return self._parameter_store.set_parameters_atomically(parameter_list)
+
+    def set_descriptor(
+        self,
+        name: str,
+        descriptor: ParameterDescriptor,
+        alternative_value: ParameterValue | None = None,
+    ) -> ParameterValue:
+        """Replace the descriptor of a parameter, and return its resulting value."""
+        return self._parameter_store.set_descriptor(name, descriptor, alternative_value)
+
+    # Callbacks
+
+    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Call `callback` before a change is checked; it returns the parameters to set instead."""
+        self._parameter_store.add_pre_set_parameters_callback(callback)
+
+    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Call `callback` to check a change; the first that rejects it decides."""
+        self._parameter_store.add_on_set_parameters_callback(callback)
+
+    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Call `callback` after a change."""
+        self._parameter_store.add_post_set_parameters_callback(callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Remove a callback; a ValueError if it was not added."""
+        self._parameter_store.remove_pre_set_parameters_callback(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Remove a callback; a ValueError if it was not added."""
+        self._parameter_store.remove_on_set_parameters_callback(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Remove a callback; a ValueError if it was not added."""
+        self._parameter_store.remove_post_set_parameters_callback(callback)
 
 
 class NodeParameters(ParameterMethods, NodeBase):

@@ -10,7 +10,8 @@ import msgspec
 
 from aionode.clock import S_TO_NS
 from aionode.errors import RefusedError
-from aionode.gateway._identity import check_browser, from_scope, parsed_address, take_token
+from aionode.gateway._identity import from_scope, parsed_address, take_token
+from aionode.gateway._origin import check_browser
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import Clients

@@ -1,30 +1,23 @@
-"""The identity of a client by its first request, and whether a page of another origin sent that."""
+"""The identity of a client, and the credentials in its first request."""
 
 from __future__ import annotations
 
 import ipaddress
-import re
-from collections.abc import Iterable, Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import parse_qsl, urlencode
 
 import msgspec
 
-from aionode.errors import RefusedError
+if TYPE_CHECKING:
+    from collections.abc import Mapping
 
-__all__ = ["Credentials", "Identity", "check_browser", "from_scope", "take_token"]
+__all__ = ["Credentials", "Identity", "from_scope", "parsed_address", "take_token"]
 
 TOKEN_PROTOCOL: Final = "bearer."  # noqa: S105  # what stands before one
 """Before the token, among the subprotocols of a WebSocket: browsers can set no header there."""
 
 FORWARDED: Final = frozenset({"forwarded", "via", "x-real-ip"})
 """Headers that proxies add, beside those that begin with ``x-forwarded-``."""
-
-HOST: Final = re.compile(r"(\[[0-9A-Fa-f:.]+(?:%\w+)?\]|[\w.-]+)(?::[0-9]{1,5})?", re.ASCII)
-"""A ``Host`` header: an address or a name, and perhaps a port; nobody is named before an ``@``."""
-
-SAME_SITES: Final = frozenset({"", "none", "same-origin"})
-"""The values of Sec-Fetch-Site of a request that no page of another origin has made."""
 
 
 class Identity(msgspec.Struct, frozen=True):
@@ -120,61 +113,6 @@ def take_token(scope: Mapping[str, Any]) -> str:
         if name == b"authorization" and value[:7].lower() == b"bearer ":
             token = value[7:].decode("latin-1").strip()
     return token
-
-
-def check_browser(
-    credentials: Credentials, hosts: Iterable[str] = (), origins: Iterable[str] = ()
-) -> None:
-    """Refuse a request that a page of another origin has made.
-
-    A page on the Internet can have the browser of its reader connect to a port of the reader's own
-    machine or network, and even under the page's own name, if its name server says so (DNS
-    rebinding). So the gateway is known by addresses, by ``localhost``, and by the names that the
-    policy lists.
-
-    Args:
-        credentials: Those of the request.
-        hosts: The names of this machine, by the policy.
-        origins: The origins of pages that may connect, by the policy.
-
-    Raises:
-        RefusedError: such a page has made it, or the request names another host.
-    """
-    if not is_known_host(credentials.host, hosts):
-        raise RefusedError(
-            f"request for {credentials.host[:80]!r}",
-            "this machine is not known by that name; use its address, or list the name under "
-            "`hosts` in the policy",
-            "unauthorized",
-        )
-    if credentials.origin is None:
-        if credentials.sec_fetch_site not in SAME_SITES:
-            raise RefusedError(
-                "request of a page",
-                "a page of another site has made it; list its origin under `origins` in the policy",
-                "unauthorized",
-            )
-    elif not is_same_origin(credentials) and credentials.origin not in set(origins):
-        raise RefusedError(
-            f"request of a page of {credentials.origin[:80]!r}",
-            "pages of other origins may not connect; list the origin under `origins` in the policy",
-            "unauthorized",
-        )
-
-
-def is_same_origin(credentials: Credentials) -> bool:
-    """Return whether the gateway itself has served the page; an opaque origin is ``null``."""
-    return credentials.origin == f"{credentials.scheme}://{credentials.host}"
-
-
-def is_known_host(host: str, names: Iterable[str]) -> bool:
-    """Return whether a ``Host`` header names this machine: no page can have such a name rebound."""
-    parts = HOST.fullmatch(host)
-    if parts is None:
-        return False
-    name = parts[1].strip("[]").lower()
-    is_local = name == "localhost" or name.endswith(".localhost")
-    return is_local or parsed_address(name) is not None or name in map(str.lower, names)
 
 
 def parsed_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address | None:

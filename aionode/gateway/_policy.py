@@ -20,7 +20,8 @@ import msgspec
 
 from aionode.errors import PolicyFileError, RefusedError
 from aionode.gateway._field_limits import FieldLimit, OutOfLimitsError, limited
-from aionode.gateway._identity import Credentials, Identity, check_browser
+from aionode.gateway._identity import Credentials, Identity
+from aionode.gateway._origin import check_browser
 
 if TYPE_CHECKING:
     from os import PathLike

@@ -6,11 +6,11 @@ import functools
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.errors import EntityInactiveError
-from aionode.lifecycle.states import TransitionCallbackReturn
+from aionode.lifecycle.states import ACTIVE, TransitionCallbackReturn
 from aionode.message import Message
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from aionode.clock import Clock
     from aionode.endpoints._core.silence_watch import SilenceWatch
@@ -22,7 +22,14 @@ if TYPE_CHECKING:
     from aionode.lifecycle.states import State
     from aionode.qos import QoSProfile
 
-__all__ = ["LifecyclePublisher", "LifecycleTimer", "ManagedEntity", "SimpleManagedEntity"]
+__all__ = [
+    "LifecyclePublisher",
+    "LifecycleTimer",
+    "ManagedEntity",
+    "SimpleManagedEntity",
+    "enabled_of",
+    "settle_entities",
+]
 
 MsgT = TypeVar("MsgT", bound=Message)
 
@@ -309,3 +316,36 @@ class Gate(SimpleManagedEntity):
             return callback(*args)
 
         return gated
+
+
+def enabled_of(entities: Iterable[ManagedEntity]) -> list[SimpleManagedEntity]:
+    """Return those entities that are enabled now."""
+    return [
+        entity
+        for entity in entities
+        if isinstance(entity, SimpleManagedEntity) and entity.is_activated
+    ]
+
+
+def settle_entities(
+    entities: Iterable[ManagedEntity],
+    enabled: Iterable[SimpleManagedEntity],
+    start: State,
+    *,
+    is_active: bool,
+) -> None:
+    """Have entities enabled in the active state only, however a transition has ended.
+
+    Args:
+        entities: All entities of the node.
+        enabled: Those that were enabled before the transition.
+        start: The state in which the transition started.
+        is_active: Whether the node is active now.
+    """
+    if not is_active:
+        for entity in reversed(enabled_of(entities)):
+            entity.on_deactivate(start)
+    elif start == ACTIVE:  # a deactivation that failed half-way
+        for entity in enabled:
+            if not entity.is_activated:
+                entity.on_activate(start)

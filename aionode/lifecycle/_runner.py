@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 from aionode._concurrency import is_cancelled_task
 from aionode._tracebacks import traceback_text
 from aionode.errors import CallbackCancelledError, TransitionError
-from aionode.lifecycle._entities import SimpleManagedEntity
+from aionode.lifecycle._entities import enabled_of, settle_entities
 from aionode.lifecycle.states import (
     ACTIVE,
     ERROR_PROCESSING,
@@ -155,7 +155,7 @@ class TransitionRunner:
         Cancelling cancels the callback, and the node enters the state to which a failure leads.
         """
         start = self.machine.state
-        enabled = self._enabled()
+        enabled = enabled_of(self.entities)
         self._label = transition.label
         self._error = None
         self._idle.clear()
@@ -165,7 +165,8 @@ class TransitionRunner:
             if self.machine.state == ERROR_PROCESSING:
                 await self._call("error", start)
         finally:
-            self._settle_entities(start, enabled)
+            is_active = self.machine.state == ACTIVE
+            settle_entities(self.entities, enabled, start, is_active=is_active)
             self._idle.set()
         return result
 
@@ -234,25 +235,6 @@ class TransitionRunner:
     async def wait_idle(self) -> None:
         """Wait until no transition is in progress."""
         await self._idle.wait()
-
-    # Entities
-
-    def _enabled(self) -> list[SimpleManagedEntity]:
-        return [
-            entity
-            for entity in self.entities
-            if isinstance(entity, SimpleManagedEntity) and entity.is_activated
-        ]
-
-    def _settle_entities(self, start: State, enabled: list[SimpleManagedEntity]) -> None:
-        """Enable entities in the active state only, however the transition ended."""
-        if self.machine.state != ACTIVE:
-            for entity in reversed(self._enabled()):
-                entity.on_deactivate(start)
-        elif start == ACTIVE:  # a deactivation that failed half-way
-            for entity in enabled:
-                if not entity.is_activated:
-                    entity.on_activate(start)
 
     # Events
 

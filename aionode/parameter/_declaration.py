@@ -10,7 +10,6 @@ from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.parameter._value import Parameter, ParameterType, expect
 
 __all__ = [
-    "adapted",
     "first_value",
     "refuse_many_ranges",
     "split_entry",
@@ -96,15 +95,4 @@ def first_value(
         )
         raise ValueError(message)
     descriptor.type = int(parameter.type_)
-    return parameter
-
-
-def adapted(parameter: Parameter, descriptor: ParameterDescriptor | None) -> Parameter:
-    """Return `parameter`; an empty list, whose type is ambiguous, gets the declared type."""
-    if descriptor is None or descriptor.dynamic_typing:
-        return parameter
-    wanted = ParameterType(descriptor.type)
-    is_empty = parameter.type_ is ParameterType.BYTE_ARRAY and not parameter.value
-    if is_empty and wanted > ParameterType.BYTE_ARRAY:
-        return Parameter(parameter.name, wanted, [])
     return parameter

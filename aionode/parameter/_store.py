@@ -37,7 +37,6 @@ from aionode.interfaces.rcl_interfaces.msg import (
 from aionode.parameter._callbacks import ParameterCallbacks
 from aionode.parameter._constraints import descriptor_violation, type_violation
 from aionode.parameter._declaration import (
-    adapted,
     first_value,
     refuse_many_ranges,
     split_entry,
@@ -386,7 +385,9 @@ class ParameterStore(ParameterCallbacks):
         empty list gets the type that was declared.
         """
         last = {parameter.name: parameter for parameter in parameters}
-        return [adapted(parameter, descriptors.get(name)) for name, parameter in last.items()]
+        return [
+            with_declared_type(parameter, descriptors.get(name)) for name, parameter in last.items()
+        ]
 
     def _violation(self, parameters: list[Parameter]) -> str | None:
         for parameter in parameters:
@@ -540,3 +541,14 @@ def is_listed(name: str, prefixes: frozenset[str], depth: int) -> bool:
 def is_shallow(name: str, depth: int) -> bool:
     """Return whether a name has at most `depth` parts; 0 means any number."""
     return depth == 0 or name.count(PARAMETER_SEPARATOR_STRING) < depth
+
+
+def with_declared_type(parameter: Parameter, descriptor: ParameterDescriptor | None) -> Parameter:
+    """Return `parameter`; an empty list, whose type is ambiguous, gets the declared type."""
+    if descriptor is None or descriptor.dynamic_typing:
+        return parameter
+    wanted = ParameterType(descriptor.type)
+    is_empty = parameter.type_ is ParameterType.BYTE_ARRAY and not parameter.value
+    if is_empty and wanted > ParameterType.BYTE_ARRAY:
+        return Parameter(parameter.name, wanted, [])
+    return parameter

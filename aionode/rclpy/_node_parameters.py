@@ -8,7 +8,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
-from aionode._node.parameter_methods import ParameterMethods
+from aionode._node.parameters import ParameterMethods
 from aionode.parameter import ParameterStore
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.typesupport import type_of

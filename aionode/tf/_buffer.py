@@ -6,10 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.tf._apply import transformer_of
-from aionode.tf._awaitable_core import LATEST, AwaitableCore
 from aionode.tf._buffer_core import time_ns_of
 from aionode.tf._changes import Changes
 from aionode.tf._filter import Filtered
+from aionode.tf._node_buffer_core import LATEST, NodeBufferCore
 
 if TYPE_CHECKING:
     from aionode.endpoints.subscription import Subscription
@@ -20,7 +20,7 @@ __all__ = ["Buffer"]
 StampedT = TypeVar("StampedT")
 
 
-class Buffer(AwaitableCore):
+class Buffer(NodeBufferCore):
     """Keeps the transforms of /tf and /tf_static, and answers for any two frames.
 
     ::

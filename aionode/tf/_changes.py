@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
     from aionode.tf._arithmetic import Pose
-    from aionode.tf._awaitable_core import AwaitableCore
+    from aionode.tf._node_buffer_core import NodeBufferCore
 
 __all__ = ["Changes"]
 
@@ -20,7 +20,7 @@ __all__ = ["Changes"]
 class Changes:
     """Iterates over the latest transform between two frames; see `Buffer.follow`."""
 
-    def __init__(self, buffer: AwaitableCore, target: str, source: str) -> None:
+    def __init__(self, buffer: NodeBufferCore, target: str, source: str) -> None:
         self._buffer = buffer
         self._target = target
         self._source = source

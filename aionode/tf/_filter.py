@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from aionode.endpoints.subscription import Subscription
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
-    from aionode.tf._awaitable_core import AwaitableCore
+    from aionode.tf._node_buffer_core import NodeBufferCore
     from aionode.tf._waiters import Waiters
     from aionode.tf._walk import Failure
 
@@ -39,7 +39,7 @@ class Filtered(Generic[MsgT]):
     """
 
     def __init__(
-        self, buffer: AwaitableCore, subscription: Subscription[MsgT], target: str, queue_size: int
+        self, buffer: NodeBufferCore, subscription: Subscription[MsgT], target: str, queue_size: int
     ) -> None:
         if queue_size < 1:
             raise ValueError(f"queue_size={queue_size}; it must be at least 1")

@@ -12,7 +12,7 @@ import pytest
 
 import aionode.rclpy
 from aionode.action import GoalStatus
-from aionode.endpoints.actions import _goal_store
+from aionode.endpoints.actions import _status_pace
 from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
 from aionode.interfaces.tf2_msgs.action import LookupTransform as OwnLookupTransform
 from aionode.rclpy._impl.errors import RCLError
@@ -362,13 +362,13 @@ def test_the_states_of_many_goals_are_published_less_often_than_they_change(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Each message lists all goals; the last one is sent at the end of the server at the latest."""
-    monkeypatch.setattr(_goal_store, "SPACING_S", 1000.0)
+    monkeypatch.setattr(_status_pace, "SPACING_S", 1000.0)
     states = States(node)
     server = Server(node)
     client = client_of(node)
-    for _ in range(_goal_store.UNSPACED + 10):
+    for _ in range(_status_pace.UNSPACED + 10):
         result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
-    while len(states.last) <= _goal_store.UNSPACED:
+    while len(states.last) <= _status_pace.UNSPACED:
         executor.spin_once(timeout_sec=PATIENCE_S)
     sent = states.count
     server.may_end.set_result(None)
@@ -389,7 +389,7 @@ def test_the_states_of_many_goals_are_published_after_a_while(
     states = States(node)
     server = Server(node)
     client = client_of(node)
-    for _ in range(_goal_store.UNSPACED + 10):
+    for _ in range(_status_pace.UNSPACED + 10):
         result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
 
     server.may_end.set_result(None)

@@ -30,10 +30,10 @@ from aionode.endpoints.actions._early_cancels import EarlyCancels
 from aionode.endpoints.actions._goal_store import (
     MAX_GOALS,
     AlarmedGoalStore,
-    StatusPace,
     checked_max_goals,
 )
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
+from aionode.endpoints.actions._status_pace import StatusPace
 from aionode.endpoints.actions.goal import (
     CancelCode,
     CancelResponse,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from aionode._concurrency import checkpoint
 from aionode.clock import S_TO_NS
 from aionode.endpoints._core.entity import EndStage, Entity
-from aionode.endpoints.timer._ticker import Ticker
+from aionode.endpoints.timer._schedule import Ticker
 from aionode.errors import brief
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.inline_call import InlineCall
 from aionode.endpoints.stats import CallbackStats
-from aionode.endpoints.timer._ticker import Ticker
+from aionode.endpoints.timer._schedule import Ticker
 from aionode.errors import brief
 
 if TYPE_CHECKING:

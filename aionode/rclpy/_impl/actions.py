@@ -8,7 +8,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import S_TO_NS, MachineTime
-from aionode.endpoints.actions._goal_store import GoalStore, StatusSpacing
+from aionode.endpoints.actions._goal_store import GoalStore
+from aionode.endpoints.actions._status_pace import StatusSpacing
 from aionode.endpoints.actions.goal import GoalEvent, GoalKey, GoalStatus, candidates
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode.action import ActionServer, GoalResponse, GoalStatus
-from aionode.endpoints.actions._goal_store import GoalStore, StatusPace
+from aionode.endpoints.actions._goal_store import GoalStore
+from aionode.endpoints.actions._status_pace import StatusPace
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import settle

@@ -16,7 +16,7 @@ from aionode.clock import Clock, ClockType, ROSClock, Time
 from aionode.endpoints._core.callback_runner import CallbackRunner, Callbacks
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer import Timer, TimerInfo
-from aionode.endpoints.timer._ticker import Ticker
+from aionode.endpoints.timer._schedule import Ticker
 from aionode.endpoints.timer._timer import to_period_ns
 from aionode.errors import AionodeError, EntityDestroyedError
 from aionode.testing import ManualClock, settle

@@ -1,4 +1,4 @@
-"""A tree of frames whose transforms can be awaited, fed by the topics of a node."""
+"""The core of a node's buffer: fed by topics, cleared when the clock jumps back, awaited."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from aionode.tf._arithmetic import Pose
     from aionode.tf._frames import Frame
 
-__all__ = ["LATEST", "AwaitableCore"]
+__all__ = ["LATEST", "NodeBufferCore"]
 
 LATEST = Time()
 """The latest common time, as tf2 writes it."""
@@ -42,7 +42,7 @@ class BufferEnd(Entity):
         self._on_close()
 
 
-class AwaitableCore(BufferCore):
+class NodeBufferCore(BufferCore):
     """A core that ends with its node, and in which one can wait; see `Buffer`."""
 
     def __init__(

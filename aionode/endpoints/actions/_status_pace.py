@@ -1,0 +1,77 @@
+"""When an action server publishes the states of its goals: less often, the more there are."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection
+
+__all__ = ["StatusPace", "StatusSpacing"]
+
+SPACING_S = 0.0001
+"""The shortest time between two status messages, in seconds for each goal that they list."""
+
+UNSPACED = 10
+"""Up to how many listed goals every change is sent in the next iteration of the loop."""
+
+
+class StatusSpacing:
+    """The shortest time between two status messages, which grows with the goals that they list.
+
+    A status message lists every goal that is active or kept, so sending a long list for each change
+    would cost more than the goals themselves. It counts real time, as the list takes that to send,
+    whatever clock the node has.
+    """
+
+    def __init__(self) -> None:
+        self._next_s = 0.0  # when the next message may be sent
+
+    def wait_s(self, now_s: float) -> float:
+        """Return how long the next message has to wait, in seconds; 0 for not at all."""
+        return max(0.0, self._next_s - now_s)
+
+    def note_sent(self, listed: int, now_s: float) -> None:
+        """Note a message with so many goals."""
+        if listed > UNSPACED:
+            self._next_s = now_s + listed * SPACING_S
+
+
+class StatusPace:
+    """Decides when the states of all goals are published, after one of them has changed.
+
+    All changes of one iteration of the loop go into one message. With many goals there is a
+    shortest time between two messages as well, see `StatusSpacing`; the first change after a rest
+    is sent at once, and the last one always.
+
+    Args:
+        send: Publishes the states.
+        goals: What is listed.
+    """
+
+    def __init__(self, send: Callable[[], None], goals: Collection[bytes]) -> None:
+        self._send = send
+        self._goals = goals
+        self._spacing = StatusSpacing()  # of the loop's time
+        self._due: asyncio.Handle | None = None
+
+    def note_change(self) -> None:
+        """Have the states sent soon."""
+        if self._due is None:
+            loop = asyncio.get_running_loop()
+            wait_s = self._spacing.wait_s(loop.time())
+            if wait_s:
+                self._due = loop.call_later(wait_s, self.flush)
+            else:
+                self._due = loop.call_soon(self.flush)
+
+    def flush(self) -> None:
+        """Send the states now, if any has changed since they were sent."""
+        if self._due is None:
+            return
+        self._due.cancel()
+        self._due = None
+        listed = len(self._goals)
+        self._send()
+        self._spacing.note_sent(listed, asyncio.get_running_loop().time())
