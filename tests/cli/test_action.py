@@ -50,16 +50,16 @@ async def server(node_factory: Callable[..., Node]) -> Node:
     def welcome(goal: Fibonacci.Goal) -> GoalResponse:
         return GoalResponse.REJECT if goal.order > 100 else GoalResponse.ACCEPT
 
-    made = node_factory("fib_server")
+    server = node_factory("fib_server")
     ActionServer(
-        made,
+        server,
         Fibonacci,
         "/fibonacci",
         execute,
         goal_callback=welcome,
         cancel_callback=lambda goal: CancelResponse.ACCEPT,
     )
-    return made
+    return server
 
 
 async def test_send_goal_prints_what_ros2_prints(tool: Node, server: Node, screen: Any) -> None:
@@ -218,7 +218,7 @@ async def test_clients_are_counted_by_node(
 
     *lines, record = screen.text.splitlines()
     assert lines[1:4] == ["Action clients: 2", "    /arm", "    /driver"]
-    assert [each["node"] for each in json.loads(record)["clients"]] == ["/arm", "/driver"]
+    assert [client["node"] for client in json.loads(record)["clients"]] == ["/arm", "/driver"]
 
 
 async def test_an_unknown_action_is_named(tool: Node, server: Node, screen: Any) -> None:

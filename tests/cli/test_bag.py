@@ -56,8 +56,8 @@ def test_bags_are_merged_and_converted(run: str, tmp_path: Path) -> None:
     both, small = str(tmp_path / "both"), str(tmp_path / "small")
     assert main(["bag", "merge", run, run, both]) == 0
     assert main(["bag", "convert", both, small, "--topics", "a"]) == 0
-    with bag.open(small) as found:
-        assert found.counts == {"/a": 6}
+    with bag.open(small) as smaller:
+        assert smaller.counts == {"/a": 6}
 
 
 def test_check_says_what_it_has_repaired(run: str, capsys: Captured) -> None:

@@ -55,18 +55,18 @@ def test_the_options_of_rosbag2_are_taken(tmp_path: Path) -> None:
     """A command line that works with ros2 works here."""
     static = tmp_path / "static.yaml"
     static.write_text("static_topics_and_types_list:\n- [/late, std_msgs/msg/String]\n")
-    found = settings(
+    options = settings(
         "--topics", "/a", "/map", "-s", "mcap", "-b", "5000", "--max-bag-files", "3",
         "--storage-preset-profile", "zstd_small", "--repeat-transient-local", "/map=2", "tf_static",
         "--static-topics-path", str(static), "--max-cache-duration", "2.5", "--polling-interval",
         "100", "--compression-threads", "0", "--stats_max_publishing_rate", "2", "--custom-data",
         "robot=r2",
     )  # fmt: skip
-    assert found["compression"] == "zstd_small"
-    assert found["repeat_latched"] == {"/map": 2, "/tf_static": 0}
-    assert found["static_topics"] == {"/late": "std_msgs/msg/String"}
-    assert (found["cache_duration_sec"], found["loss_report_hz"]) == (2.5, 2)
-    assert found["custom_data"] == {"robot": "r2"}
+    assert options["compression"] == "zstd_small"
+    assert options["repeat_latched"] == {"/map": 2, "/tf_static": 0}
+    assert options["static_topics"] == {"/late": "std_msgs/msg/String"}
+    assert (options["cache_duration_sec"], options["loss_report_hz"]) == (2.5, 2)
+    assert options["custom_data"] == {"robot": "r2"}
     both = settings("-a", "--repeat-all-transient-local", "4", "--repeat-transient-local", "/map=1")
     assert both["repeat_latched"] == {"*": 4, "/map": 1}
 
@@ -96,8 +96,8 @@ def test_new_bags_are_made_as_a_yaml_file_of_rosbag2_says(run: str, tmp_path: Pa
     )
     assert main(["bag", "convert", "-i", run, "-o", str(options)]) == 0
     for name, counts in (("one", {"/a": 2}), ("two", {"/a": 2, "/b": 2})):
-        with bag.open(tmp_path / name) as made:
-            assert made.counts == counts
+        with bag.open(tmp_path / name) as written:
+            assert written.counts == counts
 
 
 def test_a_yaml_file_without_what_it_needs_is_refused(tmp_path: Path) -> None:

@@ -20,9 +20,9 @@ from aionode.transport._network import network_from
 @pytest.fixture
 async def talker(node_factory: Callable[..., Node]) -> Node:
     """A node that publishes /chatter."""
-    made = node_factory("talker")
-    made.create_publisher(String, "/chatter", 10)
-    return made
+    talking = node_factory("talker")
+    talking.create_publisher(String, "/chatter", 10)
+    return talking
 
 
 async def findings(tool: Node, screen: Any, *names: str) -> tuple[int, list[dict[str, str]]]:
@@ -38,9 +38,9 @@ async def test_a_sound_system_has_no_problem(
     """No findings, and the status of success."""
     node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
 
-    status, found = await findings(tool, screen)
+    status, finding = await findings(tool, screen)
 
-    assert (status, found) == (0, [])
+    assert (status, finding) == (0, [])
     assert screen.records[0]["nodes"] == 2
 
 
@@ -50,13 +50,15 @@ async def test_two_types_do_not_communicate(
     """The finding names both types and their nodes."""
     node_factory("listener").create_subscription(Int8, "/chatter", lambda msg: None)
 
-    status, (found,) = await findings(tool, screen)
+    status, (finding,) = await findings(tool, screen)
 
     assert status == 1
-    assert found["severity"] == "problem"
-    assert found["subject"] == "topic /chatter"
-    assert "publisher of /talker and subscription of /listener do not communicate" in found["text"]
-    assert "their types are std_msgs/msg/String and std_msgs/msg/Int8" in found["text"]
+    assert finding["severity"] == "problem"
+    assert finding["subject"] == "topic /chatter"
+    assert (
+        "publisher of /talker and subscription of /listener do not communicate" in finding["text"]
+    )
+    assert "their types are std_msgs/msg/String and std_msgs/msg/Int8" in finding["text"]
 
 
 async def test_two_definitions_of_one_type_do_not_communicate(
@@ -73,9 +75,9 @@ async def test_two_definitions_of_one_type_do_not_communicate(
     node_factory("talker").create_publisher(Words, "/words", 1)
     node_factory("listener").create_subscription(Other, "/words", lambda msg: None)
 
-    _, (found,) = await findings(tool, screen)
+    _, (finding,) = await findings(tool, screen)
 
-    assert "their definitions of tutorial/msg/Words differ" in found["text"]
+    assert "their definitions of tutorial/msg/Words differ" in finding["text"]
 
 
 async def test_qos_that_does_not_fit_is_explained(
@@ -86,9 +88,9 @@ async def test_qos_that_does_not_fit_is_explained(
     node_factory("talker").create_publisher(String, "/chatter", weak)
     node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
 
-    _, (found,) = await findings(tool, screen)
+    _, (finding,) = await findings(tool, screen)
 
-    assert "QoS reliability: offered best_effort, requested reliable" in found["text"]
+    assert "QoS reliability: offered best_effort, requested reliable" in finding["text"]
 
 
 async def test_nearly_equal_names_are_found(
@@ -97,14 +99,14 @@ async def test_nearly_equal_names_are_found(
     """The most common reason, with a remedy that can be typed."""
     node_factory("listener").create_subscription(String, "/robot/chatter", lambda msg: None)
 
-    status, (found,) = await findings(tool, screen)
+    status, (finding,) = await findings(tool, screen)
 
     assert status == 1
     assert (
         "subscription of /listener is waiting, but the publisher of /talker uses /chatter"
-        in (found["text"])
+        in (finding["text"])
     )
-    assert found["remedy"] == "rename one of them: --ros-args -r /robot/chatter:=/chatter"
+    assert finding["remedy"] == "rename one of them: --ros-args -r /robot/chatter:=/chatter"
 
 
 async def test_a_client_without_a_server_is_a_hint(
@@ -113,11 +115,11 @@ async def test_a_client_without_a_server_is_a_hint(
     """It may start later, so the status is still that of success."""
     node_factory("client").create_client(AddTwoInts, "/add_two_ints")
 
-    status, (found,) = await findings(tool, screen)
+    status, (finding,) = await findings(tool, screen)
 
     assert status == 0
-    assert found["severity"] == "hint"
-    assert found["text"] == "the client of /client is waiting: there is no server"
+    assert finding["severity"] == "hint"
+    assert finding["text"] == "the client of /client is waiting: there is no server"
 
 
 async def test_two_nodes_of_one_name_are_a_hint(
@@ -127,9 +129,9 @@ async def test_two_nodes_of_one_name_are_a_hint(
     node_factory("twin")
     node_factory("twin")
 
-    _, (found,) = await findings(tool, screen)
+    _, (finding,) = await findings(tool, screen)
 
-    assert found["subject"] == "/twin"
+    assert finding["subject"] == "/twin"
 
 
 async def test_names_narrow_the_view(
@@ -139,9 +141,9 @@ async def test_names_narrow_the_view(
     node_factory("listener").create_subscription(String, "/chater", lambda msg: None)
     node_factory("client").create_client(AddTwoInts, "/add_two_ints")
 
-    _, (found,) = await findings(tool, screen, "/chatter")
+    _, (finding,) = await findings(tool, screen, "/chatter")
 
-    assert found["subject"] == "topic /chater"
+    assert finding["subject"] == "topic /chater"
 
 
 async def test_an_unknown_name_is_an_error(tool: Node, talker: Node, screen: Any) -> None:
@@ -180,24 +182,24 @@ def test_what_keeps_nodes_from_being_found(
     """Settings are the usual reason when no node is found."""
     options: dict[str, Any] = {"has_router": False, "domains": [], "alone": False, **state}
 
-    (found,) = network_findings(network_from(environ), environ, **options)
+    (finding,) = network_findings(network_from(environ), environ, **options)
 
-    assert found.subject == subject
+    assert finding.subject == subject
 
 
 def test_a_normal_network_is_not_remarked_on() -> None:
     """No finding for default settings or for the RMW that aionode communicates with."""
     environ = {"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
 
-    found = network_findings(
+    finding = network_findings(
         network_from(environ), environ, has_router=False, domains=[], alone=False
     )
 
-    assert found == []
+    assert finding == []
 
 
 @pytest.mark.parametrize(
-    ("one", "other", "alike"),
+    ("name", "other", "alike"),
     [
         ("/chatter", "/Chatter", True),
         ("/chatter", "/robot/chatter", True),
@@ -210,9 +212,9 @@ def test_a_normal_network_is_not_remarked_on() -> None:
         ("/first/get_parameters", "/talker/get_parameters", False),
     ],
 )
-def test_names_that_are_alike(one: str, other: str, alike: bool) -> None:
+def test_names_that_are_alike(name: str, other: str, alike: bool) -> None:
     """Different words are not a misspelling."""
-    assert (likeness(one, other) >= ALIKE) is alike
+    assert (likeness(name, other) >= ALIKE) is alike
 
 
 def test_the_nearest_name_is_suggested() -> None:
@@ -231,9 +233,9 @@ async def test_services_of_another_node_are_no_misspelling(
     node_factory("first").create_service(AddTwoInts, "~/add", lambda request, response: response)
     node_factory("client").create_client(AddTwoInts, "/second/add")
 
-    status, (found,) = await findings(tool, screen)
+    status, (finding,) = await findings(tool, screen)
 
-    assert (status, found["text"]) == (0, "the client of /client is waiting: there is no server")
+    assert (status, finding["text"]) == (0, "the client of /client is waiting: there is no server")
 
 
 async def test_two_servers_of_one_service_are_a_hint(
@@ -243,7 +245,7 @@ async def test_two_servers_of_one_service_are_a_hint(
     for name in ("one", "two"):
         node_factory(name).create_service(AddTwoInts, "/add", lambda request, response: response)
 
-    status, (found,) = await findings(tool, screen)
+    status, (finding,) = await findings(tool, screen)
 
-    assert (status, found["severity"], found["subject"]) == (0, "hint", "service /add")
-    assert found["text"].startswith("it has 2 servers, of /one, /two: each request goes to all")
+    assert (status, finding["severity"], finding["subject"]) == (0, "hint", "service /add")
+    assert finding["text"].startswith("it has 2 servers, of /one, /two: each request goes to all")

@@ -29,8 +29,8 @@ def env() -> Iterator[dict[str, str]]:
             liveliness = session.liveliness()
             publisher = f"%/%/robot/%chatter/{TYPE}/TypeHashNotSupported/::,10:,:,:,,"
             tokens = [
-                liveliness.declare_token(f"{place}/{one}")
-                for one in ("0/NN/%/%/robot", f"1/MP/{publisher}")
+                liveliness.declare_token(f"{place}/{token}")
+                for token in ("0/NN/%/%/robot", f"1/MP/{publisher}")
             ]
             yield {**os.environ, **isolated}
             del tokens  # kept until here: a token is withdrawn when it is collected

@@ -73,12 +73,12 @@ class Robot:
 
     def gid_of_publisher(self, name: str) -> bytes:
         """Return the gid of the publisher of a topic, as its token has it."""
-        (found,) = (
+        (publisher,) = (
             endpoint
             for endpoint in self._endpoints
             if (endpoint.kind, endpoint.name) == (EndpointKind.PUBLISHER, name)
         )
-        return gid_of(endpoint_token(DOMAIN_ID, found))
+        return gid_of(endpoint_token(DOMAIN_ID, publisher))
 
     def let_guests_come_and_go(self, ended: threading.Event) -> None:
         """Change the graph a hundred times a second, until `ended`; runs in a thread."""
@@ -140,7 +140,7 @@ async def test_lists_beside_a_large_robot_are_complete(robot: Robot, screen: Any
     assert NODES < len(nodes) <= NODES + 2 * GUESTS
     topics = [record for record in screen.records if record["name"].startswith("/t")]
     assert sorted(names[len(nodes) :]) == sorted(f"/t{topic}" for topic in range(TOPICS))
-    assert all(one["publishers"] == one["subscriptions"] == 1 for one in topics)
+    assert all(record["publishers"] == record["subscriptions"] == 1 for record in topics)
 
 
 @pytest.mark.one_loop
@@ -173,7 +173,7 @@ async def test_one_topic_of_a_large_robot_is_shown_with_its_rate(
                 measuring.cancel()
 
     shown, *rates = screen.records
-    assert [one["node"] for one in shown["publishers"]] == ["/node_7"]
-    assert [one["node"] for one in shown["subscriptions"]] == ["/node_6"]
+    assert [record["node"] for record in shown["publishers"]] == ["/node_7"]
+    assert [record["node"] for record in shown["subscriptions"]] == ["/node_6"]
     assert shown["publishers"][0]["gid"] == gid.hex()
     assert rates[-1]["window"] > rates[0]["window"]

@@ -26,9 +26,9 @@ class Camera(LifecycleNode):
 async def camera(node_factory: Callable[..., Any]) -> Camera:
     """A managed node that runs, beside one that is not managed."""
     node_factory("talker")
-    made: Camera = node_factory(Camera, "camera")
+    camera_node: Camera = node_factory(Camera, "camera")
     await settle()
-    return made
+    return camera_node
 
 
 async def test_nodes_lists_managed_nodes_only(tool: Node, camera: Camera, screen: Any) -> None:

@@ -34,10 +34,10 @@ from aionode.interfaces.rcl_interfaces.msg import (
 @pytest.fixture
 async def owner(node_factory: Callable[..., Node]) -> Node:
     """A node with the parameters of the recorded session."""
-    made = node_factory("param_node")
-    made.declare_parameter("name", "bob")
-    made.declare_parameter("speed", 1.5)
-    return made
+    node = node_factory("param_node")
+    node.declare_parameter("name", "bob")
+    node.declare_parameter("speed", 1.5)
+    return node
 
 
 async def test_list_prints_names_indented(tool: Node, owner: Node, screen: Any) -> None:
@@ -364,11 +364,11 @@ def test_every_value_goes_through_a_parameter_file(values: dict[str, Any]) -> No
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "values.yaml"
         file.write_text(text)
-        found = matching_parameters(read_parameter_file(file), "/node")
+        loaded = matching_parameters(read_parameter_file(file), "/node")
 
-    after = [like(before[name], name, value) for name, value in found.items()]
-    assert [one.to_parameter_msg() for one in after] == [
-        before[one.name].to_parameter_msg() for one in after
+    after = [like(before[name], name, value) for name, value in loaded.items()]
+    assert [parameter.to_parameter_msg() for parameter in after] == [
+        before[parameter.name].to_parameter_msg() for parameter in after
     ]
     assert len(after) == len(before)
 

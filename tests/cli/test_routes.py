@@ -87,12 +87,12 @@ def test_a_link_that_should_be_there_is_a_hint(version: int, text: str, remedy: 
     known = advertisements(a="1/host/1000", b=f"{version}/host/1000")
 
     pairs = pairs_of([TALKER, LISTENER, other], known)
-    (found,) = link_findings(pairs)
+    (finding,) = link_findings(pairs)
 
     assert [pair.route for pair in pairs] == ["zenoh", "zenoh"]
-    assert (found.severity, found.subject) == ("hint", "link")
-    assert f"the processes of /talker and /listener {text}" in found.text
-    assert remedy in found.remedy
+    assert (finding.severity, finding.subject) == ("hint", "link")
+    assert f"the processes of /talker and /listener {text}" in finding.text
+    assert remedy in finding.remedy
 
 
 async def test_the_doctor_shows_the_routes_of_the_given_names(

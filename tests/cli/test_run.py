@@ -47,10 +47,10 @@ def test_a_class_or_function_is_found_in_a_module_or_file(
     source: str, name: str, program: Path
 ) -> None:
     """Installed, or in the current folder."""
-    found = node_maker(f"{source}:{name}")
+    maker = node_maker(f"{source}:{name}")
 
-    assert callable(found)
-    assert found.__name__ == name
+    assert callable(maker)
+    assert maker.__name__ == name
 
 
 @pytest.mark.parametrize(

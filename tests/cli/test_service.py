@@ -26,9 +26,9 @@ def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInt
 @pytest.fixture
 async def server(node_factory: Callable[..., Node]) -> Node:
     """A node that adds, without parameter services, so that the list is short."""
-    made = node_factory("add_server", start_parameter_services=False)
-    made.create_service(AddTwoInts, "/add_two_ints", add)
-    return made
+    server_node = node_factory("add_server", start_parameter_services=False)
+    server_node.create_service(AddTwoInts, "/add_two_ints", add)
+    return server_node
 
 
 async def test_call_prints_request_and_response(tool: Node, server: Node, screen: Any) -> None:

@@ -18,15 +18,15 @@ from aionode.testing import ManualClock, settle
 @pytest.fixture
 async def server(node_factory: Callable[..., Node]) -> Node:
     """A node with a service that is introspected."""
-    made = node_factory("add_server")
+    node = node_factory("add_server")
 
     def add(request: AddTwoInts.Request, response: AddTwoInts.Response) -> AddTwoInts.Response:
         response.sum = request.a + request.b
         return response
 
-    service = made.create_service(AddTwoInts, "/add_two_ints", add)
-    service.configure_introspection(made.get_clock(), 10, ServiceIntrospectionState.CONTENTS)
-    return made
+    service = node.create_service(AddTwoInts, "/add_two_ints", add)
+    service.configure_introspection(node.get_clock(), 10, ServiceIntrospectionState.CONTENTS)
+    return node
 
 
 async def echoed(running: Any, tool: Node, server: Node, **options: Any) -> None:

@@ -366,7 +366,7 @@ def test_the_shell_is_offered_what_is_on_the_network(
     *before, incomplete = words
     completions = shell.get_completions(before, incomplete)
 
-    assert [(each.type, each.value) for each in completions] == [
+    assert [(completion_item.type, completion_item.value) for completion_item in completions] == [
         ("plain", name) for name in offered
     ]
     assert capfd.readouterr() == ("", "")

@@ -34,8 +34,8 @@ NUMBERS: dict[str, float | None] = dict.fromkeys(
 
 def test_echo_prints_as_tf2_echo() -> None:
     """Also the nanoseconds, which tf2_echo does not fill up with zeros."""
-    found = transform("map", "base", 12.000005, (1.0, -2.0, 0.5), yaw=math.pi / 2)
-    assert echo_text(found) == (
+    received = transform("map", "base", 12.000005, (1.0, -2.0, 0.5), yaw=math.pi / 2)
+    assert echo_text(received) == (
         "At time 12.5000\n"
         "- Translation: [1.000, -2.000, 0.500]\n"
         "- Rotation: in Quaternion [0.000, 0.000, 0.707, 0.707]\n"
@@ -183,9 +183,9 @@ async def test_static_publishes_until_it_is_stopped(
     buffer = Buffer(node_factory("node"))
     options = NUMBERS | {"x": 1.0, "yaw": math.pi / 2}
     async with running(send_static(tool, "base", "camera", output=screen.output, **options)):
-        found = await buffer.wait_for_transform("base", "camera", timeout_sec=5.0)
-    assert found.transform.translation.x == 1.0
-    assert found.transform.rotation.z == pytest.approx(math.sqrt(0.5))
+        received = await buffer.wait_for_transform("base", "camera", timeout_sec=5.0)
+    assert received.transform.translation.x == 1.0
+    assert received.transform.rotation.z == pytest.approx(math.sqrt(0.5))
     assert screen.text == (
         "Spinning until stopped - publishing transform from 'base' to 'camera'\n"
     )

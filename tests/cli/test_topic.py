@@ -17,10 +17,10 @@ from aionode.interfaces.std_msgs.msg import Int8, String
 @pytest.fixture
 async def talker(node_factory: Callable[..., Node]) -> Node:
     """A node that publishes /chatter, and another one that listens."""
-    made = node_factory("talker")
-    made.create_publisher(String, "/chatter", 10)
+    node = node_factory("talker")
+    node.create_publisher(String, "/chatter", 10)
     node_factory("listener").create_subscription(String, "/chatter", qos_profile=10)
-    return made
+    return node
 
 
 async def test_list_prints_what_ros2_prints(tool: Node, talker: Node, screen: Any) -> None:

@@ -24,11 +24,11 @@ from aionode.transport.local import LocalTransport
 @pytest.fixture
 async def talker(node_factory: Callable[..., Node], manual_clock: ManualClock) -> Node:
     """A node that publishes 20 bytes on /chatter, 5 times a second."""
-    made = node_factory("talker")
-    publisher = made.create_publisher(String, "/chatter", 10)
-    made.create_timer(0.2, lambda: publisher.publish(String(data="Hello 00000")))
+    node = node_factory("talker")
+    publisher = node.create_publisher(String, "/chatter", 10)
+    node.create_timer(0.2, lambda: publisher.publish(String(data="Hello 00000")))
     await manual_clock.advance(0.05)  # so that no message arrives just when rates are printed
-    return made
+    return node
 
 
 async def test_hz_prints_the_rate_once_a_second(

@@ -65,9 +65,9 @@ async def test_echo_learns_a_type_from_the_node_that_publishes_it(
 ) -> None:
     """ros2 needs the package on the inspecting machine."""
     publisher = node_factory("talker").create_publisher(Words, "/words", 1)
-    found = await topic_type(tool, "/words")
+    learned = await topic_type(tool, "/words")
 
-    assert found is not Words
+    assert learned is not Words
     async with running(echo(tool, "/words", field="text", output=screen.output)):
         publisher.publish(Words(text="hello"))
         await settle()
@@ -137,10 +137,10 @@ async def test_another_definition_of_a_known_type_is_learnt(
 
     node_factory("talker").create_publisher(String, "/text", 1)
 
-    found = await topic_type(tool, "/text")
+    learned = await topic_type(tool, "/text")
 
-    assert found is not None
-    assert type_hash(found) == type_hash(String)
+    assert learned is not None
+    assert type_hash(learned) == type_hash(String)
 
 
 async def test_an_action_that_is_known_is_not_asked_for(tool: Node) -> None:

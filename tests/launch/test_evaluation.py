@@ -375,7 +375,7 @@ def test_the_arguments_of_a_file_can_be_listed(files: Files) -> None:
         )
     )
 
-    assert [(one.name, one.default, one.choices) for one in plan.declared] == [
+    assert [(argument.name, argument.default, argument.choices) for argument in plan.declared] == [
         ("robot", None, ("a", "b")),
         ("speed", "'1.0'", None),
     ]

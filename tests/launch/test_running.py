@@ -221,7 +221,7 @@ async def test_a_container_of_another_program_is_asked_to_load_its_nodes(robot: 
         container.create_service(LoadNode, "/c/_container/load_node", load)
         await run_plan(plan, system)
 
-    assert [(one.node_name, one.node_namespace) for one in asked] == [("eye", "/head"), ("", "")]
+    assert [(item.node_name, item.node_namespace) for item in asked] == [("eye", "/head"), ("", "")]
     assert (list(asked[0].remap_rules), asked[0].parameters[0].value.double_value) == (
         ["image:=picture"],
         5.0,
@@ -260,7 +260,7 @@ async def test_a_program_that_changes_is_restarted(robot: Robot) -> None:
     )
     async with robot.system as system, asyncio.TaskGroup() as tasks:
         running = tasks.create_task(run_plan(plan, system, watch=True))
-        await until(lambda: [one.state for one in system.status().values()] == ["failed"] * 2)
+        await until(lambda: [item.state for item in system.status().values()] == ["failed"] * 2)
         os.utime(programs[0], (0, 0))
         await until(lambda: system.status()["ending-1"].restarts)
         assert system.status()["other-2"].restarts == 0

@@ -144,8 +144,8 @@ def check_crowd(ends: Path, log: Path, seconds: float) -> None:
     gaps = 0
     files = sorted(log.glob("chatty.log*"), key=age, reverse=True)
     for file in files:
-        for found in re.finditer(rb" (\d{98})\n", file.read_bytes()):
-            number = int(found[1])
+        for match in re.finditer(rb" (\d{98})\n", file.read_bytes()):
+            number = int(match[1])
             gaps += numbers > 0 and number != last + 1
             numbers, last = numbers + 1, number
     rate = numbers * 99 / seconds / 1e6

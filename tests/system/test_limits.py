@@ -41,7 +41,9 @@ def limit(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[str, str]]:
     known = (parent / "cgroup.controllers").read_text().split()
     enabled = parent / "cgroup.subtree_control"
     before = enabled.read_text().split()
-    controller = next((one for one in LIMITS if one in known), None)
+    controller = next(
+        (controller_name for controller_name in LIMITS if controller_name in known), None
+    )
     if controller is None or not os.access(enabled, os.W_OK):
         pytest.skip(f"no controller of {', '.join(LIMITS)} in cgroup v2 here")
     monkeypatch.setattr(Limits, "settings", lambda _: dict([LIMITS[controller]]))

@@ -32,7 +32,10 @@ def test_as_json_each_line_is_a_record() -> None:
     log.close()
     records = [json.loads(line) for line in stream.getvalue().splitlines()]
 
-    assert [(one["name"], one["text"]) for one in records] == [("driver", "one"), ("driver", "�")]
+    assert [(record["name"], record["text"]) for record in records] == [
+        ("driver", "one"),
+        ("driver", "�"),
+    ]
 
 
 def test_names_have_colours_on_request() -> None:

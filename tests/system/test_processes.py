@@ -224,7 +224,7 @@ async def test_members_end_in_order_and_leave_nothing_when_the_guardian_was_kill
             system.process(name, ["sh", "-c", script, name])
         system.process("forking", ["sh", "-c", forking], term_after_sec=0.1)
         await until(lambda: orphan.exists() and orphan.read_text())
-        await until(lambda: all(system.log.last_lines(one) for one in ("first", "second")))
+        await until(lambda: all(system.log.last_lines(member) for member in ("first", "second")))
         guardian().kill()
         await system.wait()
         assert not system.health().ok
@@ -435,21 +435,21 @@ class Beacon(Node):
 
 async def test_a_node_runs_as_tasks_with_its_parameters_and_name(system: System) -> None:
     """One class can be there twice, under two names."""
-    made: list[Beacon] = []
+    nodes: list[Beacon] = []
 
     def make() -> Beacon:
-        made.append(Beacon())
-        return made[-1]
+        nodes.append(Beacon())
+        return nodes[-1]
 
     async with system:
         system.node("left", make, parameters={"text": "1.0"}, namespace="robot")
         system.node("right", make)
         await system.ready()
 
-        assert [node.get_fully_qualified_name() for node in made] == ["/robot/left", "/right"]
-        assert made[0].get_parameter("text").value == "1.0"
+        assert [node.get_fully_qualified_name() for node in nodes] == ["/robot/left", "/right"]
+        assert nodes[0].get_parameter("text").value == "1.0"
         assert system.status()["left"].pid == os.getpid()
-        made[1].destroy_node()
+        nodes[1].destroy_node()
         await until(lambda: system.status()["right"].state == "ended")
 
 
@@ -514,17 +514,17 @@ async def test_what_is_awaited_comes_with_the_node_that_has_it(system: System) -
 
 async def test_a_node_that_fails_is_restarted(system: System) -> None:
     """As a process is, by the same policy."""
-    made: list[Beacon] = []
+    nodes: list[Beacon] = []
 
     def make() -> Beacon:
-        made.append(Beacon())
-        if len(made) == 1:
-            made[0].create_timer(0.01, lambda: 1 // 0)
-        return made[-1]
+        nodes.append(Beacon())
+        if len(nodes) == 1:
+            nodes[0].create_timer(0.01, lambda: 1 // 0)
+        return nodes[-1]
 
     async with system:
         system.node("beacon", make, restart="on-failure", min_delay_sec=0.0)
-        await until(lambda: len(made) == 2)
+        await until(lambda: len(nodes) == 2)
         await system.ready()
 
         assert system.status()["beacon"].restarts == 1

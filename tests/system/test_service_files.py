@@ -20,8 +20,8 @@ EXAMPLES = ROOT / "examples"
 def instructions() -> list[tuple[str, str]]:
     """The instructions of the Dockerfile, and what follows them."""
     lines = (EXAMPLES / "Dockerfile").read_text(encoding="utf-8").splitlines()
-    found = [line.partition(" ") for line in lines if not line.startswith("#")]
-    return [(instruction, rest) for instruction, _, rest in found]
+    words = [line.partition(" ") for line in lines if not line.startswith("#")]
+    return [(instruction, rest) for instruction, _, rest in words]
 
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
@@ -69,7 +69,9 @@ def test_the_image_has_what_the_package_is_built_from(instructions: list[tuple[s
 def test_the_container_runs_the_robot_and_stops_it(instructions: list[tuple[str, str]]) -> None:
     """The command is a list, so that the signal reaches the system and not a shell."""
     places = [rest.split() for name, rest in instructions if name == "COPY"]
-    folder = next(source for source, place in (one[-2:] for one in places) if place == "/robot")
+    folder = next(
+        source for source, place in (copied[-2:] for copied in places) if place == "/robot"
+    )
     command = json.loads(dict(instructions)["CMD"])
 
     assert dict(instructions)["WORKDIR"] == "/robot"

@@ -37,22 +37,24 @@ def real(path: str, arguments: list[str]) -> Any:
 
 def own(path: str, arguments: list[str]) -> Any:
     """Return what aionode would start, or its error."""
-    values = {name: value for name, _, value in (one.partition(":=") for one in arguments)}
+    values = {
+        name: value for name, _, value in (argument.partition(":=") for argument in arguments)
+    }
     with tempfile.TemporaryDirectory() as no_workspace:
         try:
             records = list(Plan(path, values, workspace=no_workspace).records())
         except ValueError as error:
             return str(error)
     kept = [record for record in records if "argv" in record or "container" in record]
-    found = json.loads(json.dumps(kept))
-    for record in found:
+    records = json.loads(json.dumps(kept))
+    for record in records:
         del record["when"], record["where"]
-    return found
+    return records
 
 
-def without_random(found: Any) -> Any:
+def without_random(records: Any) -> Any:
     """Return records without the random ends of temporary paths."""
-    return json.loads(TEMPORARY.sub(r"\1", json.dumps(found)))
+    return json.loads(TEMPORARY.sub(r"\1", json.dumps(records)))
 
 
 def main() -> int:
@@ -61,14 +63,14 @@ def main() -> int:
     arguments = [word for word in words if ":=" in word]
     differ = 0
     for path in (word for word in words if ":=" not in word):
-        expected, found = real(path, arguments), own(path, arguments)
-        if isinstance(expected, str) and isinstance(found, str):
-            print(f"both refuse  {path}\n    {found}")
-        elif without_random(expected) == without_random(found):
-            print(f"same {len(found):4}    {path}")
+        expected, records = real(path, arguments), own(path, arguments)
+        if isinstance(expected, str) and isinstance(records, str):
+            print(f"both refuse  {path}\n    {records}")
+        elif without_random(expected) == without_random(records):
+            print(f"same {len(records):4}    {path}")
         else:
             differ += 1
-            print(f"DIFFERENT    {path}\n    expected {expected}\n    found    {found}")
+            print(f"DIFFERENT    {path}\n    expected {expected}\n    found    {records}")
     return differ
 
 

@@ -101,7 +101,10 @@ def note_components(action: Any, context: Any) -> None:
                     "node": request.node_name,
                     "namespace": request.node_namespace,
                     "remappings": list(request.remap_rules),
-                    "parameters": {one.name: value_of(one.value) for one in request.parameters},
+                    "parameters": {
+                        parameter.name: value_of(parameter.value)
+                        for parameter in request.parameters
+                    },
                 }
             )
 
@@ -110,8 +113,8 @@ def value_of(value: Any) -> Any:
     """Return the value in a message of a parameter."""
     from rclpy.parameter import parameter_value_to_python
 
-    found = parameter_value_to_python(value)
-    return found.tolist() if hasattr(found, "tolist") else plain(found)
+    python_value = parameter_value_to_python(value)
+    return python_value.tolist() if hasattr(python_value, "tolist") else plain(python_value)
 
 
 def visit(entity: Any, context: Any) -> None:
