@@ -141,6 +141,8 @@ class StatefulWriter:
         self._output = output
         self._put = output.put
         self._now_ns = now_ns
+        # Invariants: `sent` <= `_last`, no reader has acknowledged more than `sent`, and
+        # `_unsent` has those of `entries` that are beyond `sent`.
         self._last = 0  # the last sequence number that was written
         self._end = 0  # of the last message that was written, as `Entry.end`
         self._sent_end = 0  # of the last message that was sent

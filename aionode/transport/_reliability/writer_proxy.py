@@ -144,6 +144,7 @@ class WriterProxy:
         self._span = span
         self._output = output
         self._now_ns = now_ns
+        # Invariants: `_delivered` < `next`, and all in `_held` is beyond `next`.
         # Messages that came before an earlier one: item and size by sequence number.
         self._held: dict[int, tuple[Any, int]] = {}
         self._held_bytes = 0

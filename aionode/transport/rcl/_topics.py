@@ -58,8 +58,8 @@ class RclWriter(RclDeclaration, Writer):
         self._publish: Callable[..., int] | None = None
         # Published before the context was open, for late readers.
         self._early: deque[bytes] = deque(maxlen=depth_of(endpoint.qos))
-        self._patient = SendThread("aionode-rcl-patient", state.waker) if self.bounded else None
-        self._queue: SendQueue = (self._patient or state.bulk).send_queue(
+        self._blocking = SendThread("aionode-rcl-blocking", state.waker) if self.bounded else None
+        self._queue: SendQueue = (self._blocking or state.bulk).send_queue(
             depth_of(endpoint.qos), keep_all=self.bounded
         )
         self._queued = self.bounded  # whether messages go through the queue
@@ -122,9 +122,9 @@ class RclWriter(RclDeclaration, Writer):
         if not len(self._queue):
             handle.destroy_when_not_in_use()
         else:
-            (self._patient or self.state.bulk).submit(handle.destroy_when_not_in_use)
-        if self._patient is not None:
-            self._patient.close()
+            (self._blocking or self.state.bulk).submit(handle.destroy_when_not_in_use)
+        if self._blocking is not None:
+            self._blocking.close()
 
     # Messages
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Hashable
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import TYPE_CHECKING, Final
 
 import zenoh
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from aionode.transport.zenoh._announced import AnnouncedLimit
     from aionode.transport.zenoh._control_messages import ControlMessages
 
-__all__ = ["AcknowledgedWriter", "Acknowledgements", "AcknowledgingReader", "submessage_key"]
+__all__ = ["Acknowledgements", "submessage_key"]
 
 PREFIX: Final = "@aionode"
 
@@ -50,27 +50,8 @@ LONGEST_ID: Final = 32
 """Number of characters that the id of a Zenoh session has at most."""
 
 
-class AcknowledgedWriter(Protocol):
-    """A publisher that keeps messages until they are acknowledged."""
-
-    def receive_acknack(self, submessage: Submessage) -> None:
-        """Handle an ACKNACK of one of its readers."""
-
-    def tick(self) -> bool:
-        """Do what is due; return whether to call again."""
-
-    def probe(self) -> bool:
-        """Ask readers for an answer; return whether to call again."""
-
-
-class AcknowledgingReader(Protocol):
-    """A subscription that acknowledges messages."""
-
-    def receive_submessage(self, submessage: Submessage) -> None:
-        """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
-
-    def tick(self) -> bool:
-        """Do what is due; return whether to call again."""
+Receive = Callable[[Submessage], None]
+"""Gives an endpoint a submessage."""
 
 
 class Repeater:
@@ -141,10 +122,10 @@ class Acknowledgements:
         self._announced = announced
         self.present: set[str] = set()
         # By gid below the key of their topic: a submessage counts for no endpoint of another.
-        self._writers: ControlSubscribers[AcknowledgedWriter] = ControlSubscribers(
+        self._writers: ControlSubscribers[Receive] = ControlSubscribers(
             waker, self._receive_acknack, LIMIT
         )
-        self._readers: ControlSubscribers[AcknowledgingReader] = ControlSubscribers(
+        self._readers: ControlSubscribers[Receive] = ControlSubscribers(
             waker, self._receive_submessage, LIMIT
         )
         self._participant = participant
@@ -197,19 +178,19 @@ class Acknowledgements:
         """Return the token of a context that acknowledges."""
         return self._prefix + participant + self._suffix
 
-    def add_writer(self, key: str, gid: bytes, writer: AcknowledgedWriter) -> None:
+    def add_writer(self, key: str, gid: bytes, receive: Receive) -> None:
         """Give a publisher of a topic the ACKNACKs of its readers; twice is the same as once."""
         self._writers.listen(
-            submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid, writer
+            submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid, receive
         )
 
     def remove_writer(self, key: str, gid: bytes) -> None:
         """Give a publisher no more of them."""
         self._writers.unlisten(submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid)
 
-    def add_reader(self, key: str, gid: bytes, reader: AcknowledgingReader) -> None:
+    def add_reader(self, key: str, gid: bytes, receive: Receive) -> None:
         """Give a subscription to a topic what its writers say; twice is the same as once."""
-        self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, reader)
+        self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, receive)
 
     def remove_reader(self, key: str, gid: bytes) -> None:
         """Give a subscription no more of it."""
@@ -226,33 +207,29 @@ class Acknowledgements:
         """
         self._control_messages.put(submessage_key(key, side, participant), data)
 
-    def watch(self, endpoint: AcknowledgedWriter | AcknowledgingReader) -> None:
-        """Call `endpoint.tick` from now on until it returns False."""
+    def watch(self, tick: Callable[[], bool]) -> None:
+        """Call `tick` of an endpoint that waits for something, until it returns False."""
         if self._is_open:
-            self._ticks.add(endpoint.tick)
+            self._ticks.add(tick)
 
-    def probe(self, writer: AcknowledgedWriter) -> None:
-        """Call `writer.probe` from now on until it returns False."""
+    def probe(self, probe: Callable[[], bool]) -> None:
+        """Call `probe` of a publisher from now on, until it returns False."""
         if self._is_open:
-            self._probes.add(writer.probe)
+            self._probes.add(probe)
 
-    def _receive_acknack(
-        self, sample: zenoh.Sample, writers: dict[Hashable, AcknowledgedWriter]
-    ) -> None:
+    def _receive_acknack(self, sample: zenoh.Sample, writers: dict[Hashable, Receive]) -> None:
         submessage = self._unpack(sample)
         if submessage is not None and submessage.kind is SubmessageKind.ACKNACK:
-            writer = writers.get(submessage.writer)
-            if writer is not None:
-                writer.receive_acknack(submessage)
+            receive = writers.get(submessage.writer)
+            if receive is not None:
+                receive(submessage)
 
-    def _receive_submessage(
-        self, sample: zenoh.Sample, readers: dict[Hashable, AcknowledgingReader]
-    ) -> None:
+    def _receive_submessage(self, sample: zenoh.Sample, readers: dict[Hashable, Receive]) -> None:
         submessage = self._unpack(sample)
         if submessage is not None and submessage.kind is not SubmessageKind.ACKNACK:
-            reader = readers.get(submessage.reader)
-            if reader is not None:
-                reader.receive_submessage(submessage)
+            receive = readers.get(submessage.reader)
+            if receive is not None:
+                receive(submessage)
 
     def _unpack(self, sample: zenoh.Sample) -> Submessage | None:
         submessage = unpack(sample.payload.to_bytes())
@@ -269,7 +246,7 @@ class Acknowledgements:
             self._note_present(participant, key)
         elif participant in self.present:
             self.present.discard(participant)
-            self._announced.give_back(participant, key)
+            self._announced.release(participant, key)
             self._gone[participant] = None
             if len(self._gone) > GONE:
                 oldest = next(iter(self._gone))
@@ -277,7 +254,7 @@ class Acknowledgements:
                 self.participants.discard(oldest)
 
     def _note_present(self, participant: str, key: str) -> None:
-        if participant in self.present or not self._announced.take(participant, key):
+        if participant in self.present or not self._announced.admit(participant, key):
             return
         self.present.add(participant)
         self._gone.pop(participant, None)

@@ -55,7 +55,7 @@ class AnnouncedLimit:
         self._used_bytes = 0
         self._of: Counter[str] = Counter()  # by participant
 
-    def take(self, participant: str, key: str) -> bool:
+    def admit(self, participant: str, key: str) -> bool:
         """Count a token that is to be kept; return whether it may be, and log the first refusal."""
         size_bytes = TOKEN_BYTES + len(key)
         own_bytes = self._of[participant] + size_bytes
@@ -70,8 +70,8 @@ class AnnouncedLimit:
         self._judge()
         return True
 
-    def give_back(self, participant: str, key: str) -> None:
-        """Count no more a token that was taken."""
+    def release(self, participant: str, key: str) -> None:
+        """Count no more a token that was admitted."""
         if participant not in self._of:  # everything was forgotten meanwhile
             return
         size_bytes = TOKEN_BYTES + len(key)

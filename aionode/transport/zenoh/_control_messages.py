@@ -52,7 +52,7 @@ class ControlMessages:
     """
 
     def __init__(self, send_thread: SendThread, limit_bytes: int) -> None:
-        self.is_crowded = False
+        self.is_crowded = False  # written by the loop only
         self._queue = send_thread.send_queue(LIMIT, limit_bytes, keep_all=False)
         # Set by the loop only. Threads that put read it once, and a put after the session has
         # closed is an error that is logged.

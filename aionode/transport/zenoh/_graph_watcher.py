@@ -290,10 +290,10 @@ class Watcher:
         if key in self._known or participant == self._state.participant:
             return
         announced = self._state.announced
-        if not announced.take(participant, key):
+        if not announced.admit(participant, key):
             return
         if not self._show(key):
-            announced.give_back(participant, key)
+            announced.release(participant, key)
 
     def _show(self, key: str) -> bool:
         """Add a token to the graph; return whether it belongs there."""
@@ -317,7 +317,7 @@ class Watcher:
         if info is None:
             self._forget_domain(key)
             return
-        self._state.announced.give_back(participant_of(key), key)
+        self._state.announced.release(participant_of(key), key)
         if self._state.announced.left_out and self._filling is None:
             self._filling = asyncio.get_running_loop().call_later(FILL_S, self._fill)
         if self._state.graph is None:

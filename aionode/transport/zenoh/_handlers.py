@@ -12,12 +12,12 @@ from aionode.errors import TransportError
 
 __all__ = [
     "BLOCK",
+    "BLOCKING_PRIORITY",
     "BULK_BYTES",
     "BULK_PRIORITY",
     "CALL_PRIORITY",
     "DROP",
     "LOOP_PRIORITY",
-    "PATIENT_PRIORITY",
     "RETRANSMIT_PRIORITY",
     "direct",
     "reason",
@@ -44,7 +44,7 @@ BULK_PRIORITY = zenoh.Priority.DATA_LOW
 BULK_BYTES = 60_000
 """From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
 
-PATIENT_PRIORITY = zenoh.Priority.BACKGROUND
+BLOCKING_PRIORITY = zenoh.Priority.BACKGROUND
 """Of reliable messages for readers that do not acknowledge, sent from threads with BLOCK."""
 
 DROP = zenoh.CongestionControl.DROP

@@ -49,8 +49,8 @@ class MatchedReaders:
             self.participants.clear()
             self.others.clear()
             self.acknowledging.clear()
-            for each in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self._endpoint.name):
-                self._add(each)
+            for known in graph.endpoints(EndpointKind.SUBSCRIPTION, name=self._endpoint.name):
+                self._add(known)
             self._mute &= self.participants.keys()
         else:
             self.participants.pop(reader.gid, None)

@@ -303,11 +303,11 @@ class ZenohPeerDirectory:
         """Note a token of a session; return whether it counts, or is one too many."""
         keys = self._known.get(zid, set())
         if present and key not in keys:
-            if not self._state.announced.take(zid, key):
+            if not self._state.announced.admit(zid, key):
                 return False
             self._known.setdefault(zid, keys).add(key)
         elif not present and key in keys:
-            self._state.announced.give_back(zid, key)
+            self._state.announced.release(zid, key)
             keys.discard(key)
             self._forget(zid)
         self._classify(zid)

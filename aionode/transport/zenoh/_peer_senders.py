@@ -58,6 +58,7 @@ class PeerSender:
     __slots__ = ("send_thread", "spent_bytes", "unseen_bytes", "written_bytes")
 
     def __init__(self) -> None:
+        # The loop alone uses `spent_bytes` and `send_thread`, and the thread the other two.
         self.spent_bytes = 0
         self.unseen_bytes = UNSEEN_BYTES
         self.written_bytes = 0
@@ -82,6 +83,7 @@ class PeerSenders:
         self.is_crowded = False
         self._waker = waker
         self._progress = progress
+        # Set to end the waits of jobs, and then replaced: each job has the one of its time.
         self._stopped = threading.Event()
         # By participant.
         self._peers: dict[str, PeerSender] = {}

@@ -29,10 +29,10 @@ from aionode.transport.zenoh._delivery import (
     withdraw,
 )
 from aionode.transport.zenoh._handlers import (
+    BLOCKING_PRIORITY,
     BULK_BYTES,
     BULK_PRIORITY,
     LOOP_PRIORITY,
-    PATIENT_PRIORITY,
     direct,
     reason,
 )
@@ -87,6 +87,8 @@ class ZenohWriter(Declaration, Writer):
         # None until it is needed, as it takes a while to make; `_update` does that, so that no
         # callback has to.
         self._encode: Callable[[Any], bytes] | None = None
+        # Set by the loop only. A thread puts into the one that its job was given, and the same
+        # thread undeclares that after its last job (`_withdraw`).
         self._publisher: zenoh.Publisher | ext.AdvancedPublisher | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
         # Whether Zenoh has subscribers, those without a token included; its listener tells.
@@ -125,15 +127,15 @@ class ZenohWriter(Declaration, Writer):
         # Whether any reader wants a message; None if one wants all, or may be there unseen.
         self._wants: Callable[[Any], bool] | None = None
         self._filtered = 0
-        # Messages for readers that do not acknowledge, once it was needed; from then on it is used
-        # for all messages, to keep the order.
-        self._patient: SendQueue | None = None
-        self._patient_sender = SendThread("aionode-patient", state.waker)
-        self._patient_publisher: zenoh.Publisher | None = None
+        # Messages for readers that do not acknowledge, sent by a thread that blocks. There is none
+        # until it is needed; from then on it is used for all messages, to keep the order.
+        self._blocking: SendQueue | None = None
+        self._blocking_thread = SendThread("aionode-blocking", state.waker)
+        self._blocking_publisher: zenoh.Publisher | None = None
         # Clear while `drain` waits for acknowledgements.
         self._drained = asyncio.Event()
         self._dropped = 0
-        self._given_up = state.queue(self.lost)
+        self._given_up = state.queue(self.lost)  # from the thread that blocks to the loop
         self._closed = False
         self._ends_ns = 0  # when a lingering publisher gives up
         self._moved: tuple[int, ...] = ()
@@ -177,7 +179,7 @@ class ZenohWriter(Declaration, Writer):
             session,
             self._key,
             self._depth,
-            PATIENT_PRIORITY if self.bounded else BULK_PRIORITY,
+            BLOCKING_PRIORITY if self.bounded else BULK_PRIORITY,
             reliable=self._reliable,
             waits=self.bounded,
             numbered=self.recovers,
@@ -189,7 +191,7 @@ class ZenohWriter(Declaration, Writer):
             if not self.is_done():
                 return True  # once more, after another lifespan
             before, self._publisher = self._publisher, self._declare_keeping(self.state.session)
-            self._patient_sender.submit(partial(withdraw, before))
+            self._blocking_thread.submit(partial(withdraw, before))
         return False
 
     def undeclare_data(self) -> None:
@@ -214,7 +216,7 @@ class ZenohWriter(Declaration, Writer):
         return (
             (self._history is None or self._history.done)
             and not len(self._large)
-            and (self._patient is None or not len(self._patient))
+            and (self._blocking is None or not len(self._blocking))
             and (self._stop is None or not self._stop.is_repeated)
         )
 
@@ -240,17 +242,17 @@ class ZenohWriter(Declaration, Writer):
         """Undeclare, in the thread that may be using the publisher: Zenoh locks it meanwhile."""
         self.state.acknowledgements.remove_writer(self._key, self.gid)
         publisher, self._publisher = self._publisher, None
-        patient, self._patient_publisher = self._patient_publisher, None
-        if self._patient is not None:
-            self._patient = None
+        blocking, self._blocking_publisher = self._blocking_publisher, None
+        if self._blocking is not None:
+            self._blocking = None
             self._update_route()
-            if patient is not None:
-                self._patient_sender.submit(partial(withdraw, patient))
+            if blocking is not None:
+                self._blocking_thread.submit(partial(withdraw, blocking))
             elif publisher is not None:  # it is the thread's own
-                self._patient_sender.submit(partial(withdraw, publisher))
+                self._blocking_thread.submit(partial(withdraw, publisher))
                 publisher = None
-        self.state.send_threads.discard(self._patient_sender)
-        self._patient_sender.close()
+        self.state.send_threads.discard(self._blocking_thread)
+        self._blocking_thread.close()
         if publisher is None:
             return
         if len(self._large):
@@ -300,10 +302,12 @@ class ZenohWriter(Declaration, Writer):
             for known in acknowledging if gid is None else acknowledging.keys() & {gid}:
                 reader = history.readers.get(known)
                 if reader is None or reader.away_until_ns:
-                    self.state.acknowledgements.add_writer(self._key, self.gid, self)
+                    self.state.acknowledgements.add_writer(
+                        self._key, self.gid, self.receive_acknack
+                    )
                     history.add(known, acknowledging[known])
         if self.bounded and history.readers:
-            self.state.acknowledgements.probe(self)
+            self.state.acknowledgements.probe(history.probe)
         elif not self._is_watched and history.readers:  # one that is away may be to be given up
             self._watch()
         self._progress()
@@ -346,7 +350,7 @@ class ZenohWriter(Declaration, Writer):
 
     def _abandon_queues(self) -> None:
         """Drop what waits for a thread."""
-        for send_queue in (self._large, self._patient):
+        for send_queue in (self._large, self._blocking):
             if send_queue is not None:
                 send_queue.abandon()
 
@@ -357,7 +361,7 @@ class ZenohWriter(Declaration, Writer):
 
     def _watch(self) -> None:
         self._is_watched = True
-        self.state.acknowledgements.watch(self)
+        self.state.acknowledgements.watch(self.tick)
 
     def put(self, payload: bytes, extra: bytes) -> None:
         """Send a message to every reader."""
@@ -387,13 +391,13 @@ class ZenohWriter(Declaration, Writer):
             self._large.limit = max(self._depth, LATE) if is_crowded else self._depth
         if (
             self._needs_thread
-            or self._patient is not None
+            or self._blocking is not None
             or (
                 self._may_not_drop
                 and (self.bounded or (size < BULK_BYTES and not self.state.burst.spend(size)))
             )
         ):
-            self._put_patiently(publisher, payload, extra)
+            self._put_blocking(publisher, payload, extra)
         elif size >= BULK_BYTES or self._is_large_used or is_crowded:
             self._is_large_used = True
             send = partial(self._send, publisher, payload, extra)
@@ -411,7 +415,7 @@ class ZenohWriter(Declaration, Writer):
         others = self._history is None or self._history.has_other_readers
         self._may_not_drop = others and self._reliable
         self._is_direct = not (
-            self._patient is not None
+            self._blocking is not None
             or self._needs_thread
             or self._may_not_drop
             or self.state.control_messages.is_crowded
@@ -421,29 +425,29 @@ class ZenohWriter(Declaration, Writer):
         """Have the thread for large messages send all while Zenoh may stand still."""
         self._update_route()
 
-    def _put_patiently(
+    def _put_blocking(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
         """Send from the thread that waits for slow readers."""
-        if self._patient is None:
-            self.state.send_threads.add(self._patient_sender)
+        if self._blocking is None:
+            self.state.send_threads.add(self._blocking_thread)
             limit = max(self._depth, LATE) if self._transient else self._depth
-            self._patient = self._send_queue(self._patient_sender, limit, keep_all=self.bounded)
+            self._blocking = self._send_queue(self._blocking_thread, limit, keep_all=self.bounded)
             self._update_route()
             if not self._transient and self.state.session is not None:
-                self._patient_publisher = declare_plain(
-                    self.state.session, self._key, PATIENT_PRIORITY, reliable=True, waits=True
+                self._blocking_publisher = declare_plain(
+                    self.state.session, self._key, BLOCKING_PRIORITY, reliable=True, waits=True
                 )
         if self._expiry is not None:
             self._expiry.note()
-        patient = self._patient_publisher or publisher
-        send = partial(self._send_patiently, patient, payload, extra)
-        self._patient.put(self._unless_expired(extra, send), len(payload))
+        blocking = self._blocking_publisher or publisher
+        send = partial(self._send_blocking, blocking, payload, extra)
+        self._blocking.put(self._unless_expired(extra, send), len(payload))
 
     def _unless_expired(self, extra: bytes, send: Callable[[], None]) -> Callable[[], None]:
         return unless_expired(extra, self._lifespan_ns, self.state.now_ns, send)
 
-    def _send_patiently(
+    def _send_blocking(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None:
         """Send in the thread. Zenoh gives up after a while without an error, so time tells."""
@@ -471,7 +475,7 @@ class ZenohWriter(Declaration, Writer):
         if not self.bounded:
             return True
         return (self._history is None or self._history.has_room()) and (
-            self._patient is None or self._patient.has_room()
+            self._blocking is None or self._blocking.has_room()
         )
 
     async def drain(self) -> None:
@@ -480,8 +484,8 @@ class ZenohWriter(Declaration, Writer):
             self._drained.clear()
             self._watch()
             await self._drained.wait()
-        if self._patient is not None:
-            await self._patient.drain()
+        if self._blocking is not None:
+            await self._blocking.drain()
         await self._large.drain()
 
     def _progress(self) -> None:
@@ -543,7 +547,7 @@ class ZenohWriter(Declaration, Writer):
                 0 if history is None else history.sent,
                 0 if history is None else sum(r.acked for r in history.readers.values()),
                 self._large.sent,
-                0 if self._patient is None else self._patient.sent,
+                0 if self._blocking is None else self._blocking.sent,
             )
             if moved != self._moved:
                 self._moved, self._moved_ns = moved, now_ns
@@ -552,10 +556,6 @@ class ZenohWriter(Declaration, Writer):
                 return False
             return True
         return again
-
-    def probe(self) -> bool:
-        """Ask readers that have everything for an answer; return whether to call again."""
-        return self._history is not None and self._history.probe()
 
     def lost(self, count: int) -> None:
         """Count dropped messages; the first of a reliable publisher are logged."""

@@ -17,7 +17,7 @@ class RequestRoom:
     """Counts the requests to all services of a context, from their arrival to their end.
 
     A request is kept until its answer was sent, also where the client reads no answers. Threads of
-    Zenoh take room, and whichever thread sends the answer gives it back.
+    Zenoh reserve room, and the thread that sends the answer releases it.
 
     Args:
         limit_bytes: How many bytes they have at most; a single one always fits.
@@ -25,16 +25,17 @@ class RequestRoom:
 
     def __init__(self, limit_bytes: int) -> None:
         self.limit_bytes = limit_bytes
+        # Guards the next three. `_bytes` is always the sum of `_of`, and that of `_requests`.
         self._lock = threading.Lock()
         self._bytes = 0
         self._of: Counter[str] = Counter()  # bytes, by client
         self._requests: dict[int, tuple[str, int]] = {}  # client and bytes, by id of the object
 
-    def take(self, request: object, client: str, size_bytes: int) -> bool:
+    def reserve(self, request: object, client: str, size_bytes: int) -> bool:
         """Return whether there is room for a request, and count it if so.
 
         Args:
-            request: The request; it has to exist until its room is given back.
+            request: The request; it has to exist until its room is released.
             client: Whose it is: each has a share.
             size_bytes: How large it is.
         """
@@ -51,7 +52,7 @@ class RequestRoom:
             self._requests[id(request)] = client, size_bytes
         return True
 
-    def give_back(self, request: object) -> None:
+    def release(self, request: object) -> None:
         """Count a request no more: it has ended."""
         with self._lock:
             client, size_bytes = self._requests.pop(id(request), ("", 0))

@@ -105,11 +105,13 @@ class ZenohServer(Declaration):
         self.srv_type = srv_type
         self._serve = serve
         self._queryable: zenoh.Queryable[None] | None = None
-        self._queue = state.queue(self._take)
+        self._queue = state.queue(self._receive)
         self._refused = 0
         self._note_refused = state.queue(self._report_refused, limit=1)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
-        self._clients: dict[bytes, str] = {}  # the context of each that has a token
+        # The context of each client that has a token. The loop writes, and Zenoh's threads look a
+        # client up: a request of one that has just come or gone counts as one without a token.
+        self._clients: dict[bytes, str] = {}
         self._unwatch: Callable[[], None] | None = None
         state.cancellations.listen(endpoint.name, self.cancel)
         state.add(self)
@@ -137,7 +139,7 @@ class ZenohServer(Declaration):
             self._unwatch = None
         self._clients.clear()
         for query in self._queue.take_out():
-            self.state.request_room.give_back(query)
+            self.state.request_room.release(query)
         for request in list(self.unanswered.values()):
             request.drop()
 
@@ -166,7 +168,7 @@ class ZenohServer(Declaration):
         """
         room = self.state.request_room
         client = self._clients.get(gid_in(query.attachment), "")
-        if len(self._queue) < ARRIVING_REQUESTS and room.take(query, client, size_of(query)):
+        if len(self._queue) < ARRIVING_REQUESTS and room.reserve(query, client, size_of(query)):
             self._queue.put(query)
             return
         self._note_refused.put(None)
@@ -185,15 +187,15 @@ class ZenohServer(Declaration):
                 self.state.queue_bytes / 2**20,
             )
 
-    def _take(self, query: zenoh.Query) -> None:
+    def _receive(self, query: zenoh.Query) -> None:
         sample_info = sample_info_of(query.attachment)
         if sample_info is None:
             if query.attachment is not None:
                 self.state.note_malformed(self.key, "an attachment")
             sample_info = SampleInfo(UNKNOWN_GID, 0, 0)
-        self._take_from(query, sample_info)
+        self._receive_from(query, sample_info)
 
-    def _take_from(self, query: zenoh.Query, sample_info: SampleInfo) -> None:
+    def _receive_from(self, query: zenoh.Query, sample_info: SampleInfo) -> None:
         payload = query.payload
         try:
             message = cdr.decode(
@@ -235,7 +237,7 @@ class ZenohServer(Declaration):
 
         def send() -> None:
             answer(query, reply)
-            room.give_back(query)
+            room.release(query)
 
         self.state.peer_senders.send((self.participant_of(sample_info.gid),), size_bytes, send)
 
@@ -283,7 +285,12 @@ class ZenohRequest(Request):
             return
         query = self._query
         extra = self._server.attachment_of(self.sample_info)
-        self._answer(lambda: query.reply(query.key_expr, payload, attachment=extra), len(payload))
+        self._server.answer(
+            query,
+            self.sample_info,
+            lambda: query.reply(query.key_expr, payload, attachment=extra),
+            len(payload),
+        )
 
     def fail(self, error_type: str, error_text: str) -> None:
         """Send an error; a ROS client logs it and goes on waiting."""
@@ -294,10 +301,7 @@ class ZenohRequest(Request):
     def drop(self) -> None:
         """End the query, which tells the client that nothing will come."""
         if self._finish():
-            self._answer(None, 0)
-
-    def _answer(self, reply: Callable[[], None] | None, size_bytes: int) -> None:
-        self._server.answer(self._query, self.sample_info, reply, size_bytes)
+            self._server.answer(self._query, self.sample_info, None, 0)
 
 
 # Clients
@@ -384,14 +388,16 @@ class ZenohCall:
 
     def __init__(self, requester: ZenohRequester, reply_to: ReplyTo, sequence: int) -> None:
         self._requester = requester
+        # None once the call has ended, and never set again. The loop writes; a thread that sends
+        # reads it, so that no request is sent for a call that has ended.
         self._reply_to: ReplyTo | None = reply_to
         self._sequence = sequence
         self._token = zenoh.CancellationToken()
         self._unreadable: ServiceError | None = None
         self._send_again: Callable[[], None] | None = None
-        self._sent_ns = 0
+        self._sent_ns = 0  # written by the thread that sends, before the loop can get a reply
         self._attempts = 0
-        self._queue = requester.state.queue(self._take)
+        self._queue = requester.state.queue(self._receive)
         requester.unanswered.add(self)
 
     def send(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
@@ -431,7 +437,7 @@ class ZenohCall:
         """End the call soon: it cannot be sent."""
         self._queue.put(None)
 
-    def _take(self, reply: zenoh.Reply | None) -> None:
+    def _receive(self, reply: zenoh.Reply | None) -> None:
         reply_to = self._reply_to
         if reply_to is None:
             return

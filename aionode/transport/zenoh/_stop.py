@@ -46,17 +46,17 @@ class StoppableWriter(Protocol):
     _history: StatefulWriter | None
     _expiry: SilenceAlarm | None
     _large: SendQueue
-    _patient: SendQueue | None
-    _patient_sender: SendThread
+    _blocking: SendQueue | None
+    _blocking_thread: SendThread
 
     def _keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None: ...
     def _abandon_queues(self) -> None: ...
     def _has_unacknowledging(self) -> bool: ...
-    def _send_patiently(
+    def _send_blocking(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None: ...
     def _watch(self) -> None: ...
-    def _put_patiently(
+    def _put_blocking(
         self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
     ) -> None: ...
     def _send(
@@ -133,11 +133,11 @@ class ZenohStop(StopSender):
     def _put(self, payload: bytes, extra: bytes) -> None:
         """Put it where the last message was put."""
         writer = self._writer
-        patient, publisher = writer._patient, writer._publisher
-        if (patient is not None or writer._transient) and publisher is not None:
-            if patient is not None and len(patient):
+        blocking, publisher = writer._blocking, writer._publisher
+        if (blocking is not None or writer._transient) and publisher is not None:
+            if blocking is not None and len(blocking):
                 self.repeat()  # its thread waits for a slow reader, the others do not
-            writer._put_patiently(publisher, payload, extra)
+            writer._put_blocking(publisher, payload, extra)
         elif writer.used_bulk and publisher is not None:
             writer._large.put(partial(writer._send, publisher, payload, extra), len(payload))
         else:
@@ -154,8 +154,8 @@ class ZenohStop(StopSender):
         writer = self._writer
         if writer._transient and writer._publisher is not None:
             # Such a stop is not kept for late readers, who would get the last command.
-            keep = partial(writer._send_patiently, writer._publisher, self._payload, self._extra)
-            writer._patient_sender.submit_past_loop(keep)
+            keep = partial(writer._send_blocking, writer._publisher, self._payload, self._extra)
+            writer._blocking_thread.submit_past_loop(keep)
         if writer._history is not None:
             writer._history.announce_only(sequence)
 

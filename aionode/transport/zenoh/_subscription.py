@@ -90,7 +90,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         # A publisher that gets acknowledgements sends at most a window ahead, and sends again what
         # is dropped here.
         self._queue = state.arrivals(
-            self._take, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
+            self._receive, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
         )
         self._dropped = 0
         self._stateful: StatefulReader | None = None
@@ -119,7 +119,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         """Declare the subscriber; a transient local one gets the history."""
         self._announce_filter(session)
         if self._stateful is not None:
-            self.state.acknowledgements.add_reader(self._key, self.gid, self)
+            self.state.acknowledgements.add_reader(self._key, self.gid, self.receive_submessage)
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
@@ -182,7 +182,7 @@ class ZenohReader(Declaration, ReaderRegistration):
             self.state.assertions.unlisten(self._key, self._reader.note_alive)
         super().close()
 
-    def _take(self, sample: zenoh.Sample) -> None:
+    def _receive(self, sample: zenoh.Sample) -> None:
         extra = sample.attachment
         fields = None if extra is None else unpack_fields(extra.to_bytes())
         sequence, source_ns, gid = fields or self._without_attachment(extra)
@@ -203,7 +203,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         else:
             sample_info = self._held(gid, sequence, source_ns)
             # The history of a transient local publisher may come again.
-            self._take_in_order(proxy, payload, sample_info, is_resent=self._transient)
+            self._receive_in_order(proxy, payload, sample_info, is_resent=self._transient)
             return
         # As `_hand_over`, which would be one more call for each message.
         decode = self._decode
@@ -250,7 +250,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         fits = not waiting or (waiting + 1) * self._largest_bytes <= self.state.queue_bytes
         return fits and self._reader.has_room()
 
-    def _take_in_order(
+    def _receive_in_order(
         self,
         proxy: WriterProxy,
         payload: bytes,
@@ -261,7 +261,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         item, size = (payload, sample_info), len(payload) + OVERHEAD_BYTES
         proxy.receive(sample_info.sequence, item, size, is_resent=is_resent)
         if proxy.lacks:
-            self.state.acknowledgements.watch(self)
+            self._watch()
 
     def accept(self, item: tuple[bytes, SampleInfo], proxy: WriterProxy) -> bool:
         """Take the next message of a writer; return whether it is used, or else waits for room."""
@@ -346,11 +346,12 @@ class ZenohReader(Declaration, ReaderRegistration):
     def receive_submessage(self, submessage: Submessage) -> None:
         """Handle a HEARTBEAT, GAP or DATA of one of its writers."""
         if self._stateful is not None and self._stateful.receive(submessage):
-            self.state.acknowledgements.watch(self)
+            self._watch()
 
-    def tick(self) -> bool:
-        """Ask again for what is missing; return whether to call again."""
-        return self._stateful is not None and self._stateful.tick()
+    def _watch(self) -> None:
+        """Ask again for missing messages until they are here."""
+        if self._stateful is not None:
+            self.state.acknowledgements.watch(self._stateful.tick)
 
     def send(self, participant: str, submessage: bytes) -> None:
         """Send a submessage to the context of a publisher."""

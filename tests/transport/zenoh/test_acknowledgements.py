@@ -24,6 +24,7 @@ from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from aionode.transport._reliability import stateful_writer
 from aionode.transport._reliability import submessage as acknack
+from aionode.transport._reliability.stateful_reader import StatefulReader
 from aionode.transport._reliability.submessage import Submessage, SubmessageKind
 from aionode.transport._send_thread import Worker
 from aionode.transport.zenoh import _acknowledgements as acknowledgements
@@ -33,7 +34,6 @@ from aionode.transport.zenoh import _sockets
 from aionode.transport.zenoh._defects import forgotten_peers
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._subscription import ZenohReader
 from aionode.transport.zenoh._transport import ZenohTransport
 from aionode.wire import cdr
 from tests.support.peers import (
@@ -232,7 +232,7 @@ async def test_of_a_burst_that_no_reader_acknowledges_only_what_is_beyond_the_de
         assert heard == sorted(set(heard), key=int)
         assert len(heard) + publisher.stats.dropped == 5000
         assert (publisher.stats.dropped == 0) is (depth == 5000)
-        assert "aionode-patient" in in_thread
+        assert "aionode-blocking" in in_thread
 
 
 @pytest.mark.parametrize(
@@ -317,8 +317,8 @@ async def test_a_reader_that_never_acknowledges_is_left_to_zenoh_until_it_does(
     """A lie must not hold up a KEEP_ALL publisher; a reader that only began slowly loses little."""
     monkeypatch.setattr(stateful_writer, "MUTE_TICKS", 2)
     heard: list[Submessage] = []
-    receive = ZenohReader.receive_submessage
-    monkeypatch.setattr(ZenohReader, "receive_submessage", lambda _, said: heard.append(said))
+    receive = StatefulReader.receive
+    monkeypatch.setattr(StatefulReader, "receive", lambda _, said: heard.append(said))
     async with two_nodes() as (a, b):
         publisher = a.create_publisher(Int32, "n", KEEP_ALL)
         subscription = b.create_subscription(Int32, "n", None, KEEP_ALL)
@@ -330,7 +330,7 @@ async def test_a_reader_that_never_acknowledges_is_left_to_zenoh_until_it_does(
         publisher.publish(Int32(data=2))
         assert [(await subscription.receive()).data for _ in range(2)] == [1, 2]
 
-        monkeypatch.setattr(ZenohReader, "receive_submessage", receive)
+        monkeypatch.setattr(StatefulReader, "receive", receive)
         lost = heard[0]
         answer = Submessage(ACKNACK, lost.writer, lost.reader, 3, 0, b"")
         writers["/n"].receive_acknack(answer)

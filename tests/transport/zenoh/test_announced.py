@@ -29,7 +29,7 @@ LIMIT = 4_000_000
 
 def taken(limit: AnnouncedLimit, participant: str, count: int) -> int:
     """Return how many of some tokens of a participant were taken."""
-    return sum(limit.take(participant, f"{participant} {number:04}") for number in range(count))
+    return sum(limit.admit(participant, f"{participant} {number:04}") for number in range(count))
 
 
 def test_one_participant_gets_an_eighth() -> None:
@@ -43,8 +43,8 @@ def test_the_size_of_a_token_counts() -> None:
     """A name may have thousands of characters."""
     limit = AnnouncedLimit(LIMIT)
 
-    assert not limit.take("liar", "x" * (LIMIT // 8))
-    assert limit.take("liar", "x" * (LIMIT // 16))
+    assert not limit.admit("liar", "x" * (LIMIT // 8))
+    assert limit.admit("liar", "x" * (LIMIT // 16))
 
 
 def test_a_connected_participant_keeps_its_place() -> None:
@@ -98,7 +98,7 @@ def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> Non
     limit = AnnouncedLimit(LIMIT)
     count = taken(limit, "a", 10_000)
     for number in range(count):
-        limit.give_back("a", f"a {number:04}")
+        limit.release("a", f"a {number:04}")
 
     assert taken(limit, "a", 10_000) == count
     assert limit.left_out == 2 * (10_000 - count)

@@ -65,7 +65,7 @@ async def state() -> AsyncIterator[SessionState]:
     state = SessionState(PARTICIPANT, 42)
     state.waker.open(asyncio.get_running_loop())
     state.announced.left_out = 1
-    state.announced.take("other", "one more")
+    state.announced.admit("other", "one more")
     assert state.control_messages.is_crowded
     yield state
     await state.bulk.flush()
@@ -78,9 +78,9 @@ def test_there_is_a_crowd_while_more_than_some_thousand_tokens_are_kept() -> Non
     told: list[bool] = []
     limit.on_crowded.append(lambda: told.append(limit.is_crowded))
     for number in range(CROWDED + 10):
-        limit.take(str(number % 10), str(number))
+        limit.admit(str(number % 10), str(number))
     for number in range(20):
-        limit.give_back(str(number % 10), str(number))
+        limit.release(str(number % 10), str(number))
 
     assert told == [True, False]
 
@@ -88,7 +88,7 @@ def test_there_is_a_crowd_while_more_than_some_thousand_tokens_are_kept() -> Non
 def test_there_is_a_crowd_while_anything_is_left_out() -> None:
     """Zenoh keeps that too, and nobody knows how much it is."""
     limit = AnnouncedLimit(0)
-    limit.take("liar", "x" * announced.RESERVED_BYTES)
+    limit.admit("liar", "x" * announced.RESERVED_BYTES)
     assert limit.is_crowded
 
     limit.begin_to_fill()
@@ -113,11 +113,11 @@ async def test_messages_wait_for_zenoh_in_a_thread_and_stay_in_order(
         assert (await subscription.receive()).data == 0
 
         monkeypatch.setattr(crowd, "CROWDED", 0)
-        limit.take("other", "one more")
+        limit.admit("other", "one more")
         for number in range(1, 101):
             publisher.publish(Int32(data=number))
         monkeypatch.setattr(crowd, "CROWDED", CROWDED)
-        limit.give_back("other", "one more")
+        limit.release("other", "one more")
         for number in range(101, 111):  # Zenoh may be dropping the rest
             publisher.publish(Int32(data=number))
         assert len(writer_of(publisher)._large) == 110
@@ -162,9 +162,9 @@ async def test_the_loop_puts_again_a_while_after_the_crowd(
     async with quiet_node("talker") as talker:
         writer = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
         monkeypatch.setattr(crowd, "CROWDED", 0)
-        writer.state.announced.take("other", "one more")
+        writer.state.announced.admit("other", "one more")
         monkeypatch.setattr(crowd, "CROWDED", CROWDED)
-        writer.state.announced.give_back("other", "one more")
+        writer.state.announced.release("other", "one more")
         assert not is_direct(writer)
         await until(lambda: is_direct(writer))
 
@@ -177,7 +177,7 @@ async def test_a_publisher_that_is_made_in_a_crowd_uses_the_thread(
     async with quiet_node("talker") as talker:
         before = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
         assert is_direct(before)
-        before.state.announced.take("other", "one more")
+        before.state.announced.admit("other", "one more")
         late = writer_of(talker.create_publisher(Int32, "n", BEST_EFFORT))
         assert not is_direct(late)
         assert not is_direct(before)

@@ -173,13 +173,13 @@ def test_no_client_takes_all_the_room_of_requests() -> None:
     room = RequestRoom(1000)
     requests = [object() for _ in range(3000)]
 
-    assert sum(room.take(each, "a", 1) for each in requests[:1000]) == 750
-    assert sum(room.take(each, "b", 1) for each in requests[1000:2000]) == 188
-    assert room.take(requests[2000], "c", 50)
-    assert not room.take(requests[2001], "d", 50)
+    assert sum(room.reserve(each, "a", 1) for each in requests[:1000]) == 750
+    assert sum(room.reserve(each, "b", 1) for each in requests[1000:2000]) == 188
+    assert room.reserve(requests[2000], "c", 50)
+    assert not room.reserve(requests[2001], "d", 50)
     for each in requests:
-        room.give_back(each)
-    assert room.take(requests[0], "a", 5000)
+        room.release(each)
+    assert room.reserve(requests[0], "a", 5000)
 
 
 async def test_requests_whose_answers_wait_to_be_sent_are_limited_in_bytes(

@@ -154,7 +154,7 @@ class BridgeWatcher:
 
     def _add(self, key: str, token: BridgeToken) -> None:
         tokens = self._tokens.setdefault(token.zid, {})
-        if key in tokens or not self._announced.take(token.zid, key):
+        if key in tokens or not self._announced.admit(token.zid, key):
             if not tokens:
                 del self._tokens[token.zid]
             return
@@ -169,7 +169,7 @@ class BridgeWatcher:
         tokens = self._tokens.get(token.zid, {})
         if tokens.pop(key, None) is None:
             return
-        self._announced.give_back(token.zid, key)
+        self._announced.release(token.zid, key)
         if not tokens:
             del self._tokens[token.zid]
         if not token.kind:

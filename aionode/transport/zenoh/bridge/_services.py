@@ -22,7 +22,7 @@ class BridgeServer(BridgeDeclaration, ZenohServer):
     DDS has no errors: a client of a handler that fails gets no answer.
     """
 
-    def _take(self, query: zenoh.Query) -> None:
+    def _receive(self, query: zenoh.Query) -> None:
         extra = query.attachment
         if query.payload is None or sample_info_of(extra) is not None:
             # No request, or one of a context of aionode, which comes on rmw_zenoh's key too.
@@ -30,7 +30,7 @@ class BridgeServer(BridgeDeclaration, ZenohServer):
             return
         request = None if extra is None else parse_request_id(extra.to_bytes())
         client, sequence = request or (UNKNOWN_GID, 0)
-        self._take_from(query, SampleInfo(client, sequence, 0))
+        self._receive_from(query, SampleInfo(client, sequence, 0))
 
     def attachment_of(self, sample_info: SampleInfo) -> None:
         """Return None: responses through a bridge have no attachment."""

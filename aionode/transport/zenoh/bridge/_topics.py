@@ -57,7 +57,7 @@ class BridgeReader(BridgeDeclaration, ZenohReader):
 
     recovers: ClassVar[bool] = False
 
-    def _take(self, sample: zenoh.Sample) -> None:
+    def _receive(self, sample: zenoh.Sample) -> None:
         if sample.kind != zenoh.SampleKind.PUT or sample_info_of(sample.attachment) is not None:
             return  # of a context of aionode, whose message comes on rmw_zenoh's key too
         payload = sample.payload.to_bytes()
