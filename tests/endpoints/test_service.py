@@ -518,7 +518,7 @@ async def test_nothing_is_left_of_calls_that_ended(node: Node) -> None:
     node.create_service(AddTwoInts, "add", gate, concurrent=True)
     client = node.create_client(AddTwoInts, "add")
     await settle()
-    futures = living(asyncio.Future)
+    futures, requests = living(asyncio.Future), living(LocalRequest)
     calls = [asyncio.get_running_loop().create_task(client.call(Request(a=n))) for n in range(100)]
     await settle()
     for call in calls[:50]:
@@ -529,7 +529,7 @@ async def test_nothing_is_left_of_calls_that_ended(node: Node) -> None:
     calls.clear()
     del call
     assert living(asyncio.Future) < futures + 10
-    assert living(LocalRequest) == 0
+    assert living(LocalRequest) <= requests
 
 
 async def test_too_many_waiting_requests_are_refused_with_an_error(

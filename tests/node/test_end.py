@@ -305,6 +305,7 @@ class Refusing(LocalTransport):
 @pytest.mark.parametrize("refused", ["node", "writer"])
 async def test_half_a_node_does_not_stay_in_its_context(refused: str) -> None:
     """The cause comes out, and the context can be used and left."""
+    writers, readers = living(LocalWriter), living(LocalReader)
     first = LocalTransport()
     transport = Refusing(refused)
     async with Context(transport=[first, transport]) as context:
@@ -312,7 +313,8 @@ async def test_half_a_node_does_not_stay_in_its_context(refused: str) -> None:
             Node("robot", context=context)
         assert "nodes=0" in repr(context)
         assert not context.graph.nodes()
-        assert living(LocalWriter) == living(LocalReader) == 0
+        assert living(LocalWriter) <= writers
+        assert living(LocalReader) <= readers
 
         transport.refused = ""
         async with Node("robot", context=context) as robot:

@@ -140,6 +140,7 @@ def test_a_wait_with_a_limit_ends_as_soon_as_the_transform_is_there() -> None:
 
 def test_a_future_gets_the_transform_and_is_forgotten_when_it_is_cancelled() -> None:
     """In tf2_ros, each transform asks every future again, also those nobody waits for."""
+    waiters = living(Waiter)
     buffer = Buffer()
     future = buffer.wait_for_transform_async("a", "b", Time(seconds=1))
     full = buffer.wait_for_transform_full_async("a", Time(seconds=1), "b", Time(seconds=1), "a")
@@ -152,7 +153,7 @@ def test_a_future_gets_the_transform_and_is_forgotten_when_it_is_cancelled() -> 
     with pytest.raises(StopIteration) as ended:
         coroutine.send(None)
     assert ended.value.value == stamped("a", "b")
-    assert living(Waiter) == 0
+    assert living(Waiter) <= waiters
 
 
 def test_what_is_there_is_awaited_without_a_turn() -> None:

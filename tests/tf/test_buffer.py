@@ -267,11 +267,12 @@ async def test_waits_in_callbacks_of_a_timer_and_of_one_topic_do_not_block_each_
 
 async def test_a_wait_without_an_end_can_be_given_up(buffer: Buffer) -> None:
     """In tf2, `lookup_transform_async` has no limit, and its future stays in the buffer."""
+    waiters = living(Waiter)
     futures = living(asyncio.Future)
     for _ in range(100):
         with pytest.raises(TimeoutException):
             await buffer.wait_for_transform("map", "never", at(1), timeout_sec=1e-9)
-    assert living(Waiter) == 0
+    assert living(Waiter) <= waiters
     assert living(asyncio.Future) < futures + 10
 
 
@@ -294,7 +295,7 @@ async def test_following_yields_each_change_of_the_chain(buffer: Buffer) -> None
     assert not task.done()
     put(buffer, transform("map", "base", 4.0))
     assert (await task).header.stamp.sec == 4
-    assert living(asyncio.Future) == futures
+    assert living(asyncio.Future) <= futures
 
 
 def stamped_point(frame: str, seconds: float) -> PointStamped:
@@ -355,6 +356,7 @@ async def test_a_filter_counts_what_it_drops_with_the_reason(
 
 async def test_a_filter_that_is_left_behind_leaves_no_waiters(node: Node, buffer: Buffer) -> None:
     """A loop that ends by `break` has nothing to close."""
+    waiters = living(Waiter)
     subscription = node.create_subscription(PointStamped, "point", None, 10)
     filtered = buffer.filter(subscription, "map")
     publisher = node.create_publisher(PointStamped, "point", 10)
@@ -363,7 +365,7 @@ async def test_a_filter_that_is_left_behind_leaves_no_waiters(node: Node, buffer
     await anext(filtered)
     assert filtered.waiting == 1
     del filtered
-    assert living(Waiter) == 0
+    assert living(Waiter) <= waiters
 
 
 async def test_a_filter_that_is_always_ready_lets_others_run(node: Node, buffer: Buffer) -> None:

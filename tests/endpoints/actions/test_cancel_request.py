@@ -237,12 +237,13 @@ async def test_a_browser_that_leaves_while_it_reads_ends_a_goal_in_a_block(ends:
 
 async def test_a_block_leaves_a_goal_alone_that_has_ended(ends: Ends) -> None:
     """Nothing is left to cancel."""
+    requests = living(CancelRequest)
     ends.worker.may_end.set()
     async with await ends.client.send_goal(Fibonacci.Goal()) as goal:
         outcome = await goal.result()
 
     assert outcome.status is GoalStatus.SUCCEEDED
-    assert living(CancelRequest) == 0
+    assert living(CancelRequest) <= requests
 
 
 async def test_a_request_goes_on_when_the_awaiter_of_its_answer_is_cancelled(ends: Ends) -> None:
@@ -278,6 +279,7 @@ async def test_a_goal_that_is_cancelled_before_the_server_decides_is_never_execu
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The server rejects it, because its client has given up."""
+    requests = living(CancelRequest)
     noted = returns_of(monkeypatch, EarlyCancels, "note")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
@@ -291,7 +293,7 @@ async def test_a_goal_that_is_cancelled_before_the_server_decides_is_never_execu
     door.may_answer.set()
 
     await answered.get()
-    assert living(CancelRequest) == 0
+    assert living(CancelRequest) <= requests
     assert ends.worker.begun.empty()
     assert "active=0 kept=0 " in repr(ends.server)
 
@@ -300,6 +302,7 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
     ends: Ends, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Behind another goal that the server is still deciding on."""
+    requests = living(CancelRequest)
     noted = returns_of(monkeypatch, EarlyCancels, "note")
     answered = returns_of(monkeypatch, ends.client, "_on_cancel_answered")
     door = Doorkeeper()
@@ -315,7 +318,7 @@ async def test_a_goal_that_is_cancelled_in_the_queue_of_the_server_is_never_exec
 
     await first
     await answered.get()
-    assert living(CancelRequest) == 0
+    assert living(CancelRequest) <= requests
     assert (await ends.worker.begun.get()).request.order == 1
     assert ends.worker.begun.empty()
     assert door.asked.empty()
@@ -340,13 +343,14 @@ async def test_a_goal_that_another_server_accepts_after_its_cancellation_is_canc
 
 async def test_a_goal_without_a_server_leaves_nothing_behind(ends: Ends) -> None:
     """It was sent to no server, so there is nothing to cancel."""
+    requests = living(CancelRequest)
     client: Client = ends.asking.create_action_client(Fibonacci, "unserved")
     exchanges = living(Exchange)
     for _ in range(20):
         with anyio.move_on_after(0.001):
             await client.call(Fibonacci.Goal())
 
-    assert living(CancelRequest) == 0
+    assert living(CancelRequest) <= requests
     assert living(Exchange) <= exchanges + 1  # the traceback of the last call may have its own
 
 

@@ -118,8 +118,9 @@ def test_a_message_without_a_stamp_was_published_when_it_came() -> None:
 
 def test_few_publishers_are_remembered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever comes from the network is bounded."""
+    clocks = living(publication_times.PublisherClock)
     monkeypatch.setattr(publication_times, "REMEMBERED_PUBLISHERS", 2)
     times = PublicationTimes()
     for number in range(5):
         times.published_ns(bytes([number]), 1, 1, 0)
-    assert living(publication_times.PublisherClock) == 2
+    assert living(publication_times.PublisherClock) <= clocks + 2
