@@ -54,15 +54,15 @@ def test_every_verb_of_ros2_is_there() -> None:
         assert {f"{noun} {verb}" for verb in verbs} <= words
 
 
-@pytest.mark.parametrize("words", [words for words, _ in commands()])
-def test_every_command_has_help(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
     """Both -h and --help, and a sentence about what it does."""
-    assert main([*words.split(), "-h"]) == 0
+    for words, _ in commands():
+        assert main([*words.split(), "-h"]) == 0
 
-    help_text = capsys.readouterr().out
-    assert help_text.startswith(f"Usage: aionode {words} ")
-    _, sentence, *_ = help_text.split("\n\n")
-    assert len(sentence.strip()) > 10
+        help_text = capsys.readouterr().out
+        assert help_text.startswith(f"Usage: aionode {words} ")
+        _, sentence, *_ = help_text.split("\n\n")
+        assert len(sentence.strip()) > 10, words
 
 
 @pytest.mark.parametrize("words", [[], ["topic"]])
