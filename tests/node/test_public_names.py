@@ -68,7 +68,10 @@ def public_names(subject: object) -> list[str]:
         (LifecycleNode("node", context=local_context()), NODE + LIFECYCLE),
         (local_context(), CONTEXT),
         (Supervisor(lambda: Node("node")), "health node run"),
-        (ManualClock(), "advance call_at jump now slice_ns steady_ns system_ns through_suspend"),
+        (
+            ManualClock(),
+            "advance call_at jump now slice_ns stall steady_ns system_ns through_suspend",
+        ),
         (FaultyTransport(LocalTransport()), TRANSPORT + "delay drop duplicate inner reorder"),
     ],
     ids=lambda value: "" if isinstance(value, str) else type(value).__name__,
