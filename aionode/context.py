@@ -1,4 +1,9 @@
-"""The context that nodes share: one participant in the ROS graph, with its transports."""
+"""The context that nodes share: one participant in the ROS graph, with its transports.
+
+A peer that ends leaves the graph in `transport/zenoh/_graph_watcher.py`, and its links in
+`transport/link/_manager.py`, which dials again as well. How often Zenoh dials, and when it gives a
+silent peer up: `transport/zenoh/_settings.py`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,13 @@
-"""`Node`, which a program creates or derives from."""
+"""`Node`, which a program creates or derives from.
+
+Its parts, and where they decide:
+
+- publishers, subscriptions, services, clients, timers: made in `_node/endpoints.py`; each class is
+  in `endpoints/`
+- parameters: `_node/parameters.py`; a change is refused in `parameter/_store.py`
+- queries of the graph: `_node/graph.py`
+- the lifetime: `_node/base.py`; the end in stages: `endpoints/_core/shutdown.py`
+"""
 
 from __future__ import annotations
 

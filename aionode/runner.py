@@ -1,4 +1,7 @@
-"""The main program in one line: an event loop, signal handling, and an exit status."""
+"""The main program in one line: an event loop, signal handling, and an exit status.
+
+The first and the second Ctrl-C: `_signals.py`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Service clients."""
+"""Service clients: calls, their time limits, and what ends them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Publishers."""
+"""Publishers.
+
+How a message is encoded, field by field: `wire/cdr/_encoder.py`. How it is sent: the writers in
+`transport/link/_publisher.py` and `transport/zenoh/_publisher.py`.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,8 @@
-"""Subscriptions."""
+"""Subscriptions.
+
+Where messages arrive: `_core/subscription_reader.py`. How a full queue drops the oldest:
+`_core/message_queue.py`. How the callback is called: `_core/callback_runner.py`.
+"""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Encodes and decodes messages in the encoding of ROS 2 (XCDR1).
 
 The functions are generated when a type is first encoded or decoded, which takes about a
-millisecond. Slower code handles unusual values, and raises the errors.
+millisecond. Slower code handles unusual values, and raises the errors. How a field is written:
+`_encoder.py`.
 """
 
 from __future__ import annotations
