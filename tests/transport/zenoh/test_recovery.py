@@ -67,7 +67,7 @@ async def context(participant: str) -> AsyncIterator[ZenohTransport]:
     transport.peer_directory.advertisement = f"{participant}/link/1/host/user"
     graph = Graph()
     await transport.open(graph)
-    session = transport._state.session
+    session = transport.session_state.session
     assert session is not None
     token = announce(session, participant, participant)
     try:
@@ -102,13 +102,13 @@ async def robot(*names: str) -> AsyncIterator[list[zenoh.Session]]:
 
 def names_in(transport: ZenohTransport) -> set[str]:
     """Return the nodes that are seen."""
-    assert transport._state.graph is not None
-    return {node.name for node in transport._state.graph.nodes()}
+    assert transport.session_state.graph is not None
+    return {node.name for node in transport.session_state.graph.nodes()}
 
 
 async def until_seen(transport: ZenohTransport, *names: str) -> None:
     """Wait until exactly these nodes are seen."""
-    graph = transport._state.graph
+    graph = transport.session_state.graph
     assert graph is not None
     async with asyncio.timeout(LIMIT_S):
         await graph.until(lambda: names_in(transport) == set(names))
@@ -116,7 +116,7 @@ async def until_seen(transport: ZenohTransport, *names: str) -> None:
 
 def ways_between(transport: ZenohTransport, zid: str) -> set[Descriptor]:
     """Return the connections to another session."""
-    session = transport._state.session
+    session = transport.session_state.session
     assert session is not None
     return set(_sockets.connections(session, {zid}))
 
@@ -133,7 +133,7 @@ async def until_lost(transport: ZenohTransport, zid: str, name: str) -> None:
 
     The node may be back by then: on a busy machine the loop sees both changes at once.
     """
-    graph: Any = transport._state.graph
+    graph: Any = transport.session_state.graph
     left = asyncio.Event()
     remove_node = graph.remove_node
 
@@ -170,7 +170,7 @@ async def test_a_ros_node_that_was_lost_hears_us_again() -> None:
         await until_seen(ours, "theirs")
         got = Collector()
         theirs.declare_subscriber(f"{DOMAIN_ID}/said", got)
-        session = ours._state.session
+        session = ours.session_state.session
         assert session is not None
         async with asyncio.timeout(LIMIT_S):
             while not got.items:
@@ -184,7 +184,7 @@ async def test_processes_without_a_meeting_port_find_each_other_again() -> None:
     async with AsyncExitStack() as stack:
         *_, one, two = [await stack.enter_async_context(context(name)) for name in names]
         for each in (one, two):
-            await until_seen(each, *(set(names) - {each._state.participant}))
+            await until_seen(each, *(set(names) - {each.session_state.participant}))
         await until_lost(one, "e5", "e5")
 
         await until_seen(one, "a1", "b2", "c3", "e5")
@@ -238,7 +238,7 @@ def comparisons(monkeypatch: pytest.MonkeyPatch) -> Comparisons:
 
 def all_ways(transport: ZenohTransport) -> set[Descriptor]:
     """Return all connections of a session."""
-    session: Any = transport._state.session
+    session: Any = transport.session_state.session
     return set(_sockets.connections(session))
 
 
@@ -280,7 +280,7 @@ async def test_an_incomplete_answer_of_the_own_session_cuts_nobody_off(
     names = ("one", "two", "three", "four", "five")
     async with robot(*names) as (one, two, *_), context("a1") as ours:
         await until_seen(ours, *names)
-        session: Any = ours._state.session
+        session: Any = ours.session_state.session
         ours._recovery._session = Forgetful(session, is_named[named])  # type: ignore[assignment]
         asked = Collector()
         two.declare_queryable(f"{DOMAIN_ID}/asked", asked)
@@ -371,7 +371,7 @@ async def test_a_gossip_source_that_does_not_see_this_context_is_connected_anew(
         await asyncio.to_thread(one.close)
         await until_seen(ours, "two")
         await have_more(comparisons, 1)
-        session: Any = ours._state.session
+        session: Any = ours.session_state.session
         (router,) = (str(zid) for zid in session.info.routers_zid())
         ways = ways_between(ours, router)
 
@@ -391,7 +391,7 @@ async def test_one_whose_connection_was_lost_is_missing_though_a_router_brings_i
 ) -> None:
     """Those of Zenoh 1.7 and 1.8 bring them, but may not bring ours to the other side."""
     async with context("a1") as ours, context("b2"):
-        session = ours._state.session
+        session = ours.session_state.session
         assert session is not None
         monkeypatch.setattr(recovery, "seen_at", lambda _, __, *keys, **___: tokens(session, *keys))
         await until_seen(ours, "b2")
@@ -415,7 +415,7 @@ async def test_a_probe_makes_no_unannounced_peer() -> None:
         await until(lambda: not first.peer_directory.has_unannounced_peers)
         told: list[bool] = []
         first.peer_directory.on_unannounced_peers = told.append
-        session = second._state.session
+        session = second.session_state.session
         assert session is not None
         way = await asyncio.to_thread(lambda: recovery.gossip_source(session, second.network))
         assert way is not None
@@ -436,7 +436,7 @@ async def test_many_that_start_at_once_all_see_all() -> None:
             *(stack.enter_async_context(context(name)) for name in names)
         )
         for each in together:
-            await until_seen(each, *(set(names) - {each._state.participant}))
+            await until_seen(each, *(set(names) - {each.session_state.participant}))
 
 
 class SlowRoad:
@@ -525,7 +525,7 @@ async def test_answers_without_the_tokens_of_this_context_take_nobody_out_of_the
         declared = first.create_node(node)
         watcher: Any = first._watcher
         watcher._add(f"@ros2_lv/{DOMAIN_ID}/far/0/0/NN/%/%/far")
-        session: Any = first._state.session
+        session: Any = first.session_state.session
 
         class Empty:
             """Its answers end too early, and name nothing."""
@@ -541,7 +541,7 @@ async def test_answers_without_the_tokens_of_this_context_take_nobody_out_of_the
                 return getattr(session, name)
 
         with monkeypatch.context() as patch:
-            patch.setattr(first._state, "session", Empty())
+            patch.setattr(first.session_state, "session", Empty())
             for _ in range(3):
                 watcher.check()
                 await until(lambda: not watcher._check)
@@ -596,7 +596,7 @@ def test_a_probe_is_known_by_its_id() -> None:
 @asynccontextmanager
 async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterator[None]:
     """Others that run, have returned, and have not declared anything, as `ours` sees it."""
-    acknowledgements = ours._state.acknowledgements
+    acknowledgements = ours.session_state.acknowledgements
     async with AsyncExitStack() as stack:
         for name in names:
             await stack.enter_async_context(context(name))
@@ -617,7 +617,7 @@ async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None
     put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
     async with context("a1") as first:
         watch = first._stale_transports
-        take = first._state.connections.take
+        take = first.session_state.connections.take
         take(change(put, "new"))
         take(change(delete, "b2"))
         assert not watch._returned
@@ -661,7 +661,7 @@ async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
         context("a1") as first,
         silent_after_return(first, "b2"),
     ):
-        first._state.acknowledgements.present.add("b2")
+        first.session_state.acknowledgements.present.add("b2")
         first._stale_transports._changed_s = 0.0
         first._stale_transports._check_returned()
 
@@ -678,7 +678,7 @@ async def test_a_participant_that_is_connected_and_declares_nothing_is_connected
     ):
         first._stale_transports._changed_s = 0.0
         first._stale_transports._check_returned()
-        await until(lambda: "b2" in first._state.acknowledgements.present)
+        await until(lambda: "b2" in first.session_state.acknowledgements.present)
 
         assert first._stale_transports._cuts["b2"]
 
@@ -703,7 +703,7 @@ async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_
         silent_after_return(first, "b2"),
     ):
         first._stale_transports._check_returned()
-        await until(lambda: "b2" in first._state.acknowledgements.present)
+        await until(lambda: "b2" in first.session_state.acknowledgements.present)
 
     assert len(cuts) > 1
 
@@ -722,7 +722,7 @@ async def test_many_that_declare_nothing_are_cut_too() -> None:
         assert first._stale_transports._cuts == dict.fromkeys(names, 1)
 
         await until(lambda: ways.isdisjoint(all_ways(first)))
-        await until(lambda: names <= first._state.acknowledgements.present)
+        await until(lambda: names <= first.session_state.acknowledgements.present)
 
 
 async def test_many_that_declare_nothing_are_waited_for_longer() -> None:
