@@ -1,20 +1,14 @@
-"""Zenoh publishers: one that keeps its last messages for late readers, and what has expired."""
+"""Zenoh publishers: a plain one, and one that keeps its last messages for late readers."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import zenoh
 from zenoh import ext
 
 from aionode.transport.zenoh._defects.heartbeats import miss_detection
 from aionode.transport.zenoh._handlers import BLOCK, DROP
-from aionode.wire import _attachment as attachment
 
-if TYPE_CHECKING:
-    from collections.abc import Callable
-
-__all__ = ["declare_keeping", "declare_plain", "unless_expired"]
+__all__ = ["declare_keeping", "declare_plain"]
 
 
 def declare_plain(
@@ -63,28 +57,3 @@ def declare_keeping(
         # Samples are numbered, so that readers ask again for what is missing between two.
         sample_miss_detection=miss_detection() if reliable and numbered else None,
     )
-
-
-def unless_expired(
-    extra: bytes, lifespan_ns: int, now_ns: Callable[[], int], send: Callable[[], None]
-) -> Callable[[], None]:
-    """Return `send`, or what does nothing if the message has expired by then.
-
-    Only readers of aionode look at the age of what arrives.
-
-    Args:
-        extra: The attachment of the message, which says when it was published.
-        lifespan_ns: How long it is valid; 0 for ever.
-        now_ns: Returns nanoseconds since 1970.
-        send: Sends the message.
-    """
-    fields = attachment.unpack_fields(extra)
-    if not lifespan_ns or fields is None:
-        return send
-    expires_ns = fields[1] + lifespan_ns
-
-    def send_if_fresh() -> None:
-        if now_ns() < expires_ns:
-            send()
-
-    return send_if_fresh

@@ -28,6 +28,7 @@ from aionode.transport.zenoh._delivery import (
     send_bulk,
     withdraw,
 )
+from aionode.transport.zenoh._expiry import unless_expired
 from aionode.transport.zenoh._handlers import (
     BLOCKING_PRIORITY,
     BULK_BYTES,
@@ -36,7 +37,7 @@ from aionode.transport.zenoh._handlers import (
     direct,
     reason,
 )
-from aionode.transport.zenoh._kept_history import declare_keeping, declare_plain, unless_expired
+from aionode.transport.zenoh._kept_history import declare_keeping, declare_plain
 from aionode.transport.zenoh._matched_readers import MatchedReaders
 from aionode.transport.zenoh._session_state import Declaration
 from aionode.transport.zenoh._stop import ZenohStop

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aionode.transport.zenoh._kept_history import unless_expired
+from aionode.transport.zenoh._expiry import unless_expired
 from aionode.wire import _attachment as attachment
 
 GID = bytes(16)
