@@ -1,4 +1,7 @@
-"""The distribution of ROS 2 that the other nodes run, and its effect on the wire."""
+"""The distribution of ROS 2 that the other nodes run, and its effect on the wire.
+
+The fields of messages that differ between distributions are in `idl/_distribution_differences.py`.
+"""
 
 from __future__ import annotations
 

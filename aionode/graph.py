@@ -2,6 +2,8 @@
 
 `Graph` is a store that the context and its transports write to. It does no I/O: a transport adds
 what it discovers, the context adds its own, and each change wakes the tasks that wait for one.
+The graph watcher of a transport, `transport/zenoh/_graph_watcher.py`, adds the nodes of other
+processes, and removes those of a process that ends or dies.
 """
 
 from __future__ import annotations
@@ -310,7 +312,10 @@ class Graph:
             self._tell_watchers(endpoint, present=True)
 
     def remove_participant(self, participant: str) -> None:
-        """Remove all nodes and endpoints of the context `participant`."""
+        """Remove all nodes and endpoints of the context `participant`.
+
+        Only the end of this context calls this; graph watchers remove what a dead process has left.
+        """
         for endpoint in [e for e in self._endpoints if e.node.participant == participant]:
             self.remove_endpoint(endpoint)
         for node in [n for n in self._nodes if n.participant == participant]:

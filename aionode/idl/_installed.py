@@ -3,7 +3,7 @@
 They are read when a package is first imported, and not before. A package that aionode does not ship
 comes from there as a whole. Of a shipped one, the types that are defined differently there do, so
 that their type hashes are those of the nodes of that system. Without a sourced ROS 2, ROS_DISTRO
-names the distribution whose differences, which are few, are known here.
+names the distribution whose few differences `_distribution_differences.py` knows.
 
 `aionode.interfaces` calls this module while it imports a package.
 """
@@ -19,6 +19,7 @@ from typing import Any
 from aionode.errors import IdlError
 from aionode.idl._build import Builder
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
+from aionode.idl._distribution_differences import DIFFERENCES
 from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, read
 from aionode.idl._parser import parse
 
@@ -30,45 +31,6 @@ __all__ = [
     "packages",
     "replaced_types",
 ]
-
-EMPTY_SERVICES: dict[str, str] = dict.fromkeys(
-    (
-        "rosbag2_interfaces/srv/Resume",
-        "rosbag2_interfaces/srv/SplitBagfile",
-        "rosbag2_interfaces/srv/Stop",
-    ),
-    "---\n",
-)
-"""Services without fields before Lyrical."""
-
-DIFFERENCES: dict[str, dict[str, str]] = {
-    "humble": {
-        **EMPTY_SERVICES,
-        "sensor_msgs/msg/Range": """\
-uint8 ULTRASOUND=0
-uint8 INFRARED=1
-std_msgs/Header header
-uint8 radiation_type
-float32 field_of_view
-float32 min_range
-float32 max_range
-float32 range
-""",
-        "rosbag2_interfaces/msg/ReadSplitEvent": "string closed_file\nstring opened_file\n",
-        "rosbag2_interfaces/msg/WriteSplitEvent": "string closed_file\nstring opened_file\n",
-    },
-    "jazzy": EMPTY_SERVICES,
-    "kilted": EMPTY_SERVICES,
-    "lyrical": {
-        "lifecycle_msgs/msg/TransitionEvent": """\
-builtin_interfaces/Time stamp
-Transition transition
-State start_state
-State goal_state
-""",
-    },
-}
-"""Definitions of the types that are shipped, where other distributions have other fields."""
 
 
 def installed_file(typename: str) -> Path | None:

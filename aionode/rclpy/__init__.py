@@ -2,7 +2,7 @@
 
 Its modules and names are rclpy's. `init` starts a thread in which a context of aionode talks to
 others; executors are plain loops in the threads that spin, so callbacks run there and nowhere
-else, and nothing of asyncio is seen.
+else, and nothing of asyncio is seen. `executors.py` calls every callback.
 """
 
 from __future__ import annotations

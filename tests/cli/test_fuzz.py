@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from aionode.cli._nouns.param import parameter_value, pattern_from
 from aionode.cli._support.error_text import one_line
+from aionode.cli._support.field_path import field_of
 from aionode.cli._support.follow import filter_from
-from aionode.cli._support.formatting import field_of
 from aionode.cli._support.options import hertz, natural, positive, seconds, whole
 from aionode.cli._support.yaml_messages import Filler, message_from_yaml
 from aionode.clock import Time

@@ -1,4 +1,4 @@
-"""Watches the promises of a publisher: its deadline and its liveliness."""
+"""Keeps the promises of a publisher: says that it is alive, and notices a missed deadline."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ from aionode.endpoints.actions.goal import (
     GoalKey,
     GoalResponse,
     GoalStatus,
-    candidates,
+    goals_to_cancel,
     is_cancelable,
     reason_id,
 )
@@ -467,7 +467,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_cancel(self, request: Any) -> Any:
         info = request.goal_info
         asked = GoalKey(info.goal_id.uuid.tobytes(), stamp_ns(info.stamp))
-        code, meant = candidates([goal._current_key for goal in self._goals.values()], asked)
+        code, meant = goals_to_cancel([goal._current_key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
         if code is CancelCode.UNKNOWN_GOAL_ID:
             self._early_cancels.note(asked.goal_id)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from aionode.clock import S_TO_NS, MachineTime
 from aionode.endpoints.actions._goal_store import GoalStore
 from aionode.endpoints.actions._status_pace import StatusSpacing
-from aionode.endpoints.actions.goal import GoalEvent, GoalKey, GoalStatus, candidates
+from aionode.endpoints.actions.goal import GoalEvent, GoalKey, GoalStatus, goals_to_cancel
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle
@@ -297,9 +297,9 @@ class ActionServerHandle(ActionHandle):
     def process_cancel_request(self, request: Any) -> Any:
         """Return the response to a request to cancel: the goals that its id and time select.
 
-        The rules are those of `aionode.endpoints.actions.goal.candidates`.
+        The rules are those of `aionode.endpoints.actions.goal.goals_to_cancel`.
         """
-        code, selected = candidates(
+        code, selected = goals_to_cancel(
             [goal_key(goal._goal_info, goal._status) for goal in list(self.goals.values())],
             goal_key(request.goal_info),
         )

@@ -1,6 +1,8 @@
 """Zenoh's configuration of the sessions and routers of aionode, made of a `Network`.
 
-Pure functions; nothing is connected here.
+Pure functions; nothing is connected here. Among the settings are the intervals at which a lost
+router or peer is dialled again (`RETRY`), and the time after which a silent peer is taken for dead
+(`LEASE_MS`).
 
 Without configuration the processes of one machine find each other over loopback: each tries to
 listen on one of three meeting ports, and dials those that are listed (`_local_sessions`), other

@@ -14,7 +14,7 @@ from aionode.endpoints.actions.goal import (
     GoalEvent,
     GoalKey,
     GoalStatus,
-    candidates,
+    goals_to_cancel,
     next_status,
 )
 from aionode.errors import GoalTransitionError
@@ -141,12 +141,12 @@ GOALS = [
 )
 def test_a_request_means_these_goals(goal_id: bytes, stamp_ns: int, meant: list[bytes]) -> None:
     """The four forms of CancelGoal."""
-    assert candidates(GOALS, GoalKey(goal_id, stamp_ns)) == (CancelCode.NONE, meant)
+    assert goals_to_cancel(GOALS, GoalKey(goal_id, stamp_ns)) == (CancelCode.NONE, meant)
 
 
 def test_a_request_for_an_unknown_goal_says_so() -> None:
     """The client may have asked the wrong server."""
-    assert candidates([], GoalKey(ONE, 0)) == (CancelCode.UNKNOWN_GOAL_ID, [])
+    assert goals_to_cancel([], GoalKey(ONE, 0)) == (CancelCode.UNKNOWN_GOAL_ID, [])
 
 
 @pytest.mark.parametrize("status", ["SUCCEEDED", "CANCELED", "ABORTED", "CANCELING"])
@@ -154,7 +154,7 @@ def test_a_request_for_a_goal_that_cannot_be_cancelled_says_terminated(status: s
     """As rcl does; also for one that is being cancelled already."""
     goals = [GoalKey(ONE, 100, GoalStatus[status])]
 
-    assert candidates(goals, GoalKey(ONE, 0)) == (CancelCode.GOAL_TERMINATED, [])
+    assert goals_to_cancel(goals, GoalKey(ONE, 0)) == (CancelCode.GOAL_TERMINATED, [])
 
 
 @pytest.mark.parametrize("asked", [GoalKey(ALL_GOALS, 0), GoalKey(ALL_GOALS, 500)])
@@ -162,4 +162,4 @@ def test_a_request_for_many_passes_over_those_that_have_ended(asked: GoalKey) ->
     """To cancel all is no mistake when some are done."""
     goals = [GoalKey(ONE, 100, GoalStatus.SUCCEEDED), GoalKey(TWO, 200, GoalStatus.EXECUTING)]
 
-    assert candidates(goals, asked) == (CancelCode.NONE, [TWO])
+    assert goals_to_cancel(goals, asked) == (CancelCode.NONE, [TWO])
