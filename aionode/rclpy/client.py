@@ -48,6 +48,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         self.srv_name = srv_name
         self.qos_profile = qos_profile
         self._pending_requests: dict[int, Future[ResponseT]] = {}
+        self._sequences: dict[Future[ResponseT], int] = {}  # the same requests, by their futures
         self.callback_group = callback_group
         self._executor_event = False
         # Guards the numbers and futures of requests: a response is not looked for before its
@@ -100,6 +101,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         future: Future[ResponseT] = Future()
         with self._lock, self._handle:
             sequence = self._handle.send_request(request)
+            self._sequences[future] = sequence
             self._pending_requests[sequence] = future
         future.add_done_callback(self.remove_pending_request)
         return future
@@ -116,19 +118,13 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
     def remove_pending_request(self, future: Future[ResponseT]) -> None:
         """Give a request up; its future is never completed."""
         with self._lock:
-            sequence = self._sequence_of(future)
+            sequence = self._sequences.get(future)
             if sequence is None:
                 return
             self._pending_requests.pop(sequence, None)
+            self._sequences.pop(future, None)  # last: an interrupted removal can be done again
             if not future.done():
                 self._handle.forget(sequence)
-
-    def _sequence_of(self, future: Future[ResponseT]) -> int | None:
-        # A copy, made in one step: a handler of a signal may send a request in between.
-        for sequence, pending in tuple(self._pending_requests.items()):
-            if pending is future:
-                return sequence
-        return None
 
     configure_introspection = in_use(ClientHandle.configure_introspection)
     service_is_ready = in_use(ClientHandle.service_server_is_available)

@@ -6,7 +6,9 @@ import asyncio
 import os
 import signal
 import subprocess
+import sys
 import threading
+from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -37,8 +39,9 @@ from tests.support.fork_server import start
 from tests.support.peers import isolated_environment
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from pathlib import Path
+    from types import FrameType, ModuleType
 
 Clock = message_class("rosgraph_msgs/msg/Clock")
 String = message_class("std_msgs/msg/String")
@@ -495,3 +498,38 @@ def test_thousands_of_calls_at_once_leave_nothing_behind() -> None:
     for future in futures:
         client.remove_pending_request(future)
     assert not client._pending_requests
+
+
+def lines_run(call: Callable[[], object], module: ModuleType) -> list[int]:
+    """Return the number of each line of a module that a call runs, in order."""
+    lines: list[int] = []
+
+    def note(frame: FrameType, event: str, _: object) -> Any:
+        if frame.f_code.co_filename != module.__file__:
+            return None
+        if event == "line":
+            lines.append(frame.f_lineno)
+        return note
+
+    before = sys.gettrace()
+    sys.settrace(note)
+    try:
+        call()
+    finally:
+        sys.settrace(before)
+    return lines
+
+
+@pytest.mark.usefixtures("initialised")
+def test_giving_a_request_up_costs_the_same_however_many_are_pending() -> None:
+    """Whoever gives thousands of them up would wait for seconds otherwise."""
+    client = rclpy.create_node("many").create_client(AddTwoInts, "nobody_serves")
+    few = [client.call_async(AddTwoInts.Request()) for _ in range(2)]
+    lines_of_few = lines_run(partial(client.remove_pending_request, few[-1]), rclpy.client)
+    many = [client.call_async(AddTwoInts.Request()) for _ in range(200)]
+
+    lines_of_many = lines_run(partial(client.remove_pending_request, many[-1]), rclpy.client)
+    assert len(lines_of_many) == len(lines_of_few) > 0
+    with pytest.raises(KeyError):
+        client.get_pending_request(len(few) + len(many))
+    assert client.get_pending_request(len(few) + len(many) - 1) is many[-2]
