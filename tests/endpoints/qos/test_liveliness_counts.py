@@ -78,3 +78,25 @@ def test_the_counts_are_those_of_the_publishers(
         not_alive += event.not_alive_count_change
         assert (alive, not_alive) == (event.alive_count, event.not_alive_count)
         assert event.alive_count_change or event.not_alive_count_change
+
+
+async def test_messages_renew_the_lease_of_an_automatic_publisher_whose_assertions_stay_away() -> (
+    None
+):
+    """A network may lose assertions alone: a publisher whose messages arrive is alive."""
+    clock = ManualClock()
+    events: list[QoSLivelinessChangedInfo] = []
+    automatic = PUBLISHERS[0]
+    liveliness = PublisherLiveliness(clock, automatic.qos, events.append)
+    liveliness.start()
+    liveliness.add(automatic)
+    liveliness.note_assertion(automatic.gid)
+    for _ in range(3):
+        await clock.advance(0.6)
+        liveliness.note_message(automatic.gid)
+    assert [event.alive_count for event in events] == [1]
+    await clock.advance(1)
+    assert [event.alive_count for event in events] == [1, 0]
+    liveliness.note_message(automatic.gid)
+    assert [event.alive_count for event in events] == [1, 0, 1]
+    liveliness.stop()
