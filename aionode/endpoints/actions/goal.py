@@ -1,4 +1,4 @@
-"""The words of a goal: its states, the answers about it, and the ids that ask for more of it.
+"""The public names for goals: their states, the answers of servers, and the ids of clients.
 
 `_goal_states.py` has the states and the transitions between them, `_cancel_selection.py` the rules
 by which a cancel request selects goals. The functions here make the ids with which an aionode
@@ -37,7 +37,6 @@ __all__ = [
     "GoalResponse",
     "GoalStatus",
     "alive_id",
-    "candidates",
     "goals_to_cancel",
     "is_cancelable",
     "is_sign",
@@ -45,9 +44,6 @@ __all__ = [
     "next_status",
     "reason_id",
 ]
-
-candidates = goals_to_cancel
-"""An older name of `goals_to_cancel`."""
 
 
 class GoalResponse(Enum):
