@@ -45,7 +45,7 @@ MOST_ASKED: Final = 16
 """Pings that may wait for their answers at once."""
 
 PINGS_PER_SEC: Final = 200.0
-"""Pings and their answers that are read of a client in a second: each has to be answered."""
+"""Pings and pongs that the gateway reads of a client in a second: it has to answer each ping."""
 
 MOST_PARTS: Final = 10_000
 """Parts that a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
