@@ -1,6 +1,6 @@
 """The main program in one line: an event loop, signal handling, and an exit status.
 
-The first and the second Ctrl-C: `_signals.py`.
+`_signals.py` handles the first and the second Ctrl-C.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Publishers.
 
-How a message is encoded, field by field: `wire/cdr/_encoder.py`. How it is sent: the writers in
-`transport/link/_publisher.py` and `transport/zenoh/_publisher.py`.
+`wire/cdr/_encoder.py` encodes messages, field by field; the writers in
+`transport/link/_publisher.py` and `transport/zenoh/_publisher.py` send them.
 """
 
 from __future__ import annotations

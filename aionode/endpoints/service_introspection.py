@@ -109,7 +109,7 @@ class Introspection:
         event = self._srv_type.Event()
         info = event.info
         info.event_type = event_type
-        stamp = self._clock.now().to_msg()  # its class may be of the other family
+        stamp = self._clock.now().to_msg()  # its class may be of another message family
         info.stamp.sec, info.stamp.nanosec = stamp.sec, stamp.nanosec
         info.client_gid = list(sample_info.gid)
         info.sequence_number = sample_info.sequence

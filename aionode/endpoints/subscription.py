@@ -1,7 +1,7 @@
 """Subscriptions.
 
-Where messages arrive: `_core/subscription_reader.py`. How a full queue drops the oldest:
-`_core/message_queue.py`. How the callback is called: `_core/callback_runner.py`.
+Messages arrive in `_core/subscription_reader.py`; a full `_core/message_queue.py` drops the oldest;
+`_core/callback_runner.py` calls the callback.
 """
 
 from __future__ import annotations

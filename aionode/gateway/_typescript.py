@@ -105,7 +105,7 @@ def parts_of(cls: Any) -> dict[str, type[Message]]:
 
 
 def collect(cls: type[Message], classes: dict[str, type[Message]]) -> None:
-    """Add a message and those nested in it to `found`, by name."""
+    """Add a message and those nested in it to `classes`, by name."""
     if type_name(cls) in classes:
         return
     classes[type_name(cls)] = cls

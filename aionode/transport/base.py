@@ -166,8 +166,8 @@ class Writer(Registration):
         active: Whether a message written now would be used: a reader is matched, or it is kept for
             late ones. Encoding and copying are left out where this is false.
         bounded: Whether `has_room` may be false.
-        is_placeholder: Whether it stands for a writer that is not made yet, and is neither of both;
-            publishers do not ask it for each message.
+        is_placeholder: Whether it only stands for a writer that does not exist yet, so that
+            publishers leave it out.
     """
 
     active: bool = False
@@ -175,7 +175,7 @@ class Writer(Registration):
     is_placeholder: bool = False
 
     def when_replaced(self, callback: Callable[[], None]) -> None:
-        """Call `callback` when it is a placeholder no longer, if it is one."""
+        """Call `callback` once this writer is no longer a placeholder, if it is one now."""
 
     @abstractmethod
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:

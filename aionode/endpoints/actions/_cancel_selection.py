@@ -1,4 +1,4 @@
-"""Which goals a cancel request selects, by their id and the time at which they were accepted."""
+"""The goals that a cancel request selects, by their ids and the times of their acceptance."""
 
 from __future__ import annotations
 

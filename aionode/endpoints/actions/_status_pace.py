@@ -1,4 +1,4 @@
-"""When an action server publishes the states of its goals: less often, the more there are."""
+"""The pace at which an action server publishes the states of its goals: slower for many goals."""
 
 from __future__ import annotations
 

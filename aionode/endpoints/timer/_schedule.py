@@ -1,4 +1,4 @@
-"""When a timer is due, on a grid of times (`Schedule`), and the wait for that (`Ticker`).
+"""The times at which a timer is due, on a grid (`Schedule`), and the wait for them (`Ticker`).
 
 The rules are rcl's (rcl/src/rcl/timer.c). The first call is due one period after the start, and
 each later one a period after the time *planned* for the one before, so delays do not add up. A

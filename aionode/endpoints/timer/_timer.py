@@ -1,4 +1,4 @@
-"""Timers: a callback on a grid of times. When the next call is due: `_schedule.py`."""
+"""Timers: a callback on a grid of times, which `_schedule.py` computes."""
 
 from __future__ import annotations
 

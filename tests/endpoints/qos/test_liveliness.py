@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-from typing import TYPE_CHECKING
 
 import pytest
 
@@ -22,9 +21,6 @@ from aionode.testing import settle
 from tests.endpoints.qos.conftest import Pair, next_of, waiting
 from tests.support.arrivals import writers_of
 from tests.support.spies import returns_of
-
-if TYPE_CHECKING:
-    pass
 
 LEASE = Duration(seconds=1)
 MANUAL = QoSProfile(
