@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import threading
 import weakref
 from collections.abc import Callable, Iterator
 from typing import Any, get_origin
@@ -13,6 +14,7 @@ import pytest
 import aionode.rclpy
 from aionode.action import GoalStatus
 from aionode.endpoints.actions import _status_pace
+from aionode.endpoints.actions._goal_store import GoalStore
 from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
 from aionode.interfaces.tf2_msgs.action import LookupTransform as OwnLookupTransform
 from aionode.rclpy._impl.errors import RCLError
@@ -198,15 +200,65 @@ def test_a_goal_cannot_end_twice(node: Node, result_of: Callable[..., Any]) -> N
         server.begun[0].abort()
 
 
-def test_results_are_forgotten_after_their_time(
-    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
-) -> None:
+def test_results_are_forgotten_after_their_time(node: Node, result_of: Callable[..., Any]) -> None:
     """Later requests are answered as for an unknown goal."""
     server = Server(node, result_timeout=0.01)
     handle = result_of(client_of(node).send_goal_async(Fibonacci.Goal(order=1)))
     server.may_end.set_result(None)
-    while result_of(handle.get_result_async()).status != GoalStatus.UNKNOWN:
-        executor.spin_once(timeout_sec=PATIENCE_S)
+    statuses = iter(lambda: result_of(handle.get_result_async()).status, GoalStatus.UNKNOWN)
+
+    assert set(statuses) <= {GoalStatus.SUCCEEDED}
+
+
+def test_a_goal_may_end_in_a_thread_while_others_are_forgotten(
+    node: Node, result_of: Callable[..., Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The goals that have ended are listed and forgotten in one step, for each thread."""
+    server = Server(node)
+    client = client_of(node)
+    result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
+    result_of(client.send_goal_async(Fibonacci.Goal(order=2)))
+    expire = GoalStore.expire
+    has_ended: list[bool] = []
+
+    def expire_while_another_ends(goals: GoalStore) -> list[Any]:
+        if not has_ended:
+            ending.start()
+            ending.join(0.2)
+            has_ended.append(not ending.is_alive())
+        return expire(goals)
+
+    ending = threading.Thread(target=server.begun[0].succeed)
+    monkeypatch.setattr(GoalStore, "expire", expire_while_another_ends)
+    result_of(client.send_goal_async(Fibonacci.Goal(order=3)))
+    ending.join(PATIENCE_S)
+
+    assert has_ended == [False]
+    assert server.begun[0].status == GoalStatus.SUCCEEDED
+
+
+def test_a_callback_may_destroy_its_server_while_a_result_is_due(
+    node: Node, executor: SingleThreadedExecutor, result_of: Callable[..., Any]
+) -> None:
+    """`spin` goes on: the server's goals are forgotten already."""
+
+    def decide(goal: Any) -> GoalResponse:
+        if server.begun:
+            server.begun[0].succeed()
+            server.server.destroy()
+            destroyed.set_result(None)
+        return GoalResponse.REJECT if server.begun else GoalResponse.ACCEPT
+
+    destroyed: Future[None] = Future()
+    server = Server(node, goal_callback=decide, result_timeout=0)
+    client = client_of(node)
+    result_of(client.send_goal_async(Fibonacci.Goal(order=1)))
+    client.send_goal_async(Fibonacci.Goal(order=2))
+
+    result_of(destroyed)
+    executor.spin_once(timeout_sec=0.0)  # errors of callbacks are raised here
+
+    assert not server.begun[0].is_active
 
 
 def test_a_client_that_waits_gets_a_result_that_is_not_kept(

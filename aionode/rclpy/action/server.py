@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import traceback as tracebacks
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
@@ -364,9 +365,12 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             self._handle.result.service_send_response(result, header.request_id)
 
     def _expire_goals(self) -> None:
-        for goal_handle in self._handle.expiry.take():
+        with self._lock:  # a goal may end in another thread meanwhile
+            forgotten = self._handle.expiry.take()
+        for goal_handle in forgotten:
             goal_handle.destroy()
-            self.remove_future(goal_handle._result)
+            with suppress(ValueError):  # the server was destroyed, which removes all
+                self.remove_future(goal_handle._result)
 
     # For executors to call
 
