@@ -121,10 +121,8 @@ class GoalStore(dict[bytes, Any]):
         """Forget the goals whose time is over, and return them."""
         now_ns = self._now_ns()
         forgotten = []
-        for goal_id, due_ns in list(self._kept.items()):
-            if due_ns > now_ns or self.kept_ns < 0:
-                break
-            forgotten.append(self._forget(goal_id))
+        while (due_ns := self.due_ns) is not None and due_ns <= now_ns:
+            forgotten.append(self._forget(next(iter(self._kept))))
         return forgotten
 
     def _forget(self, goal_id: bytes) -> Any:
