@@ -45,7 +45,7 @@ SHARED = {
     "aionode.bag._shrinking": "`aionode bag shrink` is its only user",
     "aionode.bag._yaml_files": "`aionode bag` and programs of rosbag2_py take these files",
     "aionode.bag._types": "programs of rosbag2_py write topics by the names of their types",
-    "aionode.message._conversion": "`topic echo` cuts and describes values, also of one field",
+    "aionode.message._conversion": "`topic echo` and rclpy's programs cut and describe values, too",
     "aionode.message._field_types": "the codec compiles the fields of a message",
     "aionode.message._memory_size": "queues add up what their messages take",
     "aionode.message._message": "definitions become message classes",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from aionode.message import FieldType, type_name
+from aionode.message._conversion import IDL_NAMES
 from aionode.rclpy._rosidl_parser.definition import (
     AbstractNestableType,
     AbstractType,
@@ -20,15 +21,6 @@ from aionode.rclpy._rosidl_parser.definition import (
 )
 
 __all__ = ["TYPE_CODES", "element_type", "field_text", "is_numeric", "python_type", "slot_type"]
-
-IDL_NAMES: Final = {
-    "bool": "boolean",
-    "byte": "octet",
-    "char": "uint8",
-    "float32": "float",
-    "float64": "double",
-}
-"""Names of OMG IDL, where they are not ROS's."""
 
 TYPE_CODES: Final = {
     "float32": "f",
