@@ -7,8 +7,8 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
+from aionode.image import COLORS
 from aionode.rclpy._cv_bridge._encodings import (
-    CHANNELS,
     bit_depth,
     channels_of,
     colour_of,
@@ -60,7 +60,7 @@ def cvtColor2(image: Pixels, encoding_in: str, encoding_out: str) -> Pixels:  # 
         if not is_possible(source, wanted):
             raise RuntimeError(f"Unsupported conversion from [{encoding_in}] to [{encoding_out}]")
         image = with_colour(image, source, wanted)
-    elif wanted and source not in {*CHANNELS, "yuv422"}:
+    elif wanted and source not in {*COLORS, "yuv422"}:
         raise RuntimeError(f"Unsupported conversion from [{encoding_in}] to [{encoding_out}]")
     return with_depth(image, encoding_in, encoding_out)
 
@@ -69,7 +69,7 @@ def is_possible(source: str, wanted: str) -> bool:
     """Return whether there is a conversion between two kinds of colours."""
     if source.startswith("bayer_"):
         return wanted in {"mono", "rgb", "bgr"}
-    return wanted in CHANNELS
+    return wanted in COLORS
 
 
 def with_colour(image: Pixels, source: str, wanted: str) -> Pixels:
@@ -77,7 +77,7 @@ def with_colour(image: Pixels, source: str, wanted: str) -> Pixels:
     if source == "mono":
         colours = np.stack([image] * 3, axis=-1)
         return with_alpha(colours) if wanted.endswith("a") else colours
-    if source in CHANNELS and wanted != "mono":
+    if source in COLORS and wanted != "mono":
         order = [source.index(letter) for letter in wanted if letter in source]
         moved = np.ascontiguousarray(image[..., order])
         return moved if len(order) == len(wanted) else with_alpha(moved)
@@ -143,7 +143,7 @@ def cvtColorForDisplay(  # noqa: N802  # cv_bridge's name
         ModuleNotFoundError: The conversion needs `cv2`, which is not installed.
     """
     wanted = encoding_out or "bgr8"
-    if colour_of(wanted) not in CHANNELS or bit_depth(wanted) != 8:
+    if colour_of(wanted) not in COLORS or bit_depth(wanted) != 8:
         raise RuntimeError(
             "cv_bridge.cvtColorForDisplay() does not have an output encoding "
             "that is color or mono, and has is bit in depth"

@@ -22,7 +22,6 @@ __all__ = [
     "type_name",
 ]
 
-CHANNELS: Final = {"mono": 1, "rgb": 3, "bgr": 3, "rgba": 4, "bgra": 4}
 COLOURS: Final = re.compile(r"(mono|rgba?|bgra?|bayer_(?:rggb|bggr|gbrg|grbg))(8|16)")
 YUV: Final = ("yuv422", "yuv422_yuy2")
 NOT_OF_CV_BRIDGE: Final = ("uyvy", "yuyv")

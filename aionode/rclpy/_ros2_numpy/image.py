@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from aionode.image import OPENCV_TYPES, encoding_of
+from aionode.image import COLORS, OPENCV_TYPES, encoding_of
 from aionode.rclpy._arrays import array_over
 from aionode.rclpy._ros2_numpy.registry import converts_from_numpy, converts_to_numpy
 from aionode.rclpy._rosidl import message_class
@@ -18,10 +18,9 @@ __all__ = ["image_to_numpy", "name_to_dtypes", "numpy_to_image"]
 
 Image = message_class("sensor_msgs/msg/Image")
 
-COLOURS = ("mono", "rgb", "bgr", "rgba", "bgra")
 BAYER = ("bayer_rggb", "bayer_bggr", "bayer_gbrg", "bayer_grbg")
 ENCODINGS = [
-    *(f"{name}{bits}" for name in (*COLOURS, *BAYER) for bits in (8, 16)),
+    *(f"{name}{bits}" for name in (*COLORS, *BAYER) for bits in (8, 16)),
     *(f"{name}C{count}" for name in OPENCV_TYPES for count in range(1, 5)),
 ]
 
