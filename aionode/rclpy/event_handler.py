@@ -171,7 +171,7 @@ def create_handlers(
                     parent_impl=parent,
                 )
             )
-        elif callbacks.use_default_callbacks and watch.is_logged:
+        elif callbacks.use_default_callbacks and watch.aspects:
             handlers.append(DefaultHandler(event_type))
     return handlers
 

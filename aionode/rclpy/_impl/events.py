@@ -114,12 +114,12 @@ class Watch:
     Attributes:
         name: The kind of event, as the arguments of event callbacks call it.
         empty: The status before anything has happened.
-        is_logged: Whether the log tells of these events where no callback does.
+        aspects: The mismatches that its callback, or else the log, tells of.
     """
 
     name = ""
     empty: Any = None
-    is_logged = False
+    aspects: tuple[str, ...] = ()
 
     def __init__(
         self, parent: PublisherHandle | SubscriptionHandle, notify: Callable[[], None]
@@ -187,19 +187,14 @@ def changes_in(status: Any) -> list[str]:
 
 
 class MatchedWatch(Watch):
-    """Counts the endpoints that are matched, or do not fit.
-
-    Attributes:
-        aspects: The mismatches that it tells of, so that the log need not.
-    """
+    """Counts the endpoints that are matched, or do not fit."""
 
     name = "matched"
     empty = MatchedInfo(0, 0, 0, 0)
-    aspects: tuple[str, ...] = ()
 
     def start(self) -> None:
         """Begin to watch."""
-        if self.is_logged:
+        if self.aspects:
             unreported = self.graph.unreported
             unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
             self.ends.append(lambda: unreported.pop(self.endpoint, None))
@@ -215,7 +210,6 @@ class IncompatibleQoSWatch(MatchedWatch):
 
     name = "incompatible_qos"
     empty: Any = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
-    is_logged = True
     aspects = ("qos",)
 
     def take(self) -> Any:
@@ -229,7 +223,6 @@ class IncompatibleTypeWatch(MatchedWatch):
 
     name = "incompatible_type"
     empty: Any = IncompatibleTypeInfo(0, 0)
-    is_logged = True
     aspects = ("type", "definition")
 
 
