@@ -64,7 +64,7 @@ class Cache(message_filters.Cache):
         self._stamps = Stamps(allow_headerless=allow_headerless)
 
 
-class Locked(message_filters.TimeSynchronizer):
+class LockedSynchronizer(message_filters.TimeSynchronizer):
     """A synchronizer whose inputs may be called in several threads at once."""
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int, *options: Any) -> None:
@@ -78,7 +78,7 @@ class Locked(message_filters.TimeSynchronizer):
             super().add(msg, index)
 
 
-class TimeSynchronizer(Locked, message_filters.TimeSynchronizer):
+class TimeSynchronizer(LockedSynchronizer):
     """Calls back with one message of each input, all with the same stamp.
 
     The inputs may be called in several threads at once.
@@ -89,7 +89,7 @@ class TimeSynchronizer(Locked, message_filters.TimeSynchronizer):
         self._stamps = Stamps(allow_headerless=False)
 
 
-class ApproximateTimeSynchronizer(Locked, message_filters.ApproximateTimeSynchronizer):
+class ApproximateTimeSynchronizer(LockedSynchronizer, message_filters.ApproximateTimeSynchronizer):
     """Calls back with one message of each input, whose stamps differ by less than `slop` seconds.
 
     The inputs may be called in several threads at once.
