@@ -334,7 +334,7 @@ def settle_entities(
     *,
     is_active: bool,
 ) -> None:
-    """Have entities enabled in the active state only, however a transition has ended.
+    """Leave entities enabled in the active state only, however a transition has ended.
 
     Args:
         entities: All entities of the node.

@@ -33,9 +33,9 @@ ServiceHandleT = TypeVar("ServiceHandleT", bound="ClientHandle | ServiceHandle")
 
 
 def in_use(method: Callable[Concatenate[HandleT, P], T]) -> Callable[Concatenate[Any, P], T]:
-    """Return a method for owners of handles: that of their handle, which lives until its end.
+    """Return a method of owners of handles that calls `method` of their handle.
 
-    It raises InvalidHandle once the handle is destroyed.
+    The handle is not destroyed during a call; once it is destroyed, calls raise InvalidHandle.
     """
 
     @wraps(method)

@@ -1,6 +1,6 @@
 """Names that rclpy has for type checkers, and which programs import for their annotations.
 
-Type checkers do not see them here, as they are found when a program runs: so none has fields.
+None has fields, as type checkers do not see them: a program finds them when it runs.
 """
 
 from __future__ import annotations

@@ -70,7 +70,8 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
     def __init__(self) -> None:
         super().__init__()
         self._active_entity: Entity | None = None
-        # Guards that one thread begins. Read without it, as an executor asks again before a call.
+        # Held while a call begins or ends, so that one thread begins. `can_execute` does without
+        # it, as executors ask `beginning_execution` before each call.
         self._lock = threading.RLock()
 
     def can_execute(self, entity: Entity) -> bool:

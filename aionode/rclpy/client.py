@@ -51,8 +51,8 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         self._sequences: dict[Future[ResponseT], int] = {}  # the same requests, by their futures
         self.callback_group = callback_group
         self._executor_event = False
-        # Guards the numbers and futures of requests: a response is not looked for before its
-        # future is here. A handler of a signal may call while this thread holds it.
+        # Held while numbers and futures of requests change: a response that comes at once waits
+        # until its future is here. A handler of a signal may call while this thread holds it.
         self._lock = threading.RLock()
 
     def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:

@@ -20,7 +20,7 @@ __all__ = ["Context"]
 
 
 logging_lock = threading.RLock()
-"""Held while a context looks whether another one has configured logging, and does it else."""
+"""Held while a context configures logging, unless another living one has configured it."""
 
 
 def configure_logging(handle: ContextHandle) -> None:

@@ -98,16 +98,17 @@ class Executor:
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
         self._nodes: dict[NodeLike, None] = {}
-        # Guards that a node is woken for once while it is here. This lock and the next one are of
-        # the kind that a thread can acquire again: a handler of a signal, or a finalizer, may
-        # interrupt the thread that holds it.
+        # Held while a node is added or removed, so that its signal wakes this executor once. A
+        # thread can acquire this lock and the next one again: a handler of a signal, or a
+        # finalizer, may interrupt the thread that holds them.
         self._nodes_lock = threading.RLock()
         self._tasks: list[Work] = []
-        # Guards that no task is lost that is added while those that are done are left out.
+        # Held while tasks are added, and while those that are done are left out, so that none is
+        # lost.
         self._tasks_lock = threading.RLock()
         self._wakeup = Wakeup()
         self._is_shutdown = False
-        # Of the thread that spins: one at a time may.
+        # Used by the thread that spins; only one thread may at a time.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
         if self._context.handle is None:

@@ -461,7 +461,8 @@ class Node(NodeParameters, NodeGraph):
         Args:
             entity: The entity.
             entities: Those of its kind.
-            arrivals: Says that something may wait for it already, if something arrives for it.
+            arrivals: Those of its kind, as something may wait for it already; None for kinds for
+                which nothing arrives.
         """
         entity.callback_group.add_entity(entity)
         entities.append(entity)

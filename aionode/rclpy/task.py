@@ -203,7 +203,7 @@ class Task(Future[T]):
         self._awaited: Future[Any] | None = None
         self._executing = False
         self._scheduled = False  # whether a thread of a pool is about to run it
-        self._task_lock = threading.Lock()  # held by the thread that takes a step; nobody waits
+        self._task_lock = threading.Lock()  # held by the thread that runs a step; none waits
 
     def __call__(self) -> None:
         """Run the function, or the coroutine up to its next wait, unless that is under way."""

@@ -108,7 +108,7 @@ def test_a_message_whose_stamp_says_nothing_lives_from_its_arrival_on(stamp_ns: 
 
 @pytest.mark.usefixtures("initialised")
 def test_a_content_filter_can_be_set_read_and_taken_away() -> None:
-    """rmw_zenoh has none, so no other rclpy shows what its methods do."""
+    """rmw_zenoh has no content filters: no other rclpy shows the results of their methods."""
     node = rclpy.create_node("filtering")
     options = ContentFilterOptions("data = %0", ["'yes'"])
     subscription = node.create_subscription(
@@ -405,7 +405,7 @@ async def test_an_async_node_needs_no_executor() -> None:
 
 @pytest.mark.usefixtures("initialised")
 async def test_an_async_node_calls_guard_conditions_that_it_creates_while_it_runs() -> None:
-    """As it calls what else is created then."""
+    """Those of other entities that are created then are called, too."""
     async with AsyncNode("awaited") as node, asyncio.timeout(LIMIT_S):
         called = asyncio.Event()
 
@@ -522,7 +522,7 @@ def lines_run(call: Callable[[], object], module: ModuleType) -> list[int]:
 
 @pytest.mark.usefixtures("initialised")
 def test_giving_a_request_up_costs_the_same_however_many_are_pending() -> None:
-    """Whoever gives thousands of them up would wait for seconds otherwise."""
+    """A program that gives thousands of them up would wait for seconds otherwise."""
     client = rclpy.create_node("many").create_client(AddTwoInts, "nobody_serves")
     few = [client.call_async(AddTwoInts.Request()) for _ in range(2)]
     lines_of_few = lines_run(partial(client.remove_pending_request, few[-1]), rclpy.client)

@@ -225,7 +225,7 @@ async def test_rclpy_s_client_gets_feedback_and_result(
             feedback_callback=lambda message: feedback.append(list(message.feedback.sequence)),
         )
     )
-    # A result may overtake feedback, which then comes for no callback any more, as in rclpy.
+    # A result may overtake feedback, and a client that has the result drops it, as in rclpy.
     await until(lambda: len(feedback) == 2)
     response = await result_of(handle.get_result_async())
 

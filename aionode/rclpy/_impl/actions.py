@@ -39,7 +39,7 @@ def now_s() -> float:
 
 
 class Goal(Protocol):
-    """A goal of a server: the part of its `ServerGoalHandle` that others are told.
+    """The part of a `ServerGoalHandle` that status messages and answers to clients show.
 
     Attributes:
         _goal_info: Its id, and when it was accepted.

@@ -22,7 +22,7 @@ BareT = TypeVar("BareT", bound="BareEndpoint")
 
 
 class EndpointHandle(Destroyable, Generic[BareT]):
-    """A handle over an endpoint of a bare node, from `_announce` on.
+    """The handle of an endpoint of a bare node, which `_announce` creates.
 
     Args:
         node: Its node.

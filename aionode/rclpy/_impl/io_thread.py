@@ -62,9 +62,8 @@ class IoThread:
         # it will look again. The loop looks once it runs.
         self._looks = 0
         self._woken_after = 0
-        self._ended = (
-            False  # set by the thread as it ends; from then on, whoever posts work does it
-        )
+        # Set by the thread as it ends; from then on, each thread does the work that it posts.
+        self._ended = False
         self._loop: LendableLoop | None = None
         self._stopping: asyncio.Event | None = None
         self._opened = Wakeup()

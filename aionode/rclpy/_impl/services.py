@@ -95,7 +95,7 @@ class CallHandle(EndpointHandle[BareT]):
         srv_type: The service class.
         srv_name: Its name.
         qos_profile: Its profile.
-        wanted: Which end it is, in the error after shutdown.
+        wanted: The name of this end, for the error after shutdown.
     """
 
     def __init__(
@@ -115,9 +115,9 @@ class CallHandle(EndpointHandle[BareT]):
         """Tell of calls on ``<service>/_service_event``.
 
         Args:
-            clock: Where the stamps come from.
-            service_event_qos_profile: QoS of that topic.
-            introspection_state: What is told.
+            clock: The clock that shows the stamps of events.
+            service_event_qos_profile: The profile of that topic.
+            introspection_state: Whether events are published, and whether with their contents.
         """
         self._introspection.configure(clock, service_event_qos_profile, introspection_state)
 
@@ -140,7 +140,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             node.requests,
             partial(logger.warning, text),
         )
-        # Threads that spin add each request, and pop it, in one step.
+        # Threads that spin add and pop requests, each in one step.
         self._taken: dict[rmw_request_id_t, Request] = {}
         self._announce(node.bare.create_server, self._support.wire_type, self._requests.serve)
 
@@ -202,8 +202,8 @@ class Replies:
 
     def __init__(self, arrivals: Arrivals) -> None:
         self.items: deque[tuple[int, Any, int]] = deque()
-        # Threads that call add to it before they send, and pop what they give up; the thread of the
-        # context pops what it hands on. Each is one step, so one of them gets it.
+        # Threads that call add an entry before they send, and pop it to give up; the thread of the
+        # context pops the entry of a reply. Each is one step, so that one of them gets the entry.
         self.blocked: dict[int, Callable[[Any], None]] = {}
         self._arrivals = arrivals
 

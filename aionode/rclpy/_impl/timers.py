@@ -21,7 +21,7 @@ class ClockHandle(Destroyable, Clock):
     """A clock: aionode's, as a handle."""
 
     def __new__(cls, *_: Any, **__: Any) -> Self:
-        """Create one of this class, whatever it shows."""
+        """Create a clock of this class for each type of time; `Clock` has one for ROS time."""
         return object.__new__(cls)
 
     def __init__(self, clock_type: int) -> None:

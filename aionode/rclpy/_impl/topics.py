@@ -160,14 +160,14 @@ class Inbox:
         keep_all = profile.resolved().history.name == "KEEP_ALL"
         self.limit = KEEP_ALL_DEPTH if keep_all else (profile.depth or DEFAULT_DEPTH)
         self.keep_all = keep_all
-        # Threads append and take in one step; one that has found it empty is told by `arrivals`.
+        # Threads append and take in one step; `arrivals` wakes a thread that has found it empty.
         self.items: deque[tuple[Any, SampleInfo, int]] = deque(
             maxlen=None if keep_all else self.limit
         )
         self._limit_bytes = limit_bytes
         self._on_heavy: Callable[[], None] | None = on_heavy  # called once
-        # Of what waits, or did while others have waited. Threads that deliver at once overwrite
-        # each other's: then a message too many may wait.
+        # Of the messages that wait, or did while others have waited. Threads that deliver at the
+        # same time overwrite each other's number: then a message too many may wait.
         self._largest_bytes = 0
         self.accept: Callable[[bytes], bool] | None = None
         self.feed: Feed = []
@@ -232,7 +232,7 @@ class Inbox:
             listener(sample_info)
 
     def reject(self, error: DecodeError) -> None:
-        """Leave out what is no message of this type: the transport has logged it."""
+        """Leave out a sample that is no message of this type; the transport has logged it."""
 
     def has_room(self) -> bool:
         """Whether a message can be taken without losing one that should be kept."""
@@ -288,8 +288,8 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
-        # Used by the threads that take, one at a time unless the callback group is reentrant. Then
-        # two messages may get the same number, or a publisher be asked about twice.
+        # Used by the threads that take, one at a time unless the callback group is reentrant. With
+        # several, two messages may get the same number, or a publisher be looked up twice.
         self._lifespans: dict[bytes, int] = {}
         self._received = 0
         self._complained = False

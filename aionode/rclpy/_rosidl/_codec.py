@@ -128,7 +128,7 @@ def adopted_element(value: Any, type_: FieldType) -> Any:
         return bool(value)
     if isinstance(value, bool) and type_.kind in TYPE_CODES:
         return int(value)
-    return value.item() if type(value).__module__ == "numpy" else value  # a single number
+    return value.item() if type(value).__module__ == "numpy" else value  # as Python's
 
 
 @cache

@@ -72,7 +72,7 @@ def message_to_csv(
 ) -> str:
     """Return the values of a message in a line; see `message_to_ordereddict`."""
     form = Form(
-        as_float=lambda number: number,  # float32 in arrays have fewer digits than as floats
+        as_float=lambda number: number,  # numpy's float32 has fewer digits than the float
         as_byte=lambda number: bytes((number,)),
         elements=list,
         truncate=truncate_length,
