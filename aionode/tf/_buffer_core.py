@@ -228,6 +228,8 @@ class BufferCore:
         """Give an authority another name in all that is recorded."""
         for record in (self._authorities, self._rivals):
             record.update(dict.fromkeys([c for c, by in record.items() if by == before], name))
+        for child in [c for c, by in self._rivals.items() if by == self._authorities[c]]:
+            del self._rivals[child]  # two publishers of one node
 
     def _refuse(self, refusals: list[tuple[str, str]], authority: str) -> None:
         """Log what is wrong with a transform."""

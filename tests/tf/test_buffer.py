@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from aionode import Context, MessageInfo, Node, Time
+from aionode.cli._nouns.doctor_transforms import two_broadcasters
 from aionode.clock import Duration
 from aionode.errors import (
     ConnectivityException,
@@ -448,7 +449,9 @@ async def test_two_publishers_of_one_node_are_one_sender_once_they_are_named(
     buffer.listener.static_callback(camera, from_publisher(gids[0]))
     buffer.listener.callback(camera, from_publisher(gids[1]))
     node.graph.add_endpoint(publisher("/tf_static", gids[0]))
+    assert len(list(two_broadcasters(buffer))) == 1
     node.graph.add_endpoint(publisher("/tf", gids[1]))
+    assert not list(two_broadcasters(buffer))
     buffer.listener.static_callback(camera, from_publisher(gids[0]))
     assert not any("TF_TWO_BROADCASTERS" in text for text in logged)
 
