@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 import click
@@ -11,6 +12,7 @@ import pytest
 
 from aionode import Context, Node
 from aionode.cli._nouns.doctor import doctor
+from aionode.cli._nouns.doctor_transforms import LISTEN_S
 from aionode.cli._nouns.tf import (
     echo,
     echo_text,
@@ -209,39 +211,51 @@ def test_static_refuses_what_every_buffer_would_refuse(
 
 
 @pytest.fixture
-def _brief(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let the doctor listen for a few messages of a node in the same process."""
-    monkeypatch.setattr("aionode.cli._nouns.doctor_transforms.LISTEN_S", 0.2)
+def diagnose(tool: Node, manual_clock: ManualClock, screen: Any) -> Callable[..., Awaitable[int]]:
+    """Run the doctor: the time for which it listens is that of the manual clock."""
+
+    async def run(**options: Any) -> int:
+        async with asyncio.TaskGroup() as tasks:
+            diagnosis = tasks.create_task(doctor(tool, output=screen.output, **options))
+            while not diagnosis.done():
+                await manual_clock.advance(LISTEN_S)
+        return diagnosis.result()
+
+    return run
 
 
-@pytest.mark.usefixtures("_brief")
 async def test_doctor_says_why_a_transform_is_missing(
-    tool: Node, node_factory: Callable[..., Node], screen: Any
+    diagnose: Callable[..., Awaitable[int]],
+    manual_clock: ManualClock,
+    node_factory: Callable[..., Node],
+    screen: Any,
 ) -> None:
     """The reason of tf2, trees that are not connected, old stamps, and a name that is similar."""
     sender = node_factory("sender")
     TransformBroadcaster(sender)
     static = StaticTransformBroadcaster(sender)
     static.sendTransform([transform("map", "odom"), transform("base_link", "camera")])
-    status = await doctor(tool, output=screen.output, transform=("map", "camera"))
-    assert status == 1
+    assert await diagnose(transform=("map", "camera")) == 1
     assert (
         "problem: transform from [camera] to [map]: Could not find a connection between 'map' and "
         "'camera'" in screen.text
     )
     assert "2 unconnected trees, below base_link, map" in screen.text
-    await doctor(tool, output=screen.output, transform=("map", "base_lnk"))
+    await diagnose(transform=("map", "base_lnk"))
     assert "Did you mean 'base_link'?" in screen.text
     broadcaster = TransformBroadcaster(sender)
     stale = transform("odom", "base_link", 1.0)
     sender.create_timer(0.05, lambda: broadcaster.sendTransform(stale))
-    await doctor(tool, output=screen.output)
+    await manual_clock.advance(10.0)
+    await diagnose()
     assert "base_link: its transform in odom is " in screen.text
 
 
-@pytest.mark.usefixtures("_brief")
 async def test_doctor_does_not_compare_simulated_stamps_with_this_clock(
-    tool: Node, node_factory: Callable[..., Node], screen: Any
+    diagnose: Callable[..., Awaitable[int]],
+    manual_clock: ManualClock,
+    node_factory: Callable[..., Node],
+    screen: Any,
 ) -> None:
     """With a simulation, all of them would look years old."""
     sender = node_factory("sender")
@@ -249,6 +263,7 @@ async def test_doctor_does_not_compare_simulated_stamps_with_this_clock(
     broadcaster = TransformBroadcaster(sender)
     simulated = transform("odom", "base_link", 1.0)
     sender.create_timer(0.05, lambda: broadcaster.sendTransform(simulated))
-    await doctor(tool, output=screen.output, transform=("odom", "base_link"))
+    await manual_clock.advance(10.0)
+    await diagnose(transform=("odom", "base_link"))
     assert "s old" not in screen.text
     assert "0 problem(s)" in screen.text
