@@ -37,7 +37,7 @@ class TransformBroadcaster:
         """Publish one transform, or several in one message; never waits.
 
         Raises:
-            TypeError: it is not a transform.
+            MessageError: it is not a transform (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         self.pub_tf.publish(self._message(transforms=listed(transform)))
@@ -70,11 +70,11 @@ class StaticTransformBroadcaster:
         """Publish one or several transforms, with all that were sent before; never waits.
 
         Raises:
-            TypeError: it is not a transform.
+            MessageError: it is not a transform (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         by_child = {
-            stamped.child_frame_id: stamped
+            getattr(stamped, "child_frame_id", None): stamped  # `publish` refuses others
             for stamped in [*self.net_message.transforms, *listed(transform)]
         }
         message = self._message(transforms=list(by_child.values()))

@@ -17,6 +17,7 @@ from aionode.errors import (
     ExtrapolationException,
     InvalidArgumentException,
     LookupException,
+    MessageError,
     TimeoutException,
 )
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
@@ -408,6 +409,18 @@ async def test_transforms_come_from_tf_and_tf_static(
             TransformBroadcaster(sender).sendTransform(transform("odom", "base", 1.0))
             await buffer.wait_for_transform("odom", "camera")
             assert "broadcaster: '/sender'" in buffer.all_frames_as_yaml()
+
+
+@pytest.mark.parametrize("broadcaster", [TransformBroadcaster, StaticTransformBroadcaster])
+async def test_only_transforms_are_sent(broadcaster: Any, node: Node) -> None:
+    """Anything else is refused, and the next transform is sent as before."""
+    sending = broadcaster(node)
+    for other in (5, None, [transform("base", "camera"), 5]):
+        with pytest.raises(MessageError, match="needs geometry_msgs/msg/TransformStamped"):
+            sending.sendTransform(other)
+    buffer = Buffer(node)
+    sending.sendTransform(transform("base", "camera", 1.0))
+    await buffer.wait_for_transform("base", "camera")
 
 
 def from_publisher(gid: bytes) -> MessageInfo:
