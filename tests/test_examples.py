@@ -487,11 +487,12 @@ def test_the_arm_says_where_its_gripper_is(domain: int) -> None:
         arm.line_with("cup in the gripper")
         arm.line_with("height of the gripper")
         command = ["-m", "aionode", "tf", "tree"]
-        tree = run(command, env={**os.environ, "ROS_DOMAIN_ID": str(domain)}, timeout=40).stdout
+        tree = run(command, env={**os.environ, "ROS_DOMAIN_ID": str(domain)}, timeout=40)
 
+    assert tree.returncode == 0, tree.stderr
     assert abs(place[0] - 2) < 1.3
-    assert tree.splitlines()[0] == "map"
-    assert "gripper" in tree
+    assert tree.stdout.splitlines()[0] == "map"
+    assert "gripper" in tree.stdout
 
 
 def test_the_parameters_of_another_node_are_read_and_set(domain: int) -> None:

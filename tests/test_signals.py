@@ -87,7 +87,7 @@ SIGINT, SIGTERM, SIGHUP = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
 @pytest.mark.parametrize("number", [SIGINT, SIGTERM, SIGHUP])
 def test_a_signal_ends_the_program_cleanly(number: signal.Signals) -> None:
     """Handlers are cancelled, no traceback is printed, and the status is 0."""
-    with Program(WAITS_FOR_EVER) as program:
+    with Program(WAITS_FOR_EVER, fresh=True) as program:
         program.wait_until_ready()
         program.send(number)
         status, out, err = program.end()

@@ -39,7 +39,8 @@ class Process:
     Args:
         arguments: What follows `python` on the command line.
         env: More variables of its environment.
-        fresh: Whether Python is started for it: where its start is what a test is about.
+        fresh: Whether Python is started for it: where its start, or the end of the interpreter, is
+            what a test is about.
 
     Attributes:
         started_s: When it was started, by `time.monotonic`.

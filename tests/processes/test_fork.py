@@ -21,10 +21,11 @@ ROOT = Path(__file__).parents[2]
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
 
 
-def told(how: str) -> list[str]:
+def told(how: str, *, fresh: bool = False) -> list[str]:
     """Return what the program tells; nothing of it is left in the end."""
     with fork_server.start(
         [str(MEMBER), how],
+        fresh=fresh,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
@@ -80,4 +81,4 @@ def test_a_subprocess_with_a_function_before_exec_works_beside_a_node() -> None:
 
 def test_a_forked_child_may_end_as_programs_do() -> None:
     """With its exit handlers, and everything that the interpreter throws away."""
-    assert told("between") == ["exit 0", "parent: done"]
+    assert told("between", fresh=True) == ["exit 0", "parent: done"]

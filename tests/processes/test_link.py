@@ -57,7 +57,7 @@ def other_process(*arguments: str) -> Iterator[subprocess.Popen[str]]:
         cwd=Path(__file__).parents[2],
         stdin=subprocess.PIPE,
         stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
+        stderr=2,  # shown if the test fails
     ) as process:
         try:
             yield process

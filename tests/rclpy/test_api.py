@@ -466,6 +466,7 @@ def test_a_program_ends_however_it_ends(
     process = start(
         ["-m", "aionode.rclpy", str(program), how],
         env={**os.environ, **isolated_environment()},
+        fresh=True,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

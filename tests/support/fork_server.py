@@ -1,8 +1,10 @@
 """Python programs that begin with aionode imported: a fork server makes their processes.
 
 A start of Python with aionode and Zenoh takes 0.3 s of processor time, and there are hundreds.
-A process of the fork server differs from one of `python program.py` in what is imported already,
-and in the command line that the system shows; tests about these start Python themselves.
+A process of the fork server differs from one of `python program.py` in the modules that it has
+imported already, in the command line and the environment that the system shows, and in its end:
+exit handlers run and output is flushed, but the interpreter is not finalized. Tests about these
+start Python themselves (`fresh`).
 """
 
 from __future__ import annotations
@@ -76,7 +78,8 @@ def start(
     Args:
         arguments: What follows `python` on the command line.
         env: Its environment, to which `PYTHONUNBUFFERED` is added.
-        fresh: Whether Python itself starts: where that is what a test is about.
+        fresh: Whether Python itself starts: where its start, or the end of the interpreter, is what
+            a test is about.
         options: Of `subprocess.Popen`. Each of the standard streams has to be given.
     """
     whole = {**env, "PYTHONUNBUFFERED": "1"}
@@ -296,11 +299,11 @@ def run_here(arguments: list[str]) -> None:
 
 
 def end_here(status: int) -> None:
-    """End this process as Python does, but do not take the modules apart; return where it may not.
+    """End this process as Python does, but without taking the modules apart.
 
-    That takes half of a short program's processor time: the system copies each page of the fork
-    server's memory in which a reference is counted. Python itself ends a program that has threads
-    to wait for, or output that nobody takes.
+    To take them apart is half of a short program's processor time: the system copies each page of
+    the fork server's memory in which a reference is counted. The function returns, and Python ends
+    the program itself, if there are threads to wait for, or output that nobody takes.
     """
     if any(not thread.daemon for thread in threading.enumerate()[1:]):
         return

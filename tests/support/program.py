@@ -29,7 +29,7 @@ class Program:
     Args:
         parts: The text after `PREAMBLE`; each part may be indented.
         before: A command that is given the program's, such as ``nohup``.
-        options: Of `subprocess.Popen`.
+        options: Of `fork_server.start`, or, with `before`, of `subprocess.Popen`.
     """
 
     def __init__(self, *parts: str, before: tuple[str, ...] = (), **options: Any) -> None:

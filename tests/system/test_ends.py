@@ -69,7 +69,7 @@ class Supervised:
             ["-c", text],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL,
+            stderr=2,  # shown if the test fails
             env={**os.environ, MARK: self.mark, "AIONODE_TRANSPORT": transport},
         )
         self.lines: list[str] = []
