@@ -163,8 +163,8 @@ async def test_hz_shows_that_a_topic_fell_silent(
 @pytest.mark.parametrize(
     ("width", "columns"),
     [
-        (80, ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]),
-        (60, ["topic", "rate", "min_delta", "max_delta", "std_dev"]),
+        (60, ["topic", "rate", "min_delta", "max_delta", "std_dev", "window"]),
+        (59, ["topic", "rate", "min_delta", "max_delta", "std_dev"]),
         (50, ["topic", "rate", "min_delta", "max_delta"]),
         (35, ["topic", "rate", "min_delta"]),
         (20, ["topic", "rate"]),

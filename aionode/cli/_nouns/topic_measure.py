@@ -286,7 +286,7 @@ def overdue_s(spread: Spread) -> float:
 
 
 def print_rate(output: Output, name: str, intervals: Intervals) -> None:
-    """Print the statistics of the only topic, unless nothing came."""
+    """Print the statistics of the only topic, unless it is silent."""
     spread = intervals.spread()
     if spread is not None:
         output.item(
@@ -297,7 +297,7 @@ def print_rate(output: Output, name: str, intervals: Intervals) -> None:
 def print_rates(
     table: RateTable, output: Output, update: Callable[[Callable[[int], str]], None] | None
 ) -> None:
-    """Print the statistics of several topics, unless nothing came; `update` redraws a terminal."""
+    """Print the statistics of several topics, unless none is new; `update` redraws a terminal."""
     changed = table.update()
     if update is not None:
         update(partial(hz_table, table.rows()))
@@ -318,7 +318,7 @@ def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
     widths = [max(map(len, column)) for column in zip(HZ_HEADER, *rows, strict=True)]
     kept = list(range(len(HZ_HEADER)))
     for column in LEAST_FIRST:
-        if sum(widths[i] + 3 for i in kept) + 1 <= width:  # no line fills the terminal
+        if sum(widths[i] + 3 for i in kept) - 3 < width:  # no line fills the terminal
             break
         kept.remove(column)
     return kept
