@@ -38,9 +38,7 @@ async def test_a_sound_system_has_no_problem(
     """No findings, and the status of success."""
     node_factory("listener").create_subscription(String, "/chatter", lambda msg: None)
 
-    status, finding = await findings(tool, screen)
-
-    assert (status, finding) == (0, [])
+    assert await findings(tool, screen) == (0, [])
     assert screen.records[0]["nodes"] == 2
 
 
@@ -191,11 +189,11 @@ def test_a_normal_network_is_not_remarked_on() -> None:
     """No finding for default settings or for the RMW that aionode communicates with."""
     environ = {"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}
 
-    finding = network_findings(
+    remarks = network_findings(
         network_from(environ), environ, has_router=False, domains=[], alone=False
     )
 
-    assert finding == []
+    assert remarks == []
 
 
 @pytest.mark.parametrize(

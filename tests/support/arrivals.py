@@ -1,4 +1,4 @@
-"""The ends of publishers, subscriptions and services that transports have to do with."""
+"""The objects that endpoints give to transports and get from them, and the gids of endpoints."""
 
 from __future__ import annotations
 
@@ -34,15 +34,15 @@ def direct_subscription(node: Node, *args: Any) -> Subscription[Any]:
 
 
 def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:
-    """Return what a subscription gives to each transport: messages are delivered to it."""
+    """Return the object that a subscription gives to each transport, which delivers to it."""
     return subscription._reader
 
 
 def writers_of(publisher: Publisher[Any] | BarePublisher) -> tuple[Writer, ...]:
-    """Return what a publisher got from each transport: it writes each message to them."""
+    """Return the writers that a publisher got from the transports, one from each."""
     return tuple(publisher._writers)
 
 
 def serve_of(service: Service[Any, Any]) -> Serve:
-    """Return what a service gives to each transport: it is called with each request."""
+    """Return the function that a service gives to each transport: it takes the requests."""
     return service._serve

@@ -79,7 +79,7 @@ class RosbridgeClient:
 
 @asynccontextmanager
 async def robot_of(node: Node, policy: Policy | None = None) -> AsyncIterator[Robot]:
-    """Yield what the sessions of a gateway share; by default all but large frames is allowed."""
+    """Yield what the sessions of a gateway share; by default only large frames are refused."""
     audit = Audit(node, "")
     async with asyncio.TaskGroup() as tasks:
         robot = Robot(node, policy or SMALL_FRAMES, audit, tasks)

@@ -54,7 +54,7 @@ def leave(status: int, text: str = "") -> None:
 
 
 def become(command: Sequence[str]) -> NoReturn:
-    """Run a command in the place of this process, as it is the owner of its signals.
+    """Run a command in the place of this process, so that signals reach the command itself.
 
     Raises:
         click.exceptions.Exit: The command has ended, where it cannot take the place of the process:
