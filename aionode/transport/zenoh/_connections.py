@@ -97,11 +97,14 @@ class Connections:
         self.lost.clear()
 
     def has_lost(self, zid: str) -> bool:
-        """Return whether a connection was lost, and not made anew; also if that is still queued.
+        """Return whether a connection was lost, and not made anew.
 
-        What a session has declared vanishes with its connection, which is told elsewhere.
+        Zenoh withdraws the tokens of the other end before it tells of the loss, so it is asked for
+        its connections until then.
         """
-        if self._session is None or not (zid in self.kinds or zid in self.lost):
+        if zid in self.lost:
+            return True
+        if self._session is None or zid not in self.kinds:
             return False
         return zid not in {str(transport.zid) for transport in self._session.info.transports()}
 
