@@ -9,8 +9,10 @@ The loss of the last message of a burst is detected by heartbeats: a writer that
 moment announces its last sequence number, and repeats this at growing intervals until it is
 acknowledged. The terms are those of RTPS.
 
-A reader that vanishes without having answered for a while was frozen or cut off, and is waited for.
-One that was asked for long and has never answered is none: any program may announce it.
+A reader that vanishes without having answered for a while was frozen, and is waited for. One whose
+connection is lost while it answers was cut off: it returns soon, or its process has ended. Messages
+are kept for it as long as that holds nothing up. A reader that was asked for long and has never
+answered is none: any program may announce it.
 A reader that has everything is not asked by heartbeats, so a KEEP_ALL writer probes it.
 """
 
@@ -48,7 +50,7 @@ HEARTBEAT_NS: Final = 1_000_000_000
 """The interval of heartbeats to a reader that does not answer, and while the writer is busy."""
 
 SILENT_NS: Final = 3_000_000_000
-"""A reader that vanishes after so long without an answer was frozen or cut off, and may return."""
+"""A reader that vanishes after so long without an answer was frozen, and may return."""
 
 UNHEARD_NS: Final = 500_000_000
 """A reader that has everything, and from which nothing came for so long, is probed."""
@@ -212,8 +214,7 @@ class StatefulWriter:
     def remove(self, gid: bytes, has_lost: Callable[[str], bool] = lambda _: False) -> None:
         """Remove a reader that has vanished, or wait for its return.
 
-        While connections are made anew, a reader can vanish and return more than once. A KEEP_LAST
-        writer, which no reader holds up, keeps its messages for one that was cut off, too.
+        While connections are made anew, a reader can vanish and return more than once.
 
         Args:
             gid: The reader.
@@ -229,7 +230,7 @@ class StatefulWriter:
             reader.away_until_ns = now_ns + RETURN_NS
         elif reader.returned_ns and now_ns - reader.returned_ns < FLAPPING_NS:
             reader.away_until_ns = now_ns + FLAPPING_NS
-        elif reader.answered and not self._keep_all and has_lost(reader.participant):
+        elif reader.answered and has_lost(reader.participant):
             reader.away_until_ns = now_ns + FLAPPING_NS
             reader.is_cut_off = True
         else:
@@ -383,10 +384,24 @@ class StatefulWriter:
             self._trim()
 
     def has_room(self) -> bool:
-        """Return whether another message can be kept without dropping one."""
+        """Return whether another message can be kept without dropping one.
+
+        A KEEP_ALL writer forgets for it what only readers lack that were cut off.
+        """
+        if not self._is_full:
+            return True
+        if self._keep_all:
+            for reader in self.readers.values():
+                if reader.is_cut_off:
+                    reader.acked, reader.end = self.sent, self._sent_end
+            self._trim()
+        return not self._is_full
+
+    @property
+    def _is_full(self) -> bool:
         entries = self.entries
-        return not entries or (
-            len(entries) < self._depth and self._end - entries[0][3] < self._limit_bytes
+        return bool(entries) and (
+            len(entries) >= self._depth or self._end - entries[0][3] >= self._limit_bytes
         )
 
     @property

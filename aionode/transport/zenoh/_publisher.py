@@ -309,7 +309,7 @@ class ZenohWriter(Declaration, Writer):
                     history.add(known, acknowledging[known])
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(history.probe)
-        elif not self._is_watched and history.readers:  # one that is away may be to be given up
+        if not self._is_watched and history.readers:  # one that is away may be to be given up
             self._watch()
         self._progress()
         # Messages that are published while a reader is away are sent again. A subscriber without a

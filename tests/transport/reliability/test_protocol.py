@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability.limits import NEVER, WINDOW_BYTES
+from aionode.transport._reliability.limits import NEVER, QUIET_NS, WINDOW_BYTES
 from aionode.transport._reliability.stateful_reader import GONE_TICKS, StatefulReader
 from aionode.transport._reliability.stateful_writer import (
     FLAPPING_NS,
@@ -236,14 +236,19 @@ class Wire:
             if each.name == submessage.reader and submessage.kind is not ACKNACK:
                 each.reader.receive(submessage)
 
-    def settle(self) -> None:
-        """Bring everything, and let time pass, until nothing happens any more."""
-        for _ in range(10_000):
+    def bring_all(self) -> None:
+        """Bring everything that is under way."""
+        while self.control or any(each.topic for each in self.subscriptions):
             for each in self.subscriptions:
                 while each.topic:
                     self.bring_topic(each)
             while self.control:
                 self.bring_control()
+
+    def settle(self) -> None:
+        """Bring everything, and let time pass, until nothing happens any more."""
+        for _ in range(10_000):
+            self.bring_all()
             self.clock.ns += 60_000_000
             if not self.writer.tick() and not self.control:
                 return
@@ -604,12 +609,18 @@ def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() ->
     assert wire.writer.done
 
 
-def test_a_reader_whose_connection_breaks_for_a_moment_misses_nothing() -> None:
-    """It answers, so it is not frozen: a KEEP_LAST writer keeps its depth for it as well."""
-    wire = Wire(1, keep_all=False, depth=10)
-    (reader,) = wire.subscriptions
+def cut_off(wire: Wire, reader: Subscription) -> None:
+    """Lose the connection to a reader that answers."""
     wire.settle()
     wire.writer.remove(reader.name, {reader.name.hex()}.__contains__)
+
+
+@pytest.mark.parametrize("keep_all", [True, False])
+def test_a_reader_whose_connection_breaks_for_a_moment_misses_nothing(*, keep_all: bool) -> None:
+    """It answers, so it is not frozen; messages are kept for it as well."""
+    wire = Wire(1, keep_all=keep_all, depth=10)
+    (reader,) = wire.subscriptions
+    cut_off(wire, reader)
     for _ in range(10):
         wire.publish()
 
@@ -620,6 +631,30 @@ def test_a_reader_whose_connection_breaks_for_a_moment_misses_nothing() -> None:
     assert wire.lost_count == 0
 
 
+@pytest.mark.parametrize("limit_bytes", [1 << 40, 1000], ids=["messages", "bytes"])
+def test_a_reader_that_is_cut_off_leaves_a_keep_all_writer_room(limit_bytes: int) -> None:
+    """Its process may have ended. If it returns, it gets all that is published from then on."""
+    wire = Wire(2, keep_all=True, depth=10, limit_bytes=limit_bytes)
+    reader, other = wire.subscriptions
+    cut_off(wire, reader)
+    for _ in range(100):
+        assert wire.writer.has_room()
+        wire.publish()
+        wire.bring_all()
+        wire.clock.ns += QUIET_NS
+        wire.writer.tick()
+        wire.bring_all()
+    assert other.heard == list(range(1, 101))
+    assert wire.writer.done
+
+    wire.writer.add(reader.name, reader.name.hex())
+    wire.settle()
+    wire.publish()
+    wire.settle()
+    assert reader.heard[-1] == 101
+    assert wire.writer.done
+
+
 @pytest.mark.parametrize("keep_all", [True, False])
 def test_a_reader_that_ends_with_its_process_holds_up_no_end_and_has_lost_nothing(
     *, keep_all: bool
@@ -627,8 +662,7 @@ def test_a_reader_that_ends_with_its_process_holds_up_no_end_and_has_lost_nothin
     """Its connection breaks as well, and nobody can tell which of both it is."""
     wire = Wire(1, keep_all=keep_all, depth=10)
     (reader,) = wire.subscriptions
-    wire.settle()
-    wire.writer.remove(reader.name, {reader.name.hex()}.__contains__)
+    cut_off(wire, reader)
     wire.publish()
 
     assert wire.writer.done

@@ -31,6 +31,7 @@ from aionode.transport.zenoh import _acknowledgements as acknowledgements
 from aionode.transport.zenoh import _publisher as publishers
 from aionode.transport.zenoh import _session_state as session_state
 from aionode.transport.zenoh import _sockets
+from aionode.transport.zenoh._connections import Connections
 from aionode.transport.zenoh._defects import forgotten_peers
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._session_state import SessionState
@@ -401,12 +402,17 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     return clock
 
 
-async def cut_off(node: Node, other: Node, is_lost: Callable[[], bool]) -> None:
-    """Cut the connections between two contexts, as a network does, until that is noticed."""
+def cut(node: Node, other: Node) -> None:
+    """Cut the connections between two contexts, as a network does."""
     session = state_of(node.context).session
     assert session is not None
+    _sockets.cut(set(_sockets.connections(session, {other.context.participant})))
+
+
+async def cut_off(node: Node, other: Node, is_lost: Callable[[], bool]) -> None:
+    """Cut the connections between two contexts until that is noticed."""
     while not is_lost():
-        _sockets.cut(set(_sockets.connections(session, {other.context.participant})))
+        cut(node, other)
         await asyncio.sleep(0.01)  # noqa: TID251  # there is no event
 
 
@@ -433,5 +439,46 @@ async def test_what_is_published_while_a_frozen_reader_is_away_is_sent_on_its_re
         assert [(await subscription.receive()).data for _ in range(3)] == [1, 2, 3]
         await until(writers["/n"].is_done)
         assert subscription.stats.received == 4
+        assert subscription.stats.lost == 0
+        assert publisher.stats.dropped == 0
+
+
+@pytest.mark.parametrize(
+    ("qos", "is_forgotten"),
+    [(QoSProfile(depth=10), False), (KEEP_ALL, False), (TRANSIENT, False), (TRANSIENT, True)],
+    ids=["last", "all", "all transient local", "all transient local, forgotten"],
+)
+async def test_a_reader_whose_connection_breaks_for_a_moment_gets_each_message_once(
+    qos: QoSProfile,
+    is_forgotten: bool,
+    writers: Writers,
+    clock: Clock,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Its publisher keeps them for it; where the publisher forgets it, Zenoh's history has them."""
+    if is_forgotten:
+        monkeypatch.setattr(Connections, "has_lost", lambda *_: False)
+    async with two_nodes() as (a, b):
+        publisher = a.create_publisher(Int32, "n", qos)
+        subscription = b.create_subscription(Int32, "n", None, qos)
+        await publisher.wait_for_subscribers()
+        for number in range(3):
+            publisher.publish(Int32(data=number))
+        assert [(await subscription.receive()).data for _ in range(3)] == [0, 1, 2]
+        await until(writers["/n"].is_done)
+
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(a.graph.until(lambda: publisher.get_subscription_count() == 0))
+            await checkpoint()
+            cut(a, b)
+        for number in range(3, 8):
+            publisher.publish(Int32(data=number))
+
+        assert [(await subscription.receive()).data for _ in range(5)] == [3, 4, 5, 6, 7]
+        await publisher.wait_for_subscribers()
+        publisher.publish(Int32(data=8))
+        assert (await subscription.receive()).data == 8
+        await until(writers["/n"].is_done)
+        assert subscription.stats.received == 9
         assert subscription.stats.lost == 0
         assert publisher.stats.dropped == 0
