@@ -62,6 +62,10 @@ one that was cut off."""
 RETURN_NS: Final = 120_000_000_000
 """Time for which messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
 
+MOST_READERS: Final = 1_000
+"""Beside more readers than these, none that vanishes is waited for: any process may announce very
+many, and withdraw them, again and again."""
+
 LOST_RANGES: Final = 16
 """Number of ranges of reported losses that are remembered before acknowledged ones are dropped."""
 
@@ -226,7 +230,9 @@ class StatefulWriter:
         now_ns = self._now_ns()
         # One that has never answered is no reader of aionode, and nothing is kept for it.
         asked = reader.answered and (self._keep_all or reader.acked < self.sent)
-        if asked and now_ns - reader.heard_ns >= SILENT_NS:
+        if len(self.readers) > MOST_READERS:
+            del self.readers[gid]
+        elif asked and now_ns - reader.heard_ns >= SILENT_NS:
             reader.away_until_ns = now_ns + RETURN_NS
         elif reader.returned_ns and now_ns - reader.returned_ns < FLAPPING_NS:
             reader.away_until_ns = now_ns + FLAPPING_NS

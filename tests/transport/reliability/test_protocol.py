@@ -14,6 +14,7 @@ from aionode.transport._reliability.stateful_reader import GONE_TICKS, StatefulR
 from aionode.transport._reliability.stateful_writer import (
     FLAPPING_NS,
     HEARTBEAT_NS,
+    MOST_READERS,
     MUTE_TICKS,
     RETURN_NS,
     UNANSWERED_EACH_TICK,
@@ -653,6 +654,19 @@ def test_a_reader_that_is_cut_off_leaves_a_keep_all_writer_room(limit_bytes: int
     wire.settle()
     assert reader.heard[-1] == 101
     assert wire.writer.done
+
+
+def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
+    """A process can announce them, answer for each, and cut its connection, again and again."""
+    wire = Wire(0, keep_all=True, depth=10)
+    for number in range(5 * MOST_READERS):
+        gid = number.to_bytes(16, "big")
+        wire.writer.add(gid, gid.hex())
+        wire.writer.acknack(Submessage(ACKNACK, WRITER, gid, 1, 0, b""))
+        wire.writer.remove(gid, lambda _: True)
+    wire.control.clear()
+
+    assert len(wire.writer.readers) == MOST_READERS
 
 
 @pytest.mark.parametrize("keep_all", [True, False])
