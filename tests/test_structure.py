@@ -54,7 +54,7 @@ SHARED = {
     "aionode.tf._apply": "the command line prints rotations as matrices and angles",
     "aionode.tf._buffer_core": "buffers of rclpy's programs take the same times and defaults",
     "aionode.tf._remote": "clients of rclpy's programs read the answers of the same servers",
-    "aionode.tf._texts": "the command line shows the rates of frames",
+    "aionode.tf._frame_listing": "the command line shows the rates of frames",
     "aionode.tf._waiters": "futures of rclpy's programs wait as tasks do",
     "aionode.transport._network": "contexts and `aionode router` and `doctor` share settings",
     "aionode.transport.zenoh._session": "`aionode router` is a Zenoh session without nodes",

@@ -10,7 +10,7 @@ from weakref import finalize, ref
 from aionode._concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.tf._buffer_core import time_ns_of
-from aionode.tf._texts import seconds_text
+from aionode.tf._frame_listing import seconds_text
 from aionode.tf._waiters import Waiter
 
 if TYPE_CHECKING:

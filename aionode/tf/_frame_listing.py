@@ -1,4 +1,4 @@
-"""Texts about all frames of a buffer, as tf2 writes them."""
+"""Listings of all frames of a buffer, with rates and times, as tf2 writes them."""
 
 from __future__ import annotations
 
