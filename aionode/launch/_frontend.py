@@ -1,4 +1,4 @@
-"""The meaning of each element of XML and YAML files."""
+"""The meaning of each element of XML and YAML launch files, and the error for any other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One goal at the server that executes it."""
+"""One goal at the server that executes it: its feedback, its cancellation, and how it ends."""
 
 from __future__ import annotations
 
