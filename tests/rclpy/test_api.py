@@ -482,17 +482,17 @@ def test_a_program_ends_however_it_ends(
 
 
 @pytest.mark.usefixtures("initialised")
-def test_thousands_of_calls_at_once_leave_nothing_behind() -> None:
+def test_ten_thousand_calls_at_once_leave_nothing_behind() -> None:
     """As in rclpy, only those within the server's depth are answered; none of the rest is kept."""
     node = rclpy.create_node("many")
     node.create_service(AddTwoInts, "many", lambda request, response: response)
     client = node.create_client(AddTwoInts, "many")
     assert client.wait_for_service(LIMIT_S)
-    futures = [client.call_async(AddTwoInts.Request()) for _ in range(2_000)]
+    futures = [client.call_async(AddTwoInts.Request()) for _ in range(10_000)]
     spin_until(node, futures[-1])
     answered = sum(future.done() for future in futures)
 
-    assert 10 <= answered < 2_000
+    assert 10 <= answered < 10_000
     assert not client.handle._calls
     spin_until(node, client.call_async(AddTwoInts.Request()))
     rclpy.spin_once(node, timeout_sec=LIMIT_S)  # its done callback
