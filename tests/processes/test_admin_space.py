@@ -11,7 +11,7 @@ import pytest
 import zenoh  # noqa: TID251  # plays the router and who listens behind it, without aionode
 
 from tests.processes.process import Process, member
-from tests.support.peers import ros_router, zenoh_config
+from tests.support.peers import ros_router, router_client
 
 CONTROL = "@/control/router"
 
@@ -44,18 +44,11 @@ def router_with_a_listener() -> Iterator[tuple[zenoh.Session, Overheard]]:
     with ExitStack() as stack:
         router = ros_router()
         stack.callback(router.close)
-        settings = {
-            "mode": "client",
-            "connect/endpoints": [f"tcp/127.0.0.1:{os.environ['AIONODE_ROUTER_PORT']}"],
-            "scouting/multicast/enabled": False,
-        }
-        listener = zenoh.open(zenoh_config(settings))
-        stack.callback(listener.close)
+        port = os.environ["AIONODE_ROUTER_PORT"]
+        listener = stack.enter_context(router_client(port))
         listener.declare_queryable("@/**", overheard.take)
         listener.declare_subscriber("@/**", overheard.take)
-        asking = zenoh.open(zenoh_config(settings))
-        stack.callback(asking.close)
-        yield asking, overheard
+        yield stack.enter_context(router_client(port)), overheard
 
 
 @pytest.mark.parametrize("link", ["on", pytest.param("off", marks=pytest.mark.stress)])
