@@ -76,7 +76,6 @@ class Printer:
         no_arr: Whether arrays are described instead of printed.
         no_str: Whether strings are described instead of printed.
         field: The path of the only field to print.
-
     """
 
     def __init__(
@@ -124,7 +123,7 @@ class Printer:
         """Return a message, or the part of one that has a type, as plain values."""
         if isinstance(part, Message):
             return plain(part, self._form)
-        if type_ is None or isinstance(part, int):  # such as an element of a byte array
+        if type_ is None or isinstance(part, int):  # an element of an array of bytes is a number
             return part
         return plain_value(type_, part, self._form)
 
