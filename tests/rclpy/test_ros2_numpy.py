@@ -170,6 +170,15 @@ def test_a_cloud_is_the_same_after_a_message() -> None:
     assert ros2_numpy.numpify(message, squeeze=False).shape == (1, 5)
 
 
+def test_points_of_the_other_byte_order_keep_their_values() -> None:
+    """The fields of a cloud do not say in which order the bytes are."""
+    points = np.array([(1.5, 2), (-3.0, 4)], [("x", ">f4"), ("id", "<u2")])
+
+    message = ros2_numpy.msgify(PointCloud2, points)
+
+    assert ros2_numpy.numpify(message).tolist() == points.tolist()
+
+
 def test_points_that_are_not_finite_are_left_out() -> None:
     """A depth camera has no distance for some pixels."""
     points = np.zeros((2, 2), COLOURED)

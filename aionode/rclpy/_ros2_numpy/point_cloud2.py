@@ -113,6 +113,7 @@ def array_to_pointcloud2(cloud_arr: Array, stamp: Any = None, frame_id: str | No
         frame_id: The frame of the header.
     """
     points = np.atleast_2d(cloud_arr)
+    points = points.astype(points.dtype.newbyteorder("<"), copy=False)
     cloud = PointCloud2(fields=dtype_to_fields(points.dtype))
     if stamp is not None:
         cloud.header.stamp = stamp
