@@ -119,7 +119,7 @@ async def test_a_late_joiner_gets_the_stop(pair: Pair) -> None:
     late = pair.right.create_subscription(Int32, "speed", None, latched)
 
     received = await numbers(late, 1)
-    if received != [STOP]:
+    if received == [1] and pair.left.context is not pair.right.context:
         received += await numbers(late, 1)
     assert received in ([STOP], [1, STOP])
 
