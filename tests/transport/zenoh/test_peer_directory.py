@@ -318,11 +318,11 @@ async def test_a_stuck_peer_holds_up_no_large_message_to_others(
     done = asyncio.Event()
     async with context("a1") as transport:
         peer_directory: Any = transport.peer_directory
-        monkeypatch.setattr(peer_directory, "_session", stuck)
-        peer_directory.retransmit("b2", b"late")
-        await asyncio.to_thread(stuck.entered.wait)
-        queue: Any = transport.session_state.queue(lambda _: done.set())
-        transport.session_state.bulk.submit(lambda: queue.put(None))
-        await done.wait()
-        monkeypatch.undo()
+        with monkeypatch.context() as patch:
+            patch.setattr(peer_directory, "_session", stuck)
+            peer_directory.retransmit("b2", b"late")
+            await asyncio.to_thread(stuck.entered.wait)
+            queue: Any = transport.session_state.queue(lambda _: done.set())
+            transport.session_state.bulk.submit(lambda: queue.put(None))
+            await done.wait()
         stuck.gate.set()
