@@ -1,19 +1,4 @@
-"""The states of a goal, and the transitions between them.
-
-`TRANSITIONS` holds every transition. The server looks each change up there first, so no goal can
-end twice, or be cancelled after its end::
-
-    ACCEPTED --EXECUTE--> EXECUTING --SUCCEED--> SUCCEEDED
-        |                  |     |
-   CANCEL_GOAL    CANCEL_GOAL   ABORT----------> ABORTED
-        |                  |                        ^
-        +---> CANCELING <--+------ABORT-------------+
-                  |------SUCCEED--> SUCCEEDED
-                  +------CANCELED-> CANCELED
-
-A rejected goal has no state, since it is not kept. ``UNKNOWN`` is what a server reports for a goal
-that it does not know, or no longer knows.
-"""
+"""The states of a goal, and the transitions between them: `goal.py` draws them."""
 
 from __future__ import annotations
 

@@ -1,8 +1,23 @@
-"""The public names for goals: their states, the answers of servers, and the ids of clients.
+"""The life of a goal: its states, their transitions, and the goals that cancel requests select.
 
-`_goal_states.py` has the states and the transitions between them, `_cancel_selection.py` the rules
-by which a cancel request selects goals. The functions here make the ids with which an aionode
-client calls ``get_result`` for more than the result.
+`TRANSITIONS` holds every transition. The server looks each change up there first, so no goal can
+end twice, or be cancelled after its end::
+
+    ACCEPTED --EXECUTE--> EXECUTING --SUCCEED--> SUCCEEDED
+        |                  |     |
+   CANCEL_GOAL    CANCEL_GOAL   ABORT----------> ABORTED
+        |                  |                        ^
+        +---> CANCELING <--+------ABORT-------------+
+                  |------SUCCEED--> SUCCEEDED
+                  +------CANCELED-> CANCELED
+
+A rejected goal has no state, since it is not kept. ``UNKNOWN`` is what a server reports for a goal
+that it does not know, or no longer knows.
+
+`ALL_GOALS` is the goal id of cancel requests that do not name a goal. An aionode client calls
+``get_result`` with the ids of `reason_id`, `alive_id` and `left_id` for more than the result.
+
+The states are in `_goal_states.py`, and the goals of a cancel request in `_cancel_selection.py`.
 """
 
 from __future__ import annotations
