@@ -109,6 +109,10 @@ def test_an_array_of_another_type_is_converted_or_refused() -> None:
             "std_msgs/msg/Int8.data: 300, int8 holds -128 to 127",
         ),
         (
+            message_class("std_msgs/msg/Float64")(data=np.array([1.0])),
+            "std_msgs/msg/Float64.data: array([1.]) (ndarray), needs a float",
+        ),
+        (
             Arrays(float32_values=[1.0]),
             "test_msgs/msg/Arrays.float32_values: 1 elements, needs 3",
         ),

@@ -128,7 +128,9 @@ def adopted_element(value: Any, type_: FieldType) -> Any:
         return bool(value)
     if isinstance(value, bool) and type_.kind in TYPE_CODES:
         return int(value)
-    return value.item() if type(value).__module__ == "numpy" else value  # as Python's
+    if type(value).__module__ == "numpy" and not hasattr(value, "__iter__"):
+        return value.item()  # a number, as Python's; an array is refused with aionode's error
+    return value
 
 
 @cache
