@@ -13,7 +13,6 @@ from aionode.clock import MachineTime
 from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.endpoints._qos.lifespan import expires_ns
-from aionode.endpoints.subscription import decoding
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.endpoint import EndpointHandle
@@ -393,7 +392,9 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         if not expression:
             self.inbox.accept = self._filter = None
             return
-        from aionode.content_filter import compile_filter  # few subscriptions have a filter
+        # Few subscriptions have a filter.
+        from aionode.content_filter import compile_filter
+        from aionode.endpoints.subscription import decoding
 
         own_class = aionode_class(self.msg_type)
         self.inbox.accept = decoding(own_class, compile_filter(own_class, expression, parameters))
