@@ -272,13 +272,14 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
                 self._take_status(status)
 
     def _take_response(self, service: str, sequence: int, response: Any) -> None:
-        if sequence not in self._pending[service]:
+        pending = self._pending[service].get(sequence)  # another thread may give it up meanwhile
+        if pending is None:
             self._logger.warning(
                 f"Ignoring unexpected {service} response. There may be more than one action server "
                 f"for the action '{self._action_name}'"
             )
             return
-        future, request = self._pending[service][sequence]
+        future, request = pending
         future.set_result(self._goal(request, response) if service == "goal" else response)
 
     def _goal(self, request: Any, response: Any) -> ClientGoalHandle[Any, Any, Any]:
