@@ -405,6 +405,13 @@ def test_a_lagging_reader_holds_up_no_other_of_a_keep_last_writer() -> None:
     assert wire.lost_count == 490
 
 
+def vanish_frozen(wire: Wire, reader: Subscription) -> None:
+    """Have a reader give no sign until its lease is over; what is under way to it is lost."""
+    wire.clock.ns += 10_000_000_000
+    wire.writer.remove(reader.name)
+    reader.topic.clear()
+
+
 @pytest.mark.parametrize("back", [True, False])
 def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, back: bool) -> None:
     """It was frozen for longer than its lease: KEEP_ALL is complete when it comes back."""
@@ -413,9 +420,7 @@ def test_the_place_of_a_reader_that_vanished_silently_is_kept_for_a_while(*, bac
     wire.bring_control()
     wire.bring_control()  # its answer
     wire.publish()
-    wire.clock.ns += 10_000_000_000
-    wire.writer.remove(reader.name)
-    reader.topic.clear()
+    vanish_frozen(wire, reader)
     for _ in range(50):
         wire.publish()
     assert not wire.writer.done
@@ -574,9 +579,7 @@ def test_a_reader_that_vanishes_again_soon_after_its_return_misses_nothing() -> 
     (reader,) = wire.subscriptions
     wire.settle()
     wire.publish()
-    wire.clock.ns += 10_000_000_000
-    wire.writer.remove(reader.name)
-    reader.topic.clear()
+    vanish_frozen(wire, reader)
     wire.publish()
     for is_heard in (False, True):
         wire.writer.add(reader.name, reader.name.hex())
@@ -598,8 +601,7 @@ def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() ->
     (reader,) = wire.subscriptions
     wire.settle()
     wire.publish()
-    wire.clock.ns += 10_000_000_000
-    wire.writer.remove(reader.name)
+    vanish_frozen(wire, reader)
     wire.writer.add(reader.name, reader.name.hex())
     wire.settle()
     wire.writer.remove(reader.name)
