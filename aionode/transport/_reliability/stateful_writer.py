@@ -63,8 +63,8 @@ RETURN_NS: Final = 120_000_000_000
 """Time for which messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
 
 MOST_READERS: Final = 1_000
-"""Beside more readers than these, none that vanishes is waited for: any process may announce very
-many, and withdraw them, again and again."""
+"""A writer with more readers waits for none that vanishes: any process may announce thousands, and
+withdraw them, again and again."""
 
 LOST_RANGES: Final = 16
 """Number of ranges of reported losses that are remembered before acknowledged ones are dropped."""
@@ -392,7 +392,7 @@ class StatefulWriter:
     def has_room(self) -> bool:
         """Return whether another message can be kept without dropping one.
 
-        A KEEP_ALL writer forgets for it what only readers lack that were cut off.
+        A KEEP_ALL writer first drops the messages that only readers lack which were cut off.
         """
         if not self._is_full:
             return True

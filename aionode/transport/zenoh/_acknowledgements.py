@@ -185,15 +185,15 @@ class Acknowledgements:
         )
 
     def remove_writer(self, key: str, gid: bytes) -> None:
-        """Give a publisher no more of them."""
+        """Give a publisher no more ACKNACKs."""
         self._writers.unlisten(submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid)
 
     def add_reader(self, key: str, gid: bytes, receive: Receive) -> None:
-        """Give a subscription to a topic what its writers say; twice is the same as once."""
+        """Give a subscription the submessages of its writers; twice is the same as once."""
         self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, receive)
 
     def remove_reader(self, key: str, gid: bytes) -> None:
-        """Give a subscription no more of it."""
+        """Give a subscription no more submessages."""
         self._readers.unlisten(submessage_key(key, Side.PUBLISHERS, self._participant), gid)
 
     def send(self, key: str, side: Side, participant: str, data: bytes) -> None:

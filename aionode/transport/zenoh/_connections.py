@@ -1,7 +1,7 @@
 """The connections of a session: the routers, peers and clients at their other ends.
 
-Zenoh tells of each connection that it makes or loses. One listener takes that for all parts of a
-context, which are called on the event loop, in the order in which they were added.
+Zenoh tells one listener of each connection that it makes or loses. The listener tells all parts of
+the context, on the event loop, in the order in which they were added.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ __all__ = ["unless_expired"]
 def unless_expired(
     extra: bytes, lifespan_ns: int, now_ns: Callable[[], int], send: Callable[[], None]
 ) -> Callable[[], None]:
-    """Return `send`, or what does nothing if the message has expired by then.
+    """Return a function that calls `send`, unless the message has expired by then.
 
     Only readers of aionode look at the age of what arrives.
 
