@@ -75,20 +75,22 @@ async def test_a_message_that_is_held_has_the_time_of_its_arrival(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Not that of its release: rates that are measured would be those of the hand-over."""
-    monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.05)
+    monkeypatch.setattr(subscription, "ZENOH_LATE_S", 0.2)
     monkeypatch.setattr(LinkReader, "deliver", lambda *_: None)  # Zenoh brings nothing
     async with two_nodes() as nodes:
         infos: list[MessageInfo] = []
         publisher = nodes.a.create_publisher(Int32, "n", 100)
-        publisher.publish(Int32())  # which is waited for
-        nodes.b.create_subscription(Int32, "n", lambda _, info: infos.append(info), 100)
+        nodes.b.create_subscription(Int32, "n", lambda _: None, 100)
         await publisher.wait_for_subscribers()
+        publisher.publish(Int32())  # the next subscription waits for it
+        nodes.b.create_subscription(Int32, "n", lambda _, info: infos.append(info), 100)
+        await publisher.wait_for_subscribers(2)
         await until(lambda: manager_of(nodes.a).links)
         while not infos:  # a few at a time: when there are too many, none is held
             publisher.publish(Int32())
-            await asyncio.to_thread(threading.Event().wait, 0.001)
+            await asyncio.to_thread(threading.Event().wait, 0.005)
 
-    assert infos[0]["received_timestamp"] - infos[0]["source_timestamp"] < 25_000_000
+    assert infos[0]["received_timestamp"] - infos[0]["source_timestamp"] < 100_000_000
 
 
 async def test_every_kind_of_reader_gets_each_message_once() -> None:
