@@ -25,7 +25,7 @@ MAX_LINES = 600
 MAX_CHAIN = 14
 """How many modules may import one another in a row, each at its top."""
 
-MOST_PRIVATE_READS = 176
+MOST_PRIVATE_READS = 124
 """How often tests may read private names of aionode; the number only falls."""
 
 SHARED = {

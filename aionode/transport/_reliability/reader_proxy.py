@@ -22,8 +22,8 @@ class ReaderProxy:
         interval_ns: The time from one heartbeat to the next while it does not answer.
         away_until_ns: Until when its return is waited for; 0 while it is present.
         returned_ns: When it came back after it had vanished; 0 if it never vanished.
-        is_cut_off: Whether the connection to it was lost while it answered: it is expected to
-            return at once, or never.
+        is_cut_off: Whether it vanished while it answered: either its connection was lost, and it
+            is expected to return at once, or it has ended. `StatefulWriter.tick` tells them apart.
         resent: When each missing message was sent again.
     """
 

@@ -9,10 +9,10 @@ The loss of the last message of a burst is detected by heartbeats: a writer that
 moment announces its last sequence number, and repeats this at growing intervals until it is
 acknowledged. The terms are those of RTPS.
 
-A reader that vanishes without having answered for a while was frozen, and is waited for. One whose
-connection is lost while it answers was cut off: it returns soon, or its process has ended. Messages
-are kept for it as long as that holds nothing up. A reader that was asked for long and has never
-answered is none: any program may announce it.
+A reader that vanishes without having answered for a while was frozen, and is waited for. One that
+vanishes while it answers was cut off, or has ended: messages are kept for it as long as that holds
+nothing up, and only for a moment if its connection turns out to be alive. A reader that was asked
+for long and has never answered is none: any program may announce it.
 A reader that has everything is not asked by heartbeats, so a KEEP_ALL writer probes it.
 """
 
@@ -58,6 +58,9 @@ UNHEARD_NS: Final = 500_000_000
 FLAPPING_NS: Final = 10_000_000_000
 """A reader that vanishes within this time after its return is waited for as long again, and so is
 one that was cut off."""
+
+KNOWN_NS: Final = 1_000_000_000
+"""The loss of a connection is known so long after the readers behind it have vanished."""
 
 RETURN_NS: Final = 120_000_000_000
 """Time for which messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
@@ -115,6 +118,8 @@ class StatefulWriter:
         limit_bytes: How many bytes of messages are kept at most; the newest is, whatever its size.
         keep_all: Whether nothing may be dropped.
         now_ns: A monotonic clock with an arbitrary zero.
+        has_lost: Tells whether the connection to a context was lost in the last seconds; by default
+            no connection ever is.
 
     Attributes:
         entries: The messages, in order of sequence.
@@ -133,6 +138,7 @@ class StatefulWriter:
         *,
         keep_all: bool,
         now_ns: Callable[[], int],
+        has_lost: Callable[[str], bool] = lambda _: False,
     ) -> None:
         self._gid = gid
         self._participant = participant.encode()
@@ -147,6 +153,7 @@ class StatefulWriter:
         self._output = output
         self._put = output.put
         self._now_ns = now_ns
+        self._has_lost = has_lost
         # Invariants: `sent` <= `_last`, no reader has acknowledged more than `sent`, and
         # `_unsent` has those of `entries` that are beyond `sent`.
         self._last = 0  # the last sequence number that was written
@@ -215,14 +222,11 @@ class StatefulWriter:
         """Return the contexts of all readers, by gid."""
         return {gid: reader.participant for gid, reader in self.readers.items()}
 
-    def remove(self, gid: bytes, has_lost: Callable[[str], bool] = lambda _: False) -> None:
+    def remove(self, gid: bytes) -> None:
         """Remove a reader that has vanished, or wait for its return.
 
-        While connections are made anew, a reader can vanish and return more than once.
-
-        Args:
-            gid: The reader.
-            has_lost: Tells whether the connection to a context was lost.
+        While connections are made anew, a reader can vanish and return more than once. Whether its
+        connection was lost may be known only after the reader has vanished: `tick` asks for that.
         """
         reader = self.readers.get(gid)
         if reader is None or reader.away_until_ns:
@@ -236,7 +240,7 @@ class StatefulWriter:
             reader.away_until_ns = now_ns + RETURN_NS
         elif reader.returned_ns and now_ns - reader.returned_ns < FLAPPING_NS:
             reader.away_until_ns = now_ns + FLAPPING_NS
-        elif reader.answered and has_lost(reader.participant):
+        elif reader.answered:
             reader.away_until_ns = now_ns + FLAPPING_NS
             reader.is_cut_off = True
         else:
@@ -517,7 +521,7 @@ class StatefulWriter:
         unanswered = 0
         for reader in list(self.readers.values()):
             if reader.away_until_ns:
-                if now_ns >= reader.away_until_ns:
+                if now_ns >= reader.away_until_ns or self._has_ended(reader, now_ns):
                     self._give_up(reader)
             elif reader.acked < self.sent:
                 if not reader.answered:
@@ -537,6 +541,12 @@ class StatefulWriter:
                     reader.interval_ns = min(reader.interval_ns * 2, HEARTBEAT_NS)
                     self._heartbeat(reader, reader.acked + 1, self.sent)
         return bool(self.entries) or any(reader.away_until_ns for reader in self.readers.values())
+
+    def _has_ended(self, reader: ReaderProxy, now_ns: int) -> bool:
+        """Return whether a reader that is away was taken for cut off, but has a connection."""
+        waited_ns = now_ns - (reader.away_until_ns - FLAPPING_NS)
+        is_known = reader.is_cut_off and waited_ns >= KNOWN_NS
+        return is_known and not self._has_lost(reader.participant)
 
     def _give_up(self, reader: ReaderProxy) -> None:
         """Wait for a reader no longer; it has lost what it lacks, unless it has ended."""

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
+from aionode.clock import perf_ns
 from aionode.transport._loop_waker import ThreadsafeQueue
 from aionode.transport.zenoh._handlers import direct, translated
 
@@ -31,6 +32,9 @@ NEXT_LINK_S: Final = 0.3
 
 QUIET_S: Final = 0.015
 """All peers are taken to be connected after so long without a new one."""
+
+MOMENT_NS: Final = 10_000_000_000
+"""Time after the loss of a connection in which what was declared over it may return."""
 
 REMEMBERED: Final = 10_000
 """Number of lost sessions that are remembered: others may open and close any number."""
@@ -72,13 +76,12 @@ class Connections:
         self.lost: set[str] = set()
         self.on_change: list[Callable[[ConnectionChange], None]] = []
         self._queue = ThreadsafeQueue(waker, self.take)
+        self._lost_ns: dict[str, int] = {}  # when the connection to each session was lost last
         self._changed = asyncio.Event()
         self._listener: zenoh.TransportEventsListener[None] | None = None
-        self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
         """Begin with the connections that a session has, and listen to changes."""
-        self._session = session
         self._changed = asyncio.Event()  # an event belongs to the loop that first waits for it
         with translated("connections"):
             self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
@@ -88,25 +91,21 @@ class Connections:
 
     def stop(self) -> None:
         """Listen no more, and forget all connections."""
-        self._session = None
         listener, self._listener = self._listener, None
         if listener is not None:
             listener.undeclare()
         self._queue.clear()
         self.kinds.clear()
         self.lost.clear()
+        self._lost_ns.clear()
 
     def has_lost(self, zid: str) -> bool:
-        """Return whether a connection was lost, and not made anew.
+        """Return whether a connection is lost, or was lost in the last seconds and made anew.
 
-        Zenoh withdraws the tokens of the other end before it tells of the loss, so it is asked for
-        its connections until then.
+        What the other end had declared vanished with it, and may still have to return. Zenoh tells
+        of the loss later than of what vanishes with it.
         """
-        if zid in self.lost:
-            return True
-        if self._session is None or zid not in self.kinds:
-            return False
-        return zid not in {str(transport.zid) for transport in self._session.info.transports()}
+        return zid in self.lost or perf_ns() - self._lost_ns.get(zid, -MOMENT_NS) < MOMENT_NS
 
     def take(self, event: zenoh.TransportEvent) -> None:
         """Take what Zenoh tells of one connection; on the event loop."""
@@ -125,6 +124,9 @@ class Connections:
             self.lost.discard(change.zid)
             return
         self.kinds.pop(change.zid, None)
+        if len(self._lost_ns) >= REMEMBERED:
+            self._lost_ns.clear()
+        self._lost_ns[change.zid] = perf_ns()
         if change.kind != zenoh.WhatAmI.CLIENT:
             if len(self.lost) >= REMEMBERED:
                 self.lost.clear()

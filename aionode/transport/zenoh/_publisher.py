@@ -122,6 +122,7 @@ class ZenohWriter(Declaration, Writer):
                 *(self.gid, state.participant, self, self._depth, state.queue_bytes),
                 keep_all=self.bounded,
                 now_ns=perf_ns,
+                has_lost=state.connections.has_lost,
             )
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, self._depth, keep_all=False)
@@ -298,7 +299,7 @@ class ZenohWriter(Declaration, Writer):
         acknowledging = self._matched.acknowledging
         for vanished in list(history.readers) if gid is None else (gid,):
             if vanished not in acknowledging:
-                history.remove(vanished, self.state.connections.has_lost)
+                history.remove(vanished)
         if not self._closed:
             for known in acknowledging if gid is None else acknowledging.keys() & {gid}:
                 reader = history.readers.get(known)
@@ -312,8 +313,7 @@ class ZenohWriter(Declaration, Writer):
         if not self._is_watched and history.readers:  # one that is away may be to be given up
             self._watch()
         self._progress()
-        # Messages that are published while a reader is away are sent again. A subscriber without a
-        # token may match too; beside readers that acknowledge, none is known.
+        # Subscribers without a token may match; beside readers that acknowledge, none is known.
         self.active = self.active or bool(history.readers)
         history.has_other_readers = bool(self._matched.others) or not history.readers
         self._update_route()

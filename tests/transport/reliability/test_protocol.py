@@ -14,6 +14,7 @@ from aionode.transport._reliability.stateful_reader import GONE_TICKS, StatefulR
 from aionode.transport._reliability.stateful_writer import (
     FLAPPING_NS,
     HEARTBEAT_NS,
+    KNOWN_NS,
     MOST_READERS,
     MUTE_TICKS,
     RETURN_NS,
@@ -144,6 +145,7 @@ class Wire:
         control: The submessages under way.
         lost_count: How many messages the writer says were dropped.
         muted: The readers that the writer takes for mute.
+        lost_contexts: The contexts to which the connection was lost.
     """
 
     def __init__(
@@ -151,8 +153,12 @@ class Wire:
     ) -> None:
         self.clock = Clock()
         self.writer = StatefulWriter(
-            WRITER, "writer", self, depth, limit_bytes, keep_all=keep_all, now_ns=self.clock
+            *(WRITER, "writer", self, depth, limit_bytes),
+            keep_all=keep_all,
+            now_ns=self.clock,
+            has_lost=lambda participant: participant in self.lost_contexts,
         )
+        self.lost_contexts: set[str] = set()
         self.control: list[bytes] = []
         self.lost_count = 0
         self.muted: list[bytes] = []
@@ -526,6 +532,8 @@ def test_an_idle_keep_all_writer_knows_whether_a_vanished_reader_was_frozen(
             wire.settle()
         wire.control.clear()
     wire.writer.remove(reader.name)
+    wire.clock.ns += KNOWN_NS
+    wire.writer.tick()
     assert (reader.name in wire.writer.readers) is not answers
     wire.publish()
     reader.topic.clear()
@@ -545,6 +553,8 @@ def test_a_reader_that_answers_anyway_is_not_probed() -> None:
     assert wire.writer.probe()
     assert not wire.control
     wire.writer.remove(wire.subscriptions[0].name)
+    wire.clock.ns += KNOWN_NS
+    wire.writer.tick()
     assert not wire.writer.probe()
 
 
@@ -615,7 +625,8 @@ def test_a_reader_that_ends_soon_after_its_return_holds_nothing_up_for_long() ->
 def cut_off(wire: Wire, reader: Subscription) -> None:
     """Lose the connection to a reader that answers."""
     wire.settle()
-    wire.writer.remove(reader.name, {reader.name.hex()}.__contains__)
+    wire.writer.remove(reader.name)
+    wire.lost_contexts.add(reader.name.hex())
 
 
 @pytest.mark.parametrize("keep_all", [True, False])
@@ -658,6 +669,24 @@ def test_a_reader_that_is_cut_off_leaves_a_keep_all_writer_room(limit_bytes: int
     assert wire.writer.done
 
 
+def test_a_reader_that_ends_beside_a_living_connection_is_forgotten_soon() -> None:
+    """Its writer keeps messages only until it would know of a lost connection."""
+    wire = Wire(1, keep_all=True, depth=10)
+    (reader,) = wire.subscriptions
+    wire.settle()
+    wire.writer.remove(reader.name)
+    wire.publish()
+    assert wire.writer.done
+    assert wire.writer.entries
+
+    wire.clock.ns += KNOWN_NS
+
+    assert not wire.writer.tick()
+    assert not wire.writer.readers
+    assert not wire.writer.entries
+    assert wire.lost_count == 0
+
+
 def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
     """A process can announce them, answer for each, and cut its connection, again and again."""
     wire = Wire(0, keep_all=True, depth=10)
@@ -665,7 +694,8 @@ def test_nobody_makes_a_writer_wait_for_thousands_of_readers() -> None:
         gid = number.to_bytes(16, "big")
         wire.writer.add(gid, gid.hex())
         wire.writer.acknack(Submessage(ACKNACK, WRITER, gid, 1, 0, b""))
-        wire.writer.remove(gid, lambda _: True)
+        wire.lost_contexts.add(gid.hex())
+        wire.writer.remove(gid)
     wire.control.clear()
 
     assert len(wire.writer.readers) == MOST_READERS
@@ -1077,6 +1107,10 @@ def test_a_reader_with_a_history_that_returns_gets_each_message_once(*, is_forgo
         wire.publish()  # it is waited for as it lacks this one
         reader.topic.clear()
     wire.writer.remove(reader.name)
+    if is_forgotten:
+        wire.clock.ns += KNOWN_NS
+        wire.writer.tick()
+        assert not wire.writer.readers
     for _ in range(50):
         wire.publish()
     reader.topic.clear()

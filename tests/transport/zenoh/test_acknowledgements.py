@@ -25,13 +25,13 @@ from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, Reliability
 from aionode.transport._reliability import stateful_writer
 from aionode.transport._reliability import submessage as acknack
 from aionode.transport._reliability.stateful_reader import StatefulReader
+from aionode.transport._reliability.stateful_writer import StatefulWriter
 from aionode.transport._reliability.submessage import Submessage, SubmessageKind
 from aionode.transport._send_thread import Worker
 from aionode.transport.zenoh import _acknowledgements as acknowledgements
 from aionode.transport.zenoh import _publisher as publishers
 from aionode.transport.zenoh import _session_state as session_state
 from aionode.transport.zenoh import _sockets
-from aionode.transport.zenoh._connections import Connections
 from aionode.transport.zenoh._defects import forgotten_peers
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._session_state import SessionState
@@ -456,8 +456,16 @@ async def test_a_reader_whose_connection_breaks_for_a_moment_gets_each_message_o
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Its publisher keeps them for it; where the publisher forgets it, Zenoh's history has them."""
-    if is_forgotten:
-        monkeypatch.setattr(Connections, "has_lost", lambda *_: False)
+    vanished = asyncio.Event()
+    remove = StatefulWriter.remove
+
+    def remove_and_tell(self: StatefulWriter, gid: bytes) -> None:
+        remove(self, gid)
+        if is_forgotten:
+            self.readers.pop(gid, None)
+        vanished.set()
+
+    monkeypatch.setattr(StatefulWriter, "remove", remove_and_tell)
     async with two_nodes() as (a, b):
         publisher = a.create_publisher(Int32, "n", qos)
         subscription = b.create_subscription(Int32, "n", None, qos)
@@ -467,10 +475,8 @@ async def test_a_reader_whose_connection_breaks_for_a_moment_gets_each_message_o
         assert [(await subscription.receive()).data for _ in range(3)] == [0, 1, 2]
         await until(writers["/n"].is_done)
 
-        async with asyncio.TaskGroup() as tasks:
-            tasks.create_task(a.graph.until(lambda: publisher.get_subscription_count() == 0))
-            await checkpoint()
-            cut(a, b)
+        cut(a, b)
+        await vanished.wait()
         for number in range(3, 8):
             publisher.publish(Int32(data=number))
 

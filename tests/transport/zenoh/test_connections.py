@@ -8,9 +8,10 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # tells of connections, as Zenoh does
 
+from aionode.clock import perf_ns
 from aionode.transport._loop_waker import LoopWaker
 from aionode.transport.zenoh import _connections
-from aionode.transport.zenoh._connections import ConnectionChange, Connections
+from aionode.transport.zenoh._connections import MOMENT_NS, ConnectionChange, Connections
 
 pytestmark = pytest.mark.one_loop
 
@@ -76,3 +77,26 @@ async def test_lost_sessions_are_remembered_up_to_a_limit(
     for number in range(20):
         tell(connections, f"a{number}", is_made=False)
         assert len(connections.lost) <= 3
+
+
+async def test_a_connection_that_is_made_anew_at_once_was_lost_all_the_same(
+    connections: Connections,
+) -> None:
+    """What vanished with it may still have to return."""
+    for is_made in (True, False, True):
+        tell(connections, "b2", is_made=is_made)
+
+    assert connections.has_lost("b2")
+    assert not connections.has_lost("a1")
+
+
+async def test_tokens_that_vanish_long_after_a_loss_were_withdrawn(
+    connections: Connections, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Their session is connected again, and has ended something by itself."""
+    for is_made in (False, True):
+        tell(connections, "b2", is_made=is_made)
+    now_ns = perf_ns() + MOMENT_NS
+    monkeypatch.setattr(_connections, "perf_ns", lambda: now_ns)
+
+    assert not connections.has_lost("b2")

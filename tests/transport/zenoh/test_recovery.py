@@ -29,8 +29,6 @@ from aionode.transport.zenoh._defects.forgotten_peers import (
     participant_of,
 )
 from aionode.transport.zenoh._defects.incomplete_answers import tokens
-from aionode.transport.zenoh._defects.stale_transports import StaleTransports
-from aionode.transport.zenoh._session_state import SessionState
 from aionode.transport.zenoh._sockets import Descriptor, split_locator
 from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import (
@@ -596,91 +594,18 @@ def test_a_probe_is_known_by_its_id() -> None:
 @asynccontextmanager
 async def silent_after_return(ours: ZenohTransport, *names: str) -> AsyncIterator[None]:
     """Others that run, have returned, and have not declared anything, as `ours` sees it."""
-    acknowledgements = ours.session_state.acknowledgements
+    state = ours.session_state
     async with AsyncExitStack() as stack:
         for name in names:
             await stack.enter_async_context(context(name))
-        await until(lambda: acknowledgements.present.issuperset(names))
-        acknowledgements.present.clear()
-        ours._stale_transports._returned.update(names)
+        await until(lambda: state.acknowledgements.present.issuperset(names))
+        state.acknowledgements.present.clear()
+        for kind in (zenoh.SampleKind.DELETE, zenoh.SampleKind.PUT):
+            for name in names:
+                transport = SimpleNamespace(zid=name, whatami=zenoh.WhatAmI.PEER)
+                event: Any = SimpleNamespace(kind=kind, transport=transport)
+                state.connections.take(event)
         yield
-
-
-def change(kind: zenoh.SampleKind, zid: str) -> Any:
-    """Return what Zenoh says of a connection that was made or lost."""
-    transport = SimpleNamespace(zid=zid, whatami=zenoh.WhatAmI.PEER)
-    return SimpleNamespace(kind=kind, transport=transport)
-
-
-async def test_a_participant_is_checked_that_was_lost_and_has_returned() -> None:
-    """Not one that is new, and not while it is lost once more."""
-    put, delete = zenoh.SampleKind.PUT, zenoh.SampleKind.DELETE
-    async with context("a1") as first:
-        watch = first._stale_transports
-        take = first.session_state.connections.take
-        take(change(put, "new"))
-        take(change(delete, "b2"))
-        assert not watch._returned
-        take(change(put, "b2"))
-        assert watch._returned == {"b2"}
-        assert watch._timer is not None
-        take(change(delete, "b2"))
-        assert not watch._returned
-
-
-async def test_no_connection_is_cut_while_others_are_being_made() -> None:
-    """Of 100 contexts that started at once, each cut others that were merely slow."""
-    async with (
-        asyncio.timeout(4 * LIMIT_S),
-        context("a1") as first,
-        silent_after_return(first, "b2"),
-    ):
-        first._stale_transports._changed_s = asyncio.get_running_loop().time()
-        first._stale_transports._check_returned()
-
-        assert not first._stale_transports._cuts
-        assert first._stale_transports._returned == {"b2"}
-
-
-@pytest.mark.parametrize(("connected", "limit_s"), [(3, 1.0), (100, 5.0)])
-def test_tokens_may_take_longer_where_there_are_many_participants(
-    connected: int, limit_s: float
-) -> None:
-    """On a busy machine all had lost each other, and each cut the others again and again."""
-    state = SessionState("a1", DOMAIN_ID)
-    state.connections.kinds |= {str(number): zenoh.WhatAmI.PEER for number in range(connected)}
-    with_many = StaleTransports(state, network_from({}))
-
-    assert with_many._declared_s() == limit_s
-
-
-async def test_one_that_has_declared_itself_is_not_connected_anew() -> None:
-    """Its tokens came a moment after its connection."""
-    async with (
-        asyncio.timeout(4 * LIMIT_S),
-        context("a1") as first,
-        silent_after_return(first, "b2"),
-    ):
-        first.session_state.acknowledgements.present.add("b2")
-        first._stale_transports._changed_s = 0.0
-        first._stale_transports._check_returned()
-
-        assert not first._stale_transports._cuts
-        assert not first._stale_transports._returned
-
-
-async def test_a_participant_that_is_connected_and_declares_nothing_is_connected_anew() -> None:
-    """Zenoh took its new connection for another link of the one that is lost."""
-    async with (
-        asyncio.timeout(4 * LIMIT_S),
-        context("a1") as first,
-        silent_after_return(first, "b2"),
-    ):
-        first._stale_transports._changed_s = 0.0
-        first._stale_transports._check_returned()
-        await until(lambda: "b2" in first.session_state.acknowledgements.present)
-
-        assert first._stale_transports._cuts["b2"]
 
 
 async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_more(
@@ -702,14 +627,17 @@ async def test_a_participant_that_still_declares_nothing_is_connected_anew_once_
         context("a1") as first,
         silent_after_return(first, "b2"),
     ):
-        first._stale_transports._check_returned()
         await until(lambda: "b2" in first.session_state.acknowledgements.present)
 
     assert len(cuts) > 1
 
 
-async def test_many_that_declare_nothing_are_cut_too() -> None:
+async def test_many_that_declare_nothing_are_connected_anew_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Laptops that were closed in one room: more than a few, and none of them is merely slow."""
+    monkeypatch.setattr(stale_transports, "DECLARED_S", 0.2)
+    monkeypatch.setattr(stale_transports, "POSTPONED_S", 0.4)
     names = {f"{number}b" for number in range(1, stale_transports.FEW + 2)}
     async with (
         asyncio.timeout(4 * LIMIT_S),
@@ -717,29 +645,6 @@ async def test_many_that_declare_nothing_are_cut_too() -> None:
         silent_after_return(first, *names),
     ):
         ways = set().union(*(ways_between(first, name) for name in names))
-        first._stale_transports._changed_s = 0.0
-        first._stale_transports._check_returned()
-        assert first._stale_transports._cuts == dict.fromkeys(names, 1)
 
         await until(lambda: ways.isdisjoint(all_ways(first)))
         await until(lambda: names <= first.session_state.acknowledgements.present)
-
-
-async def test_many_that_declare_nothing_are_waited_for_longer() -> None:
-    """They are slow, as long as connections go on being made."""
-    names = [f"{number}b" for number in range(1, stale_transports.FEW + 2)]
-    async with (
-        asyncio.timeout(4 * LIMIT_S),
-        context("a1") as first,
-        silent_after_return(first, *names),
-    ):
-        first._stale_transports._changed_s = (
-            asyncio.get_running_loop().time() - stale_transports.DECLARED_S
-        )
-        first._stale_transports._check_returned()
-        assert not first._stale_transports._cuts
-        assert first._stale_transports._timer is not None
-
-        first._stale_transports._returned.discard(names[0])
-        first._stale_transports._check_returned()
-        assert len(first._stale_transports._cuts) == stale_transports.FEW
