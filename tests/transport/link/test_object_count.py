@@ -7,7 +7,9 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from aionode.interfaces.std_msgs.msg import Int32
+from tests.support.arrivals import reader_of
 from tests.support.links import Counting, Two, folder, two_nodes, writer_of
+from tests.support.waiting import until
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -49,6 +51,7 @@ async def linked_subscription(nodes: Two) -> Counter[str]:
     while not (writer_of(publisher).linked and got):
         publisher.publish(Int32())
         await first.go()
+    await until(lambda: not len(reader_of(subscription)))  # what waits is no part of it
     return own_objects(subscription, shared)
 
 

@@ -98,6 +98,16 @@ class Linked:
         """Go on until messages go to Zenoh as well, or do not."""
         await self.numbers.go_until(lambda: writer_of(self.numbers.publisher).update() == needed)
 
+    async def until_zenoh_knows_others(self) -> None:
+        """Wait until the session that sends knows of a subscriber to all topics of the domain.
+
+        The router tells the second session and this one by themselves.
+        """
+        zenoh_transport: Any = transport_of(self.nodes.a).zenoh
+        publisher = zenoh_transport.session_state.session.declare_publisher(f"{DOMAIN_ID}/any")
+        await until(lambda: publisher.matching_status.matching)
+        publisher.undeclare()
+
 
 @asynccontextmanager
 async def linked(monkeypatch: pytest.MonkeyPatch) -> AsyncIterator[Linked]:
@@ -142,6 +152,7 @@ async def test_a_plain_subscriber_behind_a_router_gets_the_next_message(
         samples, numbers = Collector(), both.numbers
         subscriber = session.declare_subscriber(f"{DOMAIN_ID}/**", samples)
         await both.until_it_needs_zenoh(True)
+        await both.until_zenoh_knows_others()
         first = numbers.next
         await numbers.go(100)
         await samples.have(100)
