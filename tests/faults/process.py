@@ -250,6 +250,7 @@ class Process:
             self.offer(node)
             self.reporter.nodes = node.get_node_names
             self.report.ready = True
+            self.reporter.tell()  # now: a pipe that is not read may block a noisy process for ever
             work: list[Coroutine[Any, Any, None]] = [
                 *(self.publish(node, each) for each in role.publish),
                 *(move(node, wheel) for wheel in role.moves),
