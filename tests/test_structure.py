@@ -57,6 +57,7 @@ SHARED = {
     "aionode.tf._frame_listing": "the command line shows the rates of frames",
     "aionode.tf._waiters": "futures of rclpy's programs wait as tasks do",
     "aionode.transport._network": "contexts and `aionode router` and `doctor` share settings",
+    "aionode.transport._send_thread": "contexts of rclpy's programs close before its threads end",
     "aionode.transport.zenoh._session": "`aionode router` is a Zenoh session without nodes",
     "aionode.wire": "the wire format belongs to the transports; nothing outside aionode needs it",
 }

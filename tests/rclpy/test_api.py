@@ -481,6 +481,39 @@ def test_a_program_ends_however_it_ends(
     assert ("LookupError: on purpose" in errors) == (how == "fail")
 
 
+ENDING_PUBLISHER = """\
+import rclpy
+from rclpy.qos import QoSDurabilityPolicy, QoSHistoryPolicy, QoSProfile
+from std_msgs.msg import Int32
+
+rclpy.init()
+node = rclpy.create_node("ending")
+qos = QoSProfile(
+    history=QoSHistoryPolicy.KEEP_ALL, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL
+)
+publisher = node.create_publisher(Int32, "numbers", qos)
+for number in range(5000):
+    publisher.publish(Int32(data=number))
+"""
+
+
+def test_a_program_that_ends_without_shutdown_drops_nothing(tmp_path: Path) -> None:
+    """A thread hands the messages to Zenoh, and still has many of them when the program ends."""
+    program = tmp_path / "ending.py"
+    program.write_text(ENDING_PUBLISHER)
+    process = start(
+        ["-m", "aionode.rclpy", str(program)],
+        env={**os.environ, **isolated_environment()},
+        fresh=True,  # the order in which modules are imported decides
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+    printed, _ = process.communicate(timeout=LIMIT_S)
+
+    assert (printed, process.returncode) == ("", 0)
+
+
 @pytest.mark.usefixtures("initialised")
 def test_ten_thousand_calls_at_once_leave_nothing_behind() -> None:
     """As in rclpy, only those within the server's depth are answered; none of the rest is kept."""

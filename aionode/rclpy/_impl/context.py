@@ -20,6 +20,7 @@ from aionode.rclpy._impl.errors import (
     UnknownROSArgsError,
 )
 from aionode.rclpy._impl.io_thread import IoThread
+from aionode.transport import _send_thread  # noqa: F401  # for the order, see `close_all`
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -194,6 +195,8 @@ class ContextHandle(Destroyable):
             self.io.stop()
 
 
+# Called before `_send_thread` ends the threads that send, as that module is imported above: the one
+# registered last is called first.
 @atexit.register
 def close_all() -> None:
     """Send what a program has published that ends without `shutdown`."""
