@@ -1,16 +1,18 @@
-"""The limits that a policy sets to the fields of messages."""
+"""The limits that a policy sets to the fields of messages, and the numbers that none may have."""
 
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from typing import Any, Literal
 
 import msgspec
 
-from aionode.message import Message, snapshot
+from aionode.message import FieldType, Message, fields, snapshot
 
-__all__ = ["FieldLimit", "OutOfLimitsError", "limited"]
+__all__ = ["FieldLimit", "OutOfLimitsError", "check_finite", "limited"]
 
 
 class FieldLimit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -30,6 +32,57 @@ class FieldLimit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 class OutOfLimitsError(ValueError):
     """A field has a value outside of its limits. Caught by `Policy.decide`."""
+
+
+def check_finite(message: Any) -> None:
+    """Refuse a message or a parameter with a number that is NaN or infinite.
+
+    Raises:
+        OutOfLimitsError: there is one; its path is named.
+    """
+    if isinstance(message, Message):
+        found = next(not_finite_in(message), None)
+    else:  # the value of a parameter
+        found = next((("value", each) for each in not_finite(message["value"])), None)
+    if found is not None:
+        path, number = found
+        raise OutOfLimitsError(
+            f"{path} is {number}; the robot takes finite numbers only, unless a rule of the policy "
+            "for this name has finite = false"
+        )
+
+
+def not_finite_in(message: Message) -> Iterator[tuple[str, float]]:
+    """Yield the numbers of a message that are NaN or infinite, with their paths."""
+    for name, type_ in floating(type(message)):
+        value = getattr(message, name)
+        if type_.nested is None:
+            yield from ((name, each) for each in not_finite(value))
+        else:
+            for inner in (value,) if type_.container == "single" else value:
+                yield from ((f"{name}.{path}", each) for path, each in not_finite_in(inner))
+
+
+@cache
+def floating(cls: type[Message]) -> list[tuple[str, FieldType]]:
+    """Return the fields of a class that may have a floating-point number in them."""
+    return [
+        (field.name, field.type)
+        for field in fields(cls)
+        if field.type.kind in {"float32", "float64"}
+        or (field.type.nested is not None and floating(field.type.nested))
+    ]
+
+
+def not_finite(value: Any) -> list[float]:
+    """Return the numbers of a field or parameter that are NaN or infinite."""
+    if hasattr(value, "dtype"):
+        import numpy as np  # imported on first use, as by the messages
+
+        numbers: list[float] = value[~np.isfinite(value)].tolist()
+        return numbers
+    values = value if isinstance(value, list | tuple | array) else (value,)
+    return [each for each in values if isinstance(each, float) and not math.isfinite(each)]
 
 
 def limited(message: Any, limits: Mapping[str, FieldLimit]) -> Any:
@@ -111,9 +164,9 @@ def is_within(number: Any, limit: FieldLimit, path: str) -> bool:
 def clamped(value: Any, limit: FieldLimit) -> Any:
     """Return a number or an array with each number within its limits."""
     if hasattr(value, "dtype") and isinstance(value, Iterable):
-        array: Any = value.copy()  # type: ignore[attr-defined]  # an array of numpy
-        array[:] = [clamped(number, limit) for number in array.tolist()]
-        return array
+        copy: Any = value.copy()  # type: ignore[attr-defined]  # an array of numpy
+        copy[:] = [clamped(number, limit) for number in copy.tolist()]
+        return copy
     if isinstance(value, Iterable):
         return [clamped(number, limit) for number in value]
     if limit.min <= value <= limit.max:

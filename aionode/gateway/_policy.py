@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 import msgspec
 
 from aionode.errors import PolicyFileError, RefusedError
-from aionode.gateway._field_limits import FieldLimit, OutOfLimitsError, limited
+from aionode.gateway._field_limits import FieldLimit, OutOfLimitsError, check_finite, limited
 from aionode.gateway._identity import Credentials, Identity
 from aionode.gateway._origin import check_browser
 
@@ -53,6 +53,7 @@ LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
     "rate_hz": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
     "max_bytes": ("publish", "call", "goal"),
     "fields": ("publish", "call", "goal", "parameter"),
+    "finite": ("publish", "call", "goal", "parameter"),
     "ask": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
     "lease": ("publish",),
 }
@@ -60,6 +61,26 @@ LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
 
 COMMANDS: Final = ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"]
 """Types whose default message stops a robot: without a policy file they are published by lease."""
+
+MEASUREMENTS: Final = frozenset(
+    f"sensor_msgs/msg/{name}"
+    for name in (
+        "BatteryState",
+        "FluidPressure",
+        "Illuminance",
+        "Imu",
+        "LaserScan",
+        "MagneticField",
+        "MultiEchoLaserScan",
+        "NavSatFix",
+        "PointCloud",
+        "Range",
+        "RelativeHumidity",
+        "Temperature",
+    )
+)
+"""Types that only say what a sensor has measured. NaN and infinities have a meaning there, as their
+definitions or REP 117 say; anywhere else, arithmetic of a controller would carry them on."""
 
 MOST_REMEMBERED: Final = 16_384
 """Decisions, and patterns of names, that are kept."""
@@ -127,6 +148,9 @@ class Rule(Part, frozen=True):
         max_bytes: The largest message, request or goal, in bytes of CDR; None for any size.
         fields: The limits of fields, by paths such as ``linear.x``; a parameter has the one field
             ``value``.
+        finite: Whether a NaN or an infinity is refused anywhere in a message, request, goal or
+            parameter. By default it is, but for measurements such as a LaserScan that are published
+            without a lease.
         ask: Whether a person has to say yes each time.
         lease: How commands are published; None for messages that are no commands.
         because: The reason that a refused client is told.
@@ -144,6 +168,7 @@ class Rule(Part, frozen=True):
     rate_hz: float = math.inf
     max_bytes: int | None = None
     fields: dict[str, FieldLimit] = {}
+    finite: bool | None = None
     ask: bool = False
     lease: LeaseRule | None = None
     because: str = ""
@@ -174,10 +199,18 @@ class Rule(Part, frozen=True):
             return False
         return matches(getattr(self, verb), name)
 
+    def needs_finite(self, type_name: str) -> bool:
+        """Return whether the numbers of a message of a type have to be finite."""
+        if self.finite is not None:
+            return self.finite
+        return self.lease is not None or type_name not in MEASUREMENTS
+
 
 def has_key(rule: Rule, key: str) -> bool:
     """Return whether a key of `LIMITED` is given in a rule."""
     value = getattr(rule, key)
+    if key == "finite":
+        return value is not None
     return value != math.inf if key == "rate_hz" else value not in (None, False, "", [], {})
 
 
@@ -459,9 +492,11 @@ class Policy(Part, frozen=True):
             because = rule.because if rule is not None else ""
             reason = because or f"the policy does not allow {identity.name} to do this"
             return Decision(allowed=False, reason=reason)
-        if message is None or not rule.fields:
-            return Decision(allowed=True, message=message, rule=rule)
+        if message is None:
+            return Decision(allowed=True, rule=rule)
         try:
+            if rule.needs_finite(type_name):
+                check_finite(message)
             return Decision(allowed=True, message=limited(message, rule.fields), rule=rule)
         except OutOfLimitsError as error:
             return Decision(allowed=False, reason=str(error), code="out_of_limits", rule=rule)

@@ -1,15 +1,15 @@
 """Messages in the forms of rosbridge: JSON in both directions, and CBOR for subscribers.
 
-JSON has bytes as base64 text, and null for NaN and the infinities. CBOR has sequences of numbers as
-typed arrays (RFC 8746, little endian), as rosbridge has chosen them: arrays of a fixed size are
-plain lists.
+JSON has bytes as base64 text. Subscribers get null for NaN and the infinities, but no client may
+send it for a number: a page that computes NaN writes null without noticing. CBOR has sequences of
+numbers as typed arrays (RFC 8746, little endian), as rosbridge has chosen them: arrays of a fixed
+size are plain lists.
 """
 
 from __future__ import annotations
 
 import base64
 import binascii
-import math
 from collections.abc import Mapping
 from functools import cache
 from typing import Any, Final, TypeVar
@@ -122,8 +122,8 @@ def cbor_value(type_: FieldType, value: Any) -> object:
 def from_json(cls: type[MessageT], values: object, now_ns: int) -> MessageT:
     """Return the message that a client of rosbridge describes.
 
-    Bytes are base64 text or a list of numbers, a time may be ``"now"`` or have ``secs`` and
-    ``nsecs``, and null is NaN for a float. A list has the values of the fields in their order. A
+    Bytes are base64 text or a list of numbers, and a time may be ``"now"`` or have ``secs`` and
+    ``nsecs``. A list has the values of the fields in their order. A
     ``header`` of the message that has no stamp is stamped with the present time.
 
     Args:
@@ -195,19 +195,8 @@ def reworded_value(type_: FieldType, value: object, now_ns: int, path: str) -> o
         return [
             reworded(type_.nested, item, now_ns, f"{path}[{i}]") for i, item in enumerate(value)
         ]
-    if type_.kind in {"float32", "float64"}:
-        return with_nan(value)
     if type_.container != "single" and isinstance(value, str):
         return bytes_of_text(type_, value, path)
-    return value
-
-
-def with_nan(value: object) -> object:
-    """Return a float, or a list of floats, with NaN in the place of None."""
-    if value is None:
-        return math.nan
-    if isinstance(value, list) and None in value:
-        return [math.nan if item is None else item for item in value]
     return value
 
 

@@ -154,7 +154,7 @@ def test_what_passes_is_within_its_limits(value: float, low: float, high: float)
 
         if low <= value <= high:
             assert decision.message is message
-        elif outside == "clamp" and not math.isnan(value):
+        elif outside == "clamp" and math.isfinite(value):
             assert decision.message.linear.x == min(max(value, low), high)
             assert message.linear.x == value
         else:
