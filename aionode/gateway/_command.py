@@ -23,6 +23,10 @@ __all__ = ["Commands", "Holder", "Owner", "check_age"]
 class Owner(Protocol):
     """The owner of commands: a session, or something that several requests of one client share."""
 
+    @property
+    def way(self) -> str:
+        """How it is connected, as others are told who ask for what it commands."""
+
     def doubt(self) -> None:
         """Take that the client was silent for the time to live."""
 
@@ -159,9 +163,10 @@ class Commands:
 
 def held(topic: str, holder: Holder) -> RefusedError:
     """Return the error for a topic that another client commands."""
-    return RefusedError(
-        f"publish {topic}", f"{holder.identity.name} commands it now; ask again later", "held"
-    )
+    who, where = holder.identity.name, holder.identity.address
+    source = f"by {holder.owner.way}" + (f" from {where}" if where else "")
+    return RefusedError(f"publish {topic}", f"{who} commands it now, {source}; ask again later",
+                        "held")  # fmt: skip
 
 
 def check_age(

@@ -2,7 +2,8 @@
 
 Each request is a session of its own, which ends with its connection: a program that closes the
 stream of a goal cancels the goal. Only the lease of a command outlives the request, by its time to
-live: who sends the next command before that still holds the topic.
+live: the next command before that has to come over the same connection, or with the same name of a
+client (``?client=``), to hold the topic further.
 """
 
 from __future__ import annotations
@@ -57,6 +58,14 @@ __all__ = ["answer_http_error", "routes"]
 CALL_SEC: Final = 5.0
 """Time for which a request waits for a response unless it says otherwise, in seconds."""
 
+LONGEST_CLIENT: Final = 100
+"""The longest name of a client, in characters."""
+
+NAMELESS: Final = (
+    "a program that opens a connection for each command shows by ?client=NAME that it is the same"
+)
+"""Added where a request without a name is refused, as another one commands the topic."""
+
 Handler = Callable[[Asked], Awaitable[Response]]
 
 
@@ -105,7 +114,7 @@ class Endpoint:
                 until_disconnected(request),
             ):
                 has_session = True
-                session.owner = Caller(session.identity)
+                session.owner = caller_of(request, session)
                 session.on_policy = partial(end_with, session)
                 async with until_ended(session):
                     if request.method != "POST":  # about the graph, or the nodes in it
@@ -129,14 +138,46 @@ def end_with(session: Session, ended: list[Subscribed]) -> None:
 class Caller(msgspec.Struct, frozen=True):
     """The holder of topics that requests command, as the session of each ends with the request.
 
+    Two programs may be one identity, so that alone does not make them one holder.
+
     Attributes:
         identity: The client that has sent the requests.
+        client: Its own name for itself; empty without one.
+        connection: Without that name, what it has sent the requests over.
     """
 
     identity: Identity
+    client: str
+    connection: object
+
+    @property
+    def way(self) -> str:
+        """How it is connected, for `Owner`."""
+        return f"http as client {self.client!r}" if self.client else "another connection of http"
 
     def doubt(self) -> None:
         """Do nothing: the next request has to come with all that the caller has to show."""
+
+
+def caller_of(request: Request, session: Session) -> Caller:
+    """Return who holds the topics that a request commands.
+
+    A proxy may send the requests of several programs over one connection, so behind one that says
+    what it is each request is a caller of its own, unless it has a name.
+
+    Raises:
+        HTTPException: the name is too long (400).
+    """
+    client = request.query_params.get("client", "")
+    if len(client) > LONGEST_CLIENT:
+        raise HTTPException(400, f"client: {len(client)} characters, at most {LONGEST_CLIENT} fit")
+    connection: object = None
+    if not client:
+        connection = request.scope["state"].get("aionode_connection")
+        credentials = session.credentials
+        if credentials is not None and credentials.is_forwarded:
+            connection = object()
+    return Caller(session.identity, client, connection)
 
 
 async def answer_http_error(_request: Request, error: Exception) -> Response:
@@ -216,7 +257,12 @@ async def publish(asked: Asked) -> Response:
     """Publish one message."""
     values = asked.json()
     type_name = asked.type_name
-    await asked.session.publish(asked.name, values, type_name)
+    try:
+        await asked.session.publish(asked.name, values, type_name)
+    except RefusedError as error:
+        if error.code != "held" or "client" in asked.request.query_params:
+            raise
+        raise RefusedError(error.subject, f"{error.reason}; {NAMELESS}", error.code) from None
     return Response(status_code=204)
 
 

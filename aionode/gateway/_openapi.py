@@ -66,6 +66,14 @@ TIMEOUT: Final = {
     "schema": {"type": "number", "exclusiveMinimum": 0, "default": 5.0},
 }
 
+CLIENT: Final = {
+    "name": "client",
+    "in": "query",
+    "description": "A name of the program's own choice, for one that commands a topic over more "
+    "than one connection.",
+    "schema": {"type": "string", "maxLength": 100},
+}
+
 PERIOD: Final = {
     "name": "min_period_sec",
     "in": "query",
@@ -190,7 +198,11 @@ def topic_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
     if "publish" in offer.verbs:
         done = {"204": {"description": "The message is published."}}
         operations["post"] = operation(
-            f"publish{offer.name}", f"Publish a message on {offer.name}.", done, **body(message)
+            f"publish{offer.name}",
+            f"Publish a message on {offer.name}.",
+            done,
+            parameters=[CLIENT],
+            **body(message),
         )
     return operations
 

@@ -71,6 +71,11 @@ class SessionBase:
         self.is_doubtful = False
         self._doubted_ns = -1
 
+    @property
+    def way(self) -> str:
+        """How the client is connected, for `Owner`."""
+        return self.kind
+
     # The policy
 
     def decide(self, verb: Verb, name: str, type_name: str, message: Any = None) -> Decision:

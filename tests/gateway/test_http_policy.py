@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
 import httpx
 import pytest
+from websockets.asyncio.client import connect
 
 from aionode.context import Context
 from aionode.gateway import Gateway, Identity, Policy
@@ -148,7 +150,7 @@ async def test_a_field_outside_of_its_limits_is_refused_or_clamped(
         command = await anext(robot.commands)
 
     assert (fast.status_code, fast.json()["code"]) == (422, "out_of_limits")
-    assert (unknown.status_code, unknown.json()["code"]) == (422, "out_of_limits")
+    assert (unknown.status_code, unknown.json()["code"]) == (400, "invalid_message")
     assert turning.status_code == 204
     assert command.angular.z == 1.0
 
@@ -209,11 +211,13 @@ publish = "/cmd_vel"
 lease = {{ ttl_sec = 1.0 }}
 """
 
+SLOWLY = COMMANDS.replace("ttl_sec = 1.0", "ttl_sec = 60.0")
+
 
 async def test_commands_that_stop_coming_are_followed_by_the_stop(aionode_context: Context) -> None:
     """A script that is killed, or a cable that is cut: nobody has to tell."""
     async with robot_and_client(aionode_context, COMMANDS) as (robot, client):
-        for _ in range(2):  # each request is a connection of its own, and one holder
+        for _ in range(2):  # each request is a session of its own, and one holder
             answer = await client.post("/topics/cmd_vel", json=TWIST)
             assert answer.status_code == 204
         while (await anext(robot.commands)).linear.x:
@@ -222,14 +226,90 @@ async def test_commands_that_stop_coming_are_followed_by_the_stop(aionode_contex
 
 async def test_a_topic_that_another_client_commands_is_held(aionode_context: Context) -> None:
     """The other one learns who holds it."""
-    slowly = COMMANDS.replace("ttl_sec = 1.0", "ttl_sec = 60.0")
-    async with robot_and_client(aionode_context, slowly) as (_, client):
+    async with robot_and_client(aionode_context, SLOWLY) as (_, client):
         await client.post("/topics/cmd_vel", json=TWIST)
         pilot = {"Authorization": "Bearer secret"}
         answer = await client.post("/topics/cmd_vel", json=TWIST, headers=pilot)
 
     assert (answer.status_code, answer.json()["code"]) == (409, "held")
     assert "local" in answer.json()["error"]
+
+
+async def post(url: Any, client: str = "", **headers: str) -> httpx.Response:
+    """Return the answer to a command over a connection of its own."""
+    async with http_client(url.port) as other:
+        query = {"client": client} if client else {}
+        return await other.post("/topics/cmd_vel", json=TWIST, params=query, headers=headers)
+
+
+async def test_two_programs_with_one_identity_do_not_drive_at_once(
+    aionode_context: Context,
+) -> None:
+    """The second learns who holds the topic, and how a program with many connections is one."""
+    async with robot_and_client(aionode_context, SLOWLY) as (robot, client):
+        for _ in range(2):
+            assert (await client.post("/topics/cmd_vel", json=TWIST)).status_code == 204
+        answer = await post(client.base_url)
+        got = [(await anext(robot.commands)).linear.x for _ in range(2)]
+
+    assert (answer.status_code, answer.json()["code"]) == (409, "held")
+    assert "local commands it now, by another connection of http from 127.0.0.1" in answer.text
+    assert "?client=NAME" in answer.text
+    assert got == [0.25, 0.25]
+
+
+async def test_a_named_client_is_one_over_all_its_connections(aionode_context: Context) -> None:
+    """As `curl` in a loop; another name, and none, are others."""
+    async with robot_and_client(aionode_context, SLOWLY) as (_, client):
+        url = client.base_url
+        codes = [(await post(url, name)).status_code for name in ("pad", "pad", "arm", "", "pad")]
+        answer = await post(url, "arm")
+
+    assert codes == [204, 204, 409, 409, 204]
+    assert "by http as client 'pad'" in answer.json()["error"]
+    assert "?client=" not in answer.json()["error"]
+
+
+async def test_behind_a_proxy_a_connection_is_no_holder(aionode_context: Context) -> None:
+    """It sends the requests of several programs over one; a name tells them apart."""
+    async with robot_and_client(aionode_context, SLOWLY) as (_, client):
+        forwarded = {"X-Forwarded-For": "10.0.0.7", "Authorization": "Bearer secret"}
+        codes = [
+            (
+                await client.post(
+                    "/topics/cmd_vel", json=TWIST, headers=forwarded, params={"client": name}
+                )
+            ).status_code
+            for name in ("", "", "pad")
+        ]
+
+    assert codes == [204, 409, 409]
+
+
+async def test_the_name_of_a_client_is_short_and_shown_escaped(aionode_context: Context) -> None:
+    """It is kept while it commands, and told to others."""
+    async with robot_and_client(aionode_context, SLOWLY) as (_, client):
+        long = await post(client.base_url, "x" * 101)
+        await post(client.base_url, "pad\n\x1b[2J")
+        held = await post(client.base_url)
+
+    assert (long.status_code, long.json()["code"]) == (400, "bad_request")
+    assert r"'pad\n\x1b[2J'" in held.json()["error"]
+
+
+async def test_a_websocket_and_a_request_of_one_identity_are_two(aionode_context: Context) -> None:
+    """Each way in has holders of its own, whoever the client is."""
+    async with robot_and_client(aionode_context, SLOWLY) as (_, client):
+        await client.post("/topics/cmd_vel", json=TWIST)
+        async with connect(f"ws://127.0.0.1:{client.base_url.port}", proxy=None) as page:
+            await page.send('{"op": "set_level", "level": "error"}')
+            await page.send(
+                '{"op": "publish", "topic": "/cmd_vel", "type": "geometry_msgs/Twist", "msg": {}}'
+            )
+            async with asyncio.timeout(20):
+                told = await page.recv()
+
+    assert "local commands it now" in told
 
 
 ROUTES = [
