@@ -87,7 +87,8 @@ def walk(frames: Tree, target: str, source: str, time_ns: int) -> Walk:
     """Return the way from `source` to `target` at a time; 0 means the latest common time.
 
     The order of the steps is tf2's, as it decides which error is reported: first from the source to
-    the root, or as far as there is data, then from the target until both meet.
+    the root, or as far as there is data, then from the target until both meet. An error names an
+    edge of the way, and none above it: tf2 did before its pull request 896.
     """
     way = Walk(time_ns)
     if target == source:
@@ -145,7 +146,9 @@ def walk_down(frames: Tree, way: Walk, target: str, source: str, counts: dict[st
             return
         nearest = history.find(way.time_ns)
         if nearest is None:
-            way.failure = extrapolation(frames, frame, way.time_ns, target, source)
+            # Where the source's way ends below this frame, this edge is above where both meet.
+            missing = last if frame in ancestors(frames, last) else frame
+            way.failure = extrapolation(frames, missing, way.time_ns, target, source)
             return
         frame, edge = nearest
         way.down.append(edge)

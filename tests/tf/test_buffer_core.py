@@ -338,6 +338,32 @@ def test_times_outside_of_the_data_are_refused_with_the_texts_of_tf2() -> None:
     check(core, cases)
 
 
+@pytest.mark.parametrize(
+    ("target", "source"),
+    [
+        ("odom", "base_link"),
+        ("base_link", "odom"),
+        ("odom", "laser"),
+        ("laser", "odom"),
+        ("camera", "laser"),
+        ("laser", "camera"),
+    ],
+)
+def test_an_error_of_extrapolation_names_the_time_of_an_edge_of_the_way(
+    target: str, source: str
+) -> None:
+    """Localization lags behind odometry, and its edge above the way is not what a lookup lacks."""
+    core = BufferCore()
+    for stamp in (0.5, 1.0):
+        core.set_transform(transform("map", "odom", stamp), "me")
+    for stamp in (1.5, 2.0):
+        core.set_transform(transform("odom", "base_link", stamp), "me")
+    core.set_transform_static(transform("base_link", "laser", 0.0), "me")
+    core.set_transform_static(transform("odom", "camera", 0.0), "me")
+    with pytest.raises(ForwardExtrapolationException, match=r"latest data is at time 2\.000000"):
+        core.lookup_transform_core(target, source, at(3))
+
+
 def check(core: BufferCore, cases: list[tuple[type[TransformException], float, str]]) -> None:
     """Ask for foo ← bar at several times."""
     for error, seconds, text in cases:

@@ -3,8 +3,9 @@
 ``make tf-differential TF2=<a copy of github.com/ros2/geometry2>``: the library is compiled with
 small stand-ins for the headers that it includes from elsewhere. Quaternions that are far from
 length 1 are left out: aionode refuses them, as tf2 says, but tf2 divides them by their length
-before it looks. Each case is a random tree with a
-random history, and random questions about it, some of them wrong.
+before it looks. Sources from before pull request 896 name another edge in some errors of
+extrapolation. Each case is a random tree with a random history, and random questions about it, some
+of them wrong.
 """
 
 from __future__ import annotations
