@@ -35,8 +35,11 @@ __all__ = [
     "RemapRule",
     "expand",
     "fully_qualified_name",
+    "is_full_name",
+    "is_full_node_name",
     "is_hidden",
     "is_plain",
+    "is_type_name",
     "logger_name",
     "normalize_namespace",
     "remap",
@@ -55,6 +58,7 @@ TOPIC_MAX_LENGTH = 247  # DDS allows 255, and rmw keeps 8 for a prefix and a suf
 NAMESPACE_MAX_LENGTH = 245  # leaves room for "/x"
 
 PLAIN = re.compile("[A-Za-z0-9_/%@:,.+~-]*")
+TYPE_NAME = re.compile("[A-Za-z][A-Za-z0-9_]*(/[A-Za-z][A-Za-z0-9_]*)+")
 
 CHARACTERS = (
     "topic name must not contain characters other than alphanumerics, '_', '~', '{', or '}'"
@@ -329,6 +333,26 @@ def is_plain(*names: str) -> bool:
     lists it.
     """
     return all(PLAIN.fullmatch(name) for name in names)
+
+
+def is_full_name(name: str) -> bool:
+    """Return whether an absolute name, which another process gives, could be one of ROS.
+
+    Its nodes announce no others, and tools use names as paths, as in ``/../../etc``.
+    """
+    return full_name_problem(name) is None
+
+
+def is_full_node_name(name: str, namespace: str, enclave: str = "/") -> bool:
+    """Return whether the name of a node, which another process gives, could be one of ROS."""
+    return node_name_problem(name) is None and all(
+        path == "/" or is_full_name(path) for path in (namespace, enclave)
+    )
+
+
+def is_type_name(name: str) -> bool:
+    """Return whether a name, which another process gives, could be that of a type of ROS."""
+    return TYPE_NAME.fullmatch(name) is not None
 
 
 def is_hidden(name: str) -> bool:

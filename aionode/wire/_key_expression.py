@@ -15,6 +15,8 @@ from __future__ import annotations
 import enum
 from typing import NamedTuple
 
+from aionode.names import is_full_name, is_type_name
+
 __all__ = [
     "BUFFER_SUFFIX",
     "DataKey",
@@ -62,9 +64,10 @@ def dds_type(type_name: str) -> str:
 def ros_type(dds_name: str) -> str | None:
     """Return the ROS name of a DDS type, or None if `dds_name` is not a DDS type."""
     package, mark, name = dds_name.rpartition(DDS_MARK)
-    if not (mark and package.endswith("::") and len(name) > 1 and name.endswith("_")):
+    if not (mark and package.endswith("::") and name.endswith("_")):
         return None
-    return f"{package[:-2].replace('::', '/')}/{name[:-1]}"
+    type_name = f"{package[:-2].replace('::', '/')}/{name[:-1]}"
+    return type_name if is_type_name(type_name) else None
 
 
 def data_key(
@@ -99,7 +102,10 @@ def parse_data_key(key: str) -> DataKey | None:
     # int() would also accept signs, blanks, underscores and digits of other scripts.
     if type_name is None or not (domain.isascii() and domain.isdigit() and len(domain) <= 10):
         return None
-    return DataKey(int(domain), "/" + "/".join(name), type_name, type_hash)
+    full_name = "/" + "/".join(name)
+    return (
+        DataKey(int(domain), full_name, type_name, type_hash) if is_full_name(full_name) else None
+    )
 
 
 def mangle(name: str) -> str:

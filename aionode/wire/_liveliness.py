@@ -8,8 +8,8 @@ Each node and each endpoint declares one token for as long as it exists::
 A name is one chunk, with each slash replaced by ``%``. The QoS chunk omits values that are equal to
 rmw_zenoh's defaults. Since ROS 2 Lyrical a 14th chunk ``backends:…`` may follow.
 
-Parsing is lenient: it returns None for a token of unknown format and never raises, as any program
-may declare any token with this prefix.
+Parsing is lenient: it returns None for a token of unknown format, or with a name that ROS does not
+allow, and never raises, as any program may declare any token with this prefix.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import xxhash
 
 from aionode.clock import CONST_INFINITE_NS, S_TO_NS, Duration
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
-from aionode.names import is_plain
+from aionode.names import is_full_name, is_full_node_name, is_plain
 from aionode.qos import (
     DEFAULT_DEPTH,
     DurabilityPolicy,
@@ -174,6 +174,8 @@ def parse_token(key: str) -> Token | None:
         return None
     domain_id, nid, eid = (n or 0 for n in numbers)
     node = shared_node(zid, nid, name, namespace, enclave)
+    if node is None:
+        return None
     if kind == NODE_KIND:
         return Token(domain_id, node)
     endpoint = parse_endpoint(key, node, eid, kind, chunks[NODE_CHUNKS:])
@@ -186,16 +188,17 @@ def parse_endpoint(
     """Return the endpoint described by the last chunks of its token."""
     if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS - NODE_CHUNKS:
         return None
-    name, dds_name, type_hash, qos_text = chunks[:4]
+    name_chunk, dds_name, type_hash, qos_text = chunks[:4]
+    name = shared_name(name_chunk)
     type_name, hash_text = shared_type(dds_name, type_hash)
     qos = parse_qos(qos_text)
-    if type_name is None or qos is None:
+    if name is None or type_name is None or qos is None:
         return None
     return EndpointInfo(
         KINDS[kind],
         node,
         endpoint_id,
-        shared_name(name),
+        name,
         type_name,
         hash_text,
         qos,
@@ -204,15 +207,17 @@ def parse_endpoint(
 
 
 @lru_cache(SHARED)
-def shared_node(zid: str, node_id: int, name: str, namespace: str, enclave: str) -> NodeInfo:
-    """Return the node of some chunks; the same object for all endpoints of a node."""
-    return NodeInfo(zid, node_id, name, demangle(namespace), demangle(enclave))
+def shared_node(zid: str, node_id: int, name: str, namespace: str, enclave: str) -> NodeInfo | None:
+    """Return the node of some chunks, None if it cannot be one; the same object always."""
+    node = NodeInfo(zid, node_id, name, demangle(namespace), demangle(enclave))
+    return node if is_full_node_name(name, node.namespace, node.enclave) else None
 
 
 @lru_cache(SHARED)
-def shared_name(chunk: str) -> str:
-    """Return the name of a topic or service; the same object for all its endpoints."""
-    return demangle(chunk)
+def shared_name(chunk: str) -> str | None:
+    """Return the name of a topic or service, None if it cannot be one; the same object always."""
+    name = demangle(chunk)
+    return name if is_full_name(name) else None
 
 
 @lru_cache(SHARED)

@@ -102,7 +102,9 @@ def test_what_is_unknown_is_a_wildcard() -> None:
     assert key_expression.data_key(0, "/chatter") == "0/chatter/*/*"
 
 
-@pytest.mark.parametrize("dds_name", ["", "String", "dds_::String_", "a::dds_::_", "a::dds_::B"])
+@pytest.mark.parametrize(
+    "dds_name", ["", "String", "dds_::String_", "a::dds_::_", "a::dds_::B", "..::msg::dds_::B_"]
+)
 def test_another_name_is_no_dds_type(dds_name: str) -> None:
     """Half a name is none."""
     assert key_expression.ros_type(dds_name) is None

@@ -144,7 +144,7 @@ def test_reading_an_endpoint_undoes_writing(
 ) -> None:
     """For every kind, with and without the chunk that Lyrical adds."""
     endpoint = EndpointInfo(
-        kind, node, number, f"{name}/x", "p/msg/T", "RIHS01_0", qos.resolved(), b""
+        kind, node, number, f"{name.rstrip('/')}/x", "p/msg/T", "RIHS01_0", qos.resolved(), b""
     )
     key = liveliness.endpoint_token(3, endpoint, backends)
     token = liveliness.parse_token(key)
@@ -247,3 +247,32 @@ def test_a_token_with_what_no_name_can_hold_is_refused(character: str) -> None:
     assert liveliness.parse_token(good) is not None
     assert liveliness.parse_token(good.replace("talker", f"talk{character}er")) is None
     assert liveliness.parse_token(f"{good}{'x' * 5000}") is None
+
+
+@pytest.mark.parametrize(
+    ("place", "chunk"),
+    [
+        (6, "%..%etc"),
+        (7, "%..%..%etc"),
+        (7, "%ns%"),
+        (8, ".."),
+        (8, "~"),
+        (8, "9lives"),
+        (9, "%..%..%etc"),
+        (9, "%chatter%"),
+        (9, "chatter"),
+        (9, "%a%%b"),
+        (9, "%chatter%9"),
+        (9, f"%{'x' * 250}"),
+        (10, "..%..%etc::msg::dds_::String_"),
+        (10, "std_msgs::..::dds_::String_"),
+        (10, "std_msgs::msg::dds_::.._"),
+    ],
+)
+def test_a_token_with_a_name_that_ros_does_not_allow_is_refused(place: int, chunk: str) -> None:
+    """No node of ROS has such a name, and tools make paths and keys of the names of others."""
+    chunks = TOKENS[1]["key"].split("/")
+    assert liveliness.parse_token("/".join(chunks)) is not None
+    chunks[place] = chunk
+
+    assert liveliness.parse_token("/".join(chunks)) is None

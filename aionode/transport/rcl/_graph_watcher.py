@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode import names
 from aionode._concurrency import SLICE_NS
 from aionode.clock import perf_ns
-from aionode.errors import AionodeError
+from aionode.errors import AionodeError, brief
 from aionode.graph import SERVICE_KINDS, EndpointInfo, EndpointKind, NodeInfo
 from aionode.qos import qos_profile_services_default
 from aionode.transport.rcl._qos import profile_from
@@ -184,7 +184,9 @@ class RclGraphWatcher:
         incomplete = False
         with asker:
             topics = rcl.module.rclpy_get_topic_names_and_types(asker, False)
-        for topic, _ in topics:
+        for topic, types in topics:
+            if not self._are_possible(topic, types):
+                continue
             for kind in (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION):
                 incomplete |= not self._ask_topic(rcl, asker, kind, topic, by_name, endpoints)
             yield
@@ -222,10 +224,10 @@ class RclGraphWatcher:
         for name, namespace, enclave in answer:
             if name.startswith(HIDDEN) or name in UNKNOWN_NODES:
                 continue
-            if not names.is_plain(name, namespace, enclave):
-                self._state.note_malformed("graph", f"the name of a node, {name!r}")
-                continue
             full_name = names.fully_qualified_name(namespace, name)
+            if not names.is_full_node_name(name, namespace, enclave or "/"):
+                self._state.note_malformed("graph", f"the name of a node, {brief(full_name)}")
+                continue
             seen[full_name] += 1
             if seen[full_name] <= own[full_name]:
                 continue
@@ -235,6 +237,16 @@ class RclGraphWatcher:
             node = known.get((participant, enclave))
             nodes.append(node or NodeInfo(participant, 0, name, namespace, enclave, over_rcl=True))
         return nodes
+
+    def _are_possible(self, name: str, types: list[str]) -> bool:
+        """Return whether a topic or service could be one of ROS, and count it if not.
+
+        Types of DDS programs have names of their own, which tools show.
+        """
+        if names.is_full_name(name) and names.is_plain(*types):
+            return True
+        self._state.note_malformed("graph", f"{brief(name)} of type {brief(types)}")
+        return False
 
     def _ask_topic(
         self,
@@ -314,6 +326,8 @@ class RclGraphWatcher:
         except rcl.module.NodeNameNonExistentError:
             return False
         for name, types in answer:
+            if not self._are_possible(name, types):
+                continue
             for type_name in types:
                 label = f"{kind.value} {node.participant} {name} {type_name}"
                 gid = hashlib.blake2b(label.encode(), digest_size=16).digest()
