@@ -11,6 +11,7 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.graph import EndpointInfo, NodeInfo
+from aionode.names import is_hidden
 from aionode.transport._send_thread import SendThread
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session_state import Declaration
@@ -55,6 +56,12 @@ SHOWN: Final = 200
 def participant_of(key: str) -> str:
     """Return the participant that a liveliness token names; empty without one."""
     return key.split("/", 3)[2] if key.count("/") > 1 else ""
+
+
+def is_of_tool(info: NodeInfo | EndpointInfo) -> bool:
+    """Return whether it is a hidden node or an endpoint of one, which nobody misses."""
+    node = info if isinstance(info, NodeInfo) else info.node
+    return is_hidden(node.fully_qualified_name)
 
 
 class NodeDeclaration(Declaration):
@@ -177,7 +184,7 @@ class Watcher:
 
     @property
     def other_domains(self) -> frozenset[int]:
-        """The domains of reachable nodes with another domain id; a hundred at most."""
+        """The domains of reachable nodes that are not hidden; a hundred at most."""
         return frozenset(self._foreign)
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[bool]) -> None:
@@ -301,7 +308,8 @@ class Watcher:
         if token is None:
             self._state.note_malformed(f"{PREFIX}/**", f"the liveliness token {key[:SHOWN]}")
         elif token.domain_id != self._state.domain_id:
-            self._note_domain(token.domain_id, key)
+            if not is_of_tool(token.info):
+                self._note_domain(token.domain_id, key)
         elif self._state.graph is not None:
             info = self._known[key] = token.info
             if isinstance(info, NodeInfo):
@@ -367,7 +375,8 @@ class Watcher:
         """
         count = len(self._foreign)
         own = sum(map(is_node_token, self._state.own_tokens()))
-        warns = bool(count) and own < 2 and not self._known and not self._warned
+        hears = not all(map(is_of_tool, self._known.values()))
+        warns = bool(count) and own < 2 and not hears and not self._warned
         if count < self._tell_from and not warns:
             return
         self._tell_from = 10 * max(count, 1)

@@ -376,7 +376,11 @@ async def test_strange_tokens_are_counted_and_the_graph_goes_on(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
     """Any process may declare any token below the prefix."""
-    strange = ["x", "a/0/0/NN/%/%/n", "z/0/0/XX/%/%/n", "z/0/1/MP/%/%/n/%t/not_dds/h/::,1:,:,:,,"]
+    strange = [
+        *["x", "a/0/0/NN/%/%/n", "z/0/0/XX/%/%/n", "z/0/1/MP/%/%/n/%t/not_dds/h/::,1:,:,:,,"],
+        "z/0/0/NN/%/%..%..%etc/n",
+        "z/0/1/SS/%/%/n/%..%..%etc/p::srv::dds_::T_/h/::,1:,:,:,,",
+    ]
     good = "zz/0/0/NN/%/%/fine"
     async with quiet_node("watcher") as node:
         with raw_session() as session, caplog.at_level(logging.WARNING):
@@ -388,10 +392,10 @@ async def test_strange_tokens_are_counted_and_the_graph_goes_on(
             ):
                 await node.graph.until(lambda: "fine" in {n.name for n in node.graph.nodes()})
                 # they may come after it
-                await until(lambda: transport_of(node).malformed.total() >= 3)
+                await until(lambda: transport_of(node).malformed.total() >= 5)
             await node.graph.until(lambda: [n.name for n in node.graph.nodes()] == ["watcher"])
 
-        assert transport_of(node).malformed.total() == 3
+        assert transport_of(node).malformed.total() == 5
         assert sum("unknown form" in record.message for record in caplog.records) == 1
 
 
@@ -474,11 +478,46 @@ async def test_other_domains_are_a_warning_once_in_a_context_that_hears_no_other
     assert lines == ["nodes of domain 200, 201, 202, 203, 204 and 3 more"]
 
 
-def announced(session: zenoh.Session, domains: Iterable[int]) -> list[zenoh.LivelinessToken]:
+async def test_hidden_nodes_of_another_domain_are_not_missed(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """The daemon of ros2cli runs on for hours in each domain that was asked for anything."""
+    clock = ManualClock()
+    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
+        _tokens = announced(session, [DOMAIN_ID], "sign")
+        _tokens += announced(session, [200], "_ros2cli_daemon_200_5f4dcc3b")
+        endpoint = f"@ros2_lv/200/{session.zid()}/0/1/MP/%/%/_ros2cli_9/%t/p::msg::dds_::T_/h"
+        _tokens.append(session.liveliness().declare_token(f"{endpoint}/::,1:,:,:,,"))
+        async with quiet_node("here", Context(clock=clock)) as here:
+            await here.graph.until(lambda: "sign" in {node.name for node in here.graph.nodes()})
+            await clock.advance(2.0)
+
+            assert transport_of(here).other_domains == frozenset()
+    assert domain_lines(caplog) == []
+
+
+async def test_a_context_that_hears_only_hidden_nodes_warns_of_other_domains(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A daemon of ros2cli in its own domain is not what a program looks for."""
+    clock = ManualClock()
+    with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"), raw_session() as session:
+        _tokens = announced(session, [DOMAIN_ID], f"_ros2cli_daemon_{DOMAIN_ID}_5f4dcc3b")
+        _tokens += announced(session, [200])
+        async with quiet_node("here", Context(clock=clock)) as here:
+            await here.graph.until(lambda: len(here.graph.nodes()) == 2)
+            await until(lambda: bool(transport_of(here).other_domains))
+            await clock.advance(2.0)
+    assert domain_lines(caplog) == [(logging.WARNING, "nodes of domain 200")]
+
+
+def announced(
+    session: zenoh.Session, domains: Iterable[int], name: str = "theirs"
+) -> list[zenoh.LivelinessToken]:
     """Announce one node in each of these domains."""
     return [
         session.liveliness().declare_token(
-            f"@ros2_lv/{domain_id}/{session.zid()}/0/0/NN/%/%/theirs"
+            f"@ros2_lv/{domain_id}/{session.zid()}/0/0/NN/%/%/{name}"
         )
         for domain_id in domains
     ]
