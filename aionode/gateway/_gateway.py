@@ -113,6 +113,7 @@ class Gateway(Clients):
             stack.callback(audit.close)
             self._robot = Robot(self.node, self._policy, audit, tasks, self._ask)
             stack.callback(self._robot.close)
+            self._robot.standstills.watch(self._doubt_all)
             self._client_list = ClientList(self.node)
             stack.callback(self._client_list.close)
             for work in (audit.run(), self._follow_policy()):
@@ -148,6 +149,14 @@ class Gateway(Clients):
         server.stop()
         await serving
         await self.robot.commands.close()  # those of requests, which have no session any more
+
+    def _doubt_all(self) -> None:
+        """Doubt all clients after a standstill: what they have sent in it was not read meanwhile.
+
+        One that has nothing to do with commands answers a ping for nothing.
+        """
+        for session in list(self._sessions):
+            session.doubt()
 
     # Routes
 
@@ -191,9 +200,11 @@ class Gateway(Clients):
             if connection is None:
                 continue
             is_lost = session.outbox.overflowed
-            if session.has_goals or session.is_doubtful:
+            if session.has_goals or (session.is_doubtful and session.publishes):
                 session.ask_for_sign()
-                is_lost = is_lost or connection.silent_sec() > limit
+                # After a standstill of its own, the gateway first hears what has arrived in it.
+                silent_sec = min(connection.silent_sec(), self.robot.standstills.since_sec())
+                is_lost = is_lost or silent_sec > limit
             if is_lost:
                 session.ended.set()
                 connection.abort()
@@ -226,24 +237,32 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
     """Return a `receive` of WebSockets that takes no more frames than a rate allows.
 
     A client that sends faster is not read meanwhile, and so has to wait. One whose frames are
-    refused has to wait longer: requests in vain must cost the robot next to nothing.
+    refused has to wait longer: requests in vain must cost the robot next to nothing. What waits is
+    not as new as it seems when it is read, so a client that had to wait is doubted. A driver who is
+    refused because another one drives does not wait, or its old commands would come later.
     """
     clock = robot.clock
     bucket = Bucket(rate_hz, robot.time_base.steady_ns)
     refusals = Bucket(REFUSALS_PER_SEC, robot.time_base.steady_ns)
-    seen = session.refused
+    seen = session.refused - session.refused_cheaply
+
+    async def wait_for(waited_for: Bucket) -> None:
+        has_waited = False
+        while wait_sec := waited_for.wait_sec():
+            has_waited = True
+            await clock.sleep(wait_sec)
+        if has_waited:
+            session.doubt()
 
     async def receive_paced() -> Any:
         nonlocal seen
-        while seen < session.refused:
-            while wait_sec := refusals.wait_sec():
-                await clock.sleep(wait_sec)
+        while seen < session.refused - session.refused_cheaply:
+            await wait_for(refusals)
             seen += 1
         message = await receive()
         if message["type"] == "websocket.receive":
             session.note_frame()
-            while wait_sec := bucket.wait_sec():
-                await clock.sleep(wait_sec)
+            await wait_for(bucket)
         return message
 
     return receive_paced

@@ -115,6 +115,8 @@ class Endpoint:
             ):
                 has_session = True
                 session.owner = caller_of(request, session)
+                self._gateway.robot.standstills.look()
+                session.note_arrival(scope["state"]["aionode_connection"].silent_sec())
                 session.on_policy = partial(end_with, session)
                 async with until_ended(session):
                     if request.method != "POST":  # about the graph, or the nodes in it

@@ -14,6 +14,7 @@ from aionode.gateway._command import Commands
 from aionode.gateway._feed import Feeds
 from aionode.gateway._rosbridge_request import type_text
 from aionode.gateway._sharing import Shared
+from aionode.gateway._standstill import Standstills
 
 if TYPE_CHECKING:
     from aionode.gateway._audit import Audit
@@ -47,6 +48,7 @@ class Robot:
     Attributes:
         turn: Held by who encodes a large message, or asks about the graph: one at a time.
         making: Held by who makes a large message of what a client has sent, in a thread.
+        standstills: Notices that the event loop stood still.
     """
 
     def __init__(
@@ -69,6 +71,7 @@ class Robot:
         self.feeds = Feeds(node)
         self.shared = Shared(self.time_base)
         self.commands = Commands(tasks)
+        self.standstills = Standstills(self.time_base)
         self.rates = Rates(self.time_base.steady_ns)
         self._types: dict[tuple[str, frozenset[str]], Any] = {}
         self._types_now: dict[str, Any] = {}  # by name, until the graph changes
@@ -113,6 +116,7 @@ class Robot:
 
     def close(self) -> None:
         """Destroy the endpoints that are shared."""
+        self.standstills.stop()
         self.shared.close()
 
 

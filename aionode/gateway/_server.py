@@ -175,6 +175,7 @@ class HttpConnection(H11Protocol):
     _timer: asyncio.TimerHandle | None = None
     _unread_bytes: int | None = None
     _made_s: float = 0.0
+    _heard_s: float = 0.0
     _is_upgraded = False
     config: ServerConfig
 
@@ -222,8 +223,13 @@ class HttpConnection(H11Protocol):
         return cycle is None or cycle.response_complete or cycle.more_body
 
     def data_received(self, data: bytes) -> None:
-        """Take what was received, some of it at a time."""
+        """Note the time, and take what was received, some of it at a time."""
+        self._heard_s = self.loop.time()
         self._portions.add(data)
+
+    def silent_sec(self) -> float:
+        """Return how long nothing has arrived, in seconds."""
+        return self.loop.time() - self._heard_s
 
     def _begin_time(self) -> None:
         if self._timer is not None:
@@ -407,8 +413,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         """Ask the client for a sign, and call `answered` with it: what comes then is no older.
 
         Nobody can answer before: what a ping carries is random. A client that gets several pings
-        at once may answer the last one only, and one far away answers after the next ping is out,
-        so any answer to a ping with `answered` counts.
+        at once may answer the last one only, so its answer counts for the earlier ones as well.
         """
         payload = secrets.token_bytes(8)
         if answered is not None:
@@ -450,11 +455,12 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     def handle_pong(self, event: Any) -> None:
         """Take the answer to a ping."""
         self._count(self._pings)
-        answered = self._asked.pop(bytes(event.data), None)
+        answered = self._asked.get(bytes(event.data))
         if answered is None:
             super().handle_pong(event)
         else:
-            self._asked.clear()
+            while bytes(event.data) in self._asked:
+                del self._asked[next(iter(self._asked))]
             message: Any = {"type": ANSWERED, "answered": answered}
             self.queue.put_nowait(message)
 

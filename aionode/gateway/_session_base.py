@@ -6,6 +6,7 @@ import asyncio
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sized
 from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
 
 from aionode._concurrency import checkpoint, run_in_thread
@@ -66,9 +67,11 @@ class SessionBase:
         self._coming: Counter[str] = Counter()
         self._turn = asyncio.Lock()
         self.refused = 0
+        self.refused_cheaply = 0  # of these, commands that came too late, or on a topic in use
         self.connection: Connection | None = None
         self._frame_ns: int | None = None  # when the frame arrived that is handled
         self.is_doubtful = False
+        self._doubts = 0
         self._doubted_ns = -1
 
     @property
@@ -94,6 +97,7 @@ class SessionBase:
     ) -> RefusedError:
         """Return the error of a refusal, and write the refusal down."""
         self.refused += 1
+        self.refused_cheaply += code in {"held", "too_old"}
         self._robot.audit.note(
             self.identity, verb, name, arguments=message, result=f"refused: {reason}",
             code=code, way=self.kind,
@@ -219,30 +223,43 @@ class SessionBase:
         }
 
     def doubt(self) -> None:
-        """Have commands refused until the client has answered a ping: it was silent for too long.
+        """Have commands refused until the client has answered a ping that is sent now.
 
-        What a link that was cut delivers later was sent before that answer.
+        It was silent for too long, or the gateway has not read what it has sent. What was on its
+        way meanwhile was sent before that answer.
         """
         if self.connection is not None:
             self.is_doubtful = True
+            self._doubts += 1
             self._doubted_ns = self._robot.time_base.steady_ns() - 1
             self.ask_for_sign()
 
     def ask_for_sign(self) -> None:
         """Send a ping; if the session is doubtful, its answer ends the doubt."""
         if self.connection is not None:
-            self.connection.ping(self._trust if self.is_doubtful else None)
+            answered = partial(self._trust, self._doubts) if self.is_doubtful else None
+            self.connection.ping(answered)
 
     def note_frame(self) -> None:
         """Take that a frame is handled now, which arrived with the last bytes of the client."""
         if self.connection is not None:
-            age_ns = round(self.connection.silent_sec() * S_TO_NS)
-            self._frame_ns = self._robot.time_base.steady_ns() - age_ns
+            self._robot.standstills.look()
+            self.note_arrival(self.connection.silent_sec())
             if self.is_doubtful:  # what waits in a lane is handled when the doubt is over, perhaps
-                self._doubted_ns = max(self._doubted_ns, self._frame_ns)
+                self._doubted_ns = max(self._doubted_ns, self.arrival_ns())
 
-    def _trust(self) -> None:
-        self.is_doubtful = False
+    def note_arrival(self, age_sec: float) -> None:
+        """Take that what is handled now arrived some seconds ago."""
+        self._frame_ns = self.steady_ns() - round(age_sec * S_TO_NS)
+
+    def arrival_ns(self) -> int:
+        """Return when that arrived which is handled, in nanoseconds of the steady clock."""
+        return self.steady_ns() if self._frame_ns is None else self._frame_ns
+
+    def _trust(self, doubt: int) -> None:
+        """End a doubt, unless there is a later one: the ping for that is not answered yet."""
+        if doubt == self._doubts:
+            self.is_doubtful = False
 
     # Types and names
 

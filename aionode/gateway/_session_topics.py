@@ -125,6 +125,11 @@ class SessionTopics(SessionBase):
         self._counts: dict[str, int] = defaultdict(int)
         self._noted_ns: dict[str, int] = {}
 
+    @property
+    def publishes(self) -> bool:
+        """Whether the client has advertised or published on a topic."""
+        return bool(self._published)
+
     async def subscribe(
         self,
         topic: str,
@@ -246,8 +251,11 @@ class SessionTopics(SessionBase):
             commands.refuse_if_held(topic, self.owner)
             publisher.publish(decision.message)
             return
+        if self.connection is None and arrived_ns <= self._robot.standstills.until_ns:
+            reason = "it may have waited while the gateway stood still; send it again"
+            raise RefusedError(f"publish {topic}", reason, "too_old")
         if self.is_doubtful or arrived_ns <= self._doubted_ns:
-            reason = "it may be from before the silence of the client"
+            reason = "it may be from before a silence of the client, which has to answer a ping"
             raise RefusedError(f"publish {topic}", reason, "too_old")
         now_ns = self._robot.node.get_clock().now().nanoseconds
         check_age(topic, message, lease, now_ns=now_ns, arrived_ns=arrived_ns,
@@ -283,10 +291,6 @@ class SessionTopics(SessionBase):
         for subscribed in self._subscribed:
             counts[subscribed.topic] += subscribed.dropped
         return dict(counts)
-
-    def arrival_ns(self) -> int:
-        """Return when the frame arrived that is handled, in nanoseconds of the steady clock."""
-        return self.steady_ns() if self._frame_ns is None else self._frame_ns
 
     def _note_published(self, topic: str, message: Message) -> None:
         """Write down the publishing: once a second for each topic, with a count."""

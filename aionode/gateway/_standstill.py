@@ -1,0 +1,83 @@
+"""Noticing that the event loop stood still: what it reads then was sent long before."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+from aionode.clock import S_TO_NS
+
+if TYPE_CHECKING:
+    from aionode.clock import Alarm, TimeBase
+
+__all__ = ["Standstills"]
+
+LOOK_NS: Final = S_TO_NS // 10
+"""The time between two looks at the clock, in nanoseconds."""
+
+LATE_NS: Final = 3 * S_TO_NS // 20
+"""A look that is later than this shows that the loop stood still, in nanoseconds."""
+
+READ_NS: Final = S_TO_NS // 5
+"""Time after a standstill in which everything that was sent meanwhile has been read: connections
+that were made in it are accepted first, which takes some turns of the loop."""
+
+
+class Standstills:
+    """Notices standstills of the loop: a callback that blocks it, SIGSTOP, a host that sleeps.
+
+    The kernel takes what clients send meanwhile, and it is read as if it had just arrived. A look
+    by an alarm comes too late for what is read in the same turn, so who reads looks as well.
+
+    Args:
+        time_base: Shows the time.
+
+    Attributes:
+        until_ns: What was read until then may be old, in nanoseconds of the steady clock.
+    """
+
+    def __init__(self, time_base: TimeBase) -> None:
+        self.until_ns = -1
+        self._time_base = time_base
+        self._clock = time_base.through_suspend()
+        self._on_standstill: Callable[[], None] | None = None
+        self._looked_ns = 0
+        self._ended_ns: int | None = None
+        self._alarm: Alarm | None = None
+
+    def watch(self, on_standstill: Callable[[], None]) -> None:
+        """Look from now on, and call a function after each standstill."""
+        self._on_standstill = on_standstill
+        self._looked_ns = self._clock.steady_ns()
+        self._ring()
+
+    def stop(self) -> None:
+        """Look no more."""
+        self._on_standstill = None
+        if self._alarm is not None:
+            self._alarm.cancel()
+
+    def look(self) -> None:
+        """Note that the loop turns; if it has not for too long, everything read now may be old."""
+        if self._on_standstill is None:
+            return
+        now_ns = self._clock.steady_ns()
+        late_ns = now_ns - self._looked_ns - LOOK_NS
+        self._looked_ns = now_ns
+        if late_ns > LATE_NS:
+            self._ended_ns = now_ns
+            self.until_ns = self._time_base.steady_ns() + READ_NS
+            self._on_standstill()
+
+    def since_sec(self) -> float:
+        """Return how long the last standstill has been over, in seconds."""
+        if self._ended_ns is None:
+            return math.inf
+        return (self._clock.steady_ns() - self._ended_ns) / S_TO_NS
+
+    def _ring(self) -> None:
+        self.look()
+        if self._on_standstill is not None:
+            due_ns = self._time_base.steady_ns() + LOOK_NS
+            self._alarm = self._time_base.call_at(due_ns, self._ring)
