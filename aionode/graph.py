@@ -123,6 +123,8 @@ class EndpointInfo:
             empty if unknown, as those of services over DDS.
         qos: Its QoS.
         gid: 16 bytes that identify it.
+        backends: What an endpoint of another process says since ROS 2 Lyrical of the memory in
+            which it passes sequences of bytes, such as ``backends:cpu:``; empty without.
     """
 
     kind: EndpointKind
@@ -133,6 +135,7 @@ class EndpointInfo:
     type_hash: str
     qos: QoSProfile
     gid: bytes
+    backends: str = ""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, EndpointInfo) and self.gid == other.gid
@@ -184,13 +187,23 @@ class EndpointInfo:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
         Between contexts only the types count over rmw_zenoh, which delivers whatever the QoS is;
-        over DDS the QoS counts as well.
+        `needs_qos` has the exceptions.
         """
         mismatch = self.compare(other) if self.needs_qos(other) else self._compare_types(other)
         return None if mismatch is None else mismatch.reason
 
     def needs_qos(self, other: EndpointInfo) -> bool:
-        """Return whether the QoS of both has to fit."""
+        """Return whether the QoS of both has to fit.
+
+        Within one context, and over DDS. Since ROS 2 Lyrical, volatile publishers of sequences of
+        bytes send to keys that transient local subscriptions do not listen to.
+        """
+        if self.kind in TOPIC_KINDS:
+            is_publisher = self.kind is EndpointKind.PUBLISHER
+            publisher, subscription = (self, other) if is_publisher else (other, self)
+            is_latched = subscription.qos.durability is qos.DurabilityPolicy.TRANSIENT_LOCAL
+            if publisher.backends and is_latched:
+                return True
         in_one_context = self.node.participant == other.node.participant
         return in_one_context or self.node.over_rcl or other.node.over_rcl
 

@@ -47,7 +47,9 @@ __all__ = [
 
 PREFIX: Final = "@ros2_lv"
 
-CPU_BACKEND: Final = "backends:cpu:"
+BACKENDS: Final = "backends:"
+
+CPU_BACKEND: Final = f"{BACKENDS}cpu:"
 """The 14th chunk of a subscription that also accepts plain bytes on the buffer key."""
 
 NODE_KIND: Final = "NN"
@@ -194,6 +196,7 @@ def parse_endpoint(
     qos = parse_qos(qos_text)
     if name is None or type_name is None or qos is None:
         return None
+    backends = next(iter(chunks[4:]), "")
     return EndpointInfo(
         KINDS[kind],
         node,
@@ -203,6 +206,7 @@ def parse_endpoint(
         hash_text,
         qos,
         gid_of(key),
+        backends if backends.startswith(BACKENDS) else "",
     )
 
 

@@ -133,7 +133,7 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
         text, remedy = differing
         yield Finding("problem", subject_of(offering), f"{pair} do not communicate: {text}", remedy)
         return
-    if offering.node.participant == requesting.node.participant:
+    if offering.needs_qos(requesting):
         yield Finding(
             "problem",
             subject_of(offering),

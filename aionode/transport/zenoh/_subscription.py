@@ -24,9 +24,10 @@ from aionode.transport.zenoh._delivery import (
 )
 from aionode.transport.zenoh._handlers import direct, translated
 from aionode.transport.zenoh._session_state import Declaration
+from aionode.transport.zenoh._target_numbers import TargetNumbers
 from aionode.wire import cdr
 from aionode.wire._attachment import unpack_fields
-from aionode.wire._key_expression import Side, buffer_key
+from aionode.wire._key_expression import BUFFER_SUFFIX, Side, buffer_key
 from aionode.wire._liveliness import CPU_BACKEND
 
 if TYPE_CHECKING:
@@ -92,6 +93,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._queue = state.arrivals(
             self._receive, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
         )
+        self._numbers = TargetNumbers(self._count_targets) if self._second_key else None
         self._dropped = 0
         self._stateful: StatefulReader | None = None
         if reliable and token and self.recovers:
@@ -186,6 +188,9 @@ class ZenohReader(Declaration, ReaderRegistration):
         extra = sample.attachment
         fields = None if extra is None else unpack_fields(extra.to_bytes())
         sequence, source_ns, gid = fields or self._without_attachment(extra)
+        if self._numbers is not None:
+            by_target = str(sample.key_expr).endswith(BUFFER_SUFFIX)
+            sequence = self._numbers.number(gid, sequence, by_target=by_target)
         if self._transient and gid in self.state.own_gids:
             return  # a late subscription asks the publishers of its own context for history too
         payload = sample.payload.to_bytes()
@@ -221,6 +226,19 @@ class ZenohReader(Declaration, ReaderRegistration):
         if extra is not None:
             self.state.note_malformed(self._key, "an attachment")
         return 0, 0, UNKNOWN_GID
+
+    def _count_targets(self) -> int:
+        """Return how many subscriptions of the topic a publisher of Lyrical sends to one by one."""
+        graph = self.state.graph
+        if graph is None:
+            return 0
+        subscriptions = graph.endpoints(EndpointKind.SUBSCRIPTION, name=self.endpoint.name)
+        return sum(
+            bool(known.type_hash) and is_transient(known.qos)
+            if known.node.participant == self.state.participant
+            else known.backends != CPU_BACKEND and not known.node.bridged
+            for known in subscriptions
+        )
 
     def _held(self, gid: bytes, sequence: int, source_ns: int) -> SampleInfo:
         """Return what is known of a message that may wait here, with the time of its arrival."""

@@ -23,7 +23,7 @@ from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.message import from_builtins
 from aionode.node import Node
-from aionode.qos import QoSProfile
+from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import ManualClock
 from aionode.transport._loop_waker import ThreadsafeQueue
 from aionode.transport.zenoh import _session_state as session_state
@@ -333,6 +333,49 @@ async def test_a_topic_with_bytes_has_two_keys_and_hears_each_message_once() -> 
 
     assert token.endswith("/backends:cpu:")
     assert sorted(heights) == [0, 1]
+
+
+async def test_the_numbers_that_lyrical_gives_to_other_subscriptions_are_no_loss() -> None:
+    """Its publisher takes one for each subscription that knows only the key of all."""
+    key = buffer_key(data_key(DOMAIN_ID, "/image", "sensor_msgs/msg/Image", type_hash(Image)))
+    async with quiet_node("viewer") as node:
+        subscription = node.create_subscription(Image, "image")
+        with raw_session() as session:
+            (token,) = await known(session, f"@ros2_lv/{DOMAIN_ID}/**/MS/**")
+            *chunks, _ = token.split("/")
+            chunks[2], chunks[8] = str(session.zid()), "rviz2"
+            _kilted = session.liveliness().declare_token("/".join(chunks))
+            await node.graph.until(lambda: node.count_subscribers("image") == 2)
+            for sequence in (1, 3, 5, 7, 11, 13):  # number 9 is lost
+                session.put(key, cdr.encode(Image(height=sequence)), attachment=sent(sequence))
+            heights = [(await subscription.receive()).height for _ in range(6)]
+
+    assert heights == [1, 3, 5, 7, 11, 13]
+    assert subscription.stats.lost == 1
+
+
+@pytest.mark.parametrize(("backends", "is_heard"), [("", True), ("/backends:cpu:", False)])
+async def test_a_latched_subscription_is_told_what_holds_for_a_volatile_publisher(
+    backends: str, is_heard: bool, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Kilted's is heard all the same; Lyrical's sends to a key that such subscriptions have not."""
+    hash_text = type_hash(Image)
+    caplog.set_level(logging.WARNING)
+    async with quiet_node("viewer") as node:
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        subscription = node.create_subscription(Image, "image", None, latched)
+        with raw_session() as session:
+            token = session.liveliness().declare_token(
+                f"@ros2_lv/{DOMAIN_ID}/{session.zid()}/0/1/MP/%/%/camera/%image/"
+                f"sensor_msgs::msg::dds_::Image_/{hash_text}/::,1:,:,:,,{backends}"
+            )
+            await node.graph.until(lambda: node.count_publishers("image") == 1)
+            assert subscription.get_publisher_count() == int(is_heard)
+            token.undeclare()
+    (text,) = [text for text in caplog.messages if "incompatible" in text]
+
+    assert ("Messages pass all the same" in text) is is_heard
+    assert ("No messages will be" in text) is not is_heard
 
 
 async def test_a_topic_without_bytes_has_one_key() -> None:

@@ -1,0 +1,103 @@
+"""The numbers of messages from publishers that count each target of a message: ROS 2 Lyrical.
+
+A publisher of sequences of bytes sends a message once to the key of all subscriptions that take
+bytes from the CPU, and once to the key of each other subscription that it has ever discovered. Each
+of these sends takes one of its numbers, so that the numbers on one key rise by the number of
+targets, though nothing is lost.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["TargetNumbers"]
+
+REMEMBERED_PUBLISHERS: Final = 1_024
+"""Number of publishers whose numbers are remembered."""
+
+
+STEADY: Final = 5
+"""After so many equal rises, what looks like losses was the number of targets: one came and went
+unseen."""
+
+
+class Numbers:
+    """The numbers of one publisher.
+
+    Attributes:
+        taken: The last one that it took for this topic.
+        given: The number of that message here.
+        rise: By how much they rose with that message.
+        repeats: With how many messages in a row they rose by that.
+        targets: By how much they rise with each message, if that is known from rises; else 0.
+        doubtful: How many messages before that are missing, unless the rise repeats itself.
+        by_target: Whether that message came on the key of those that take bytes from the CPU.
+    """
+
+    __slots__ = ("by_target", "doubtful", "given", "repeats", "rise", "taken", "targets")
+
+    def __init__(self, taken: int, *, by_target: bool) -> None:
+        self.taken = self.given = taken
+        self.rise = self.repeats = self.targets = self.doubtful = 0
+        self.by_target = by_target
+
+
+class TargetNumbers:
+    """Numbers the messages of such publishers from 1 and rising by 1, with gaps for lost ones.
+
+    Args:
+        others: Returns how many subscriptions of the topic are known that are targets of their own.
+            Those that went before they were known here are targets for ever, too; the rise shows
+            them when it repeats itself.
+    """
+
+    def __init__(self, others: Callable[[], int]) -> None:
+        self._others = others
+        self._of: dict[bytes, Numbers] = {}
+
+    def number(self, gid: bytes, taken: int, *, by_target: bool) -> int:
+        """Return the number of a message.
+
+        Args:
+            gid: Its publisher.
+            taken: The publisher's number.
+            by_target: Whether it came on the key of those that take bytes from the CPU. Then the
+                publisher numbers each target, and else each message.
+        """
+        known = self._of.get(gid)
+        if known is None:
+            if by_target:
+                if len(self._of) >= REMEMBERED_PUBLISHERS:
+                    del self._of[next(iter(self._of))]
+                self._of[gid] = Numbers(taken, by_target=True)
+            return taken
+        rise = taken - known.taken
+        if rise <= 0:  # late, or again
+            return known.given + rise
+        known.given += 1 + self._missing(known, rise, by_target=by_target)
+        known.taken = taken
+        known.by_target = by_target
+        return known.given
+
+    def _missing(self, known: Numbers, rise: int, *, by_target: bool) -> int:
+        """Return how many messages are missing before one with which the numbers rose so much."""
+        if not by_target:
+            last = max(known.targets, 1 + self._others()) if known.by_target else 1
+            return max(rise - last, 0)
+        if not known.by_target:
+            return rise - 1
+        known.repeats = known.repeats + 1 if rise == known.rise else 1
+        known.rise = rise
+        expected = max(known.targets, 1 + self._others()) if rise > 1 else 1
+        is_explained = not known.targets or rise <= expected
+        if known.repeats >= (2 if is_explained else STEADY):
+            known.targets = expected = rise
+            known.doubtful = 0
+        before, known.doubtful = known.doubtful, 0
+        missing = max(rise // expected - 1, 0)
+        if not known.targets:
+            missing, known.doubtful = 0, missing
+        return before + missing
