@@ -161,7 +161,7 @@ class Node(NodeEndpoints, NodeGraphQueries):
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
-        on_client_lost: Literal["cancel", "continue"] = "continue",
+        on_client_lost: Literal["cancel", "continue"] | None = None,
         client_lost_sec: float = 3.0,
     ) -> ActionServer[GoalT, ResultT, FeedbackT]:
         """Return a server that executes goals; see `aionode.ActionServer` for all arguments."""

@@ -12,6 +12,7 @@ from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import InterfaceNotFoundError
 from aionode.gateway._command import Commands
 from aionode.gateway._feed import Feeds
+from aionode.gateway._goal_owners import GoalOwners
 from aionode.gateway._rosbridge_request import type_text
 from aionode.gateway._sharing import Shared
 from aionode.gateway._standstill import Standstills
@@ -48,6 +49,7 @@ class Robot:
     Attributes:
         turn: Held by who encodes a large message, or asks about the graph: one at a time.
         making: Held by who makes a large message of what a client has sent, in a thread.
+        owners: Knows whose the goals are, and makes the clients that send them.
         standstills: Notices that the event loop stood still.
     """
 
@@ -71,6 +73,7 @@ class Robot:
         self.feeds = Feeds(node)
         self.shared = Shared(self.time_base)
         self.commands = Commands(tasks)
+        self.owners = GoalOwners(node, audit)
         self.standstills = Standstills(self.time_base)
         self.rates = Rates(self.time_base.steady_ns)
         self._types: dict[tuple[str, frozenset[str]], Any] = {}

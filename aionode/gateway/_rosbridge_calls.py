@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from aionode.endpoints.actions.goal import CancelCode
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway import _rosapi
 from aionode.gateway._rosbridge_request import (
@@ -170,9 +171,13 @@ class Calls:
     async def _cancel(self, op: Op, handle: ClientGoalHandle[Any, Any]) -> None:
         """Cancel a goal; the next op about the action does not wait for the answer."""
         try:
-            await handle.cancel()
+            answer = await handle.cancel()
         except (AionodeError, TimeoutError) as error:
             self._link.status("error", f"cancel_action_goal: {error}", op)
+        else:
+            if answer.return_code == CancelCode.REJECTED:
+                problem = "cancel was rejected: the goal goes on"
+                self._link.status("error", f"cancel_action_goal: {op['action']}: {problem}", op)
 
 
 def same_name(name: str, other: str) -> bool:

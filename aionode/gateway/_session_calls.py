@@ -154,11 +154,12 @@ class SessionCalls(SessionBase):
             goal = await self.message_of(cls.Goal, values)
             decision = await self._allow("goal", action, cls.__ros_type__, goal)
             self._check_size("goal", action, decision, goal)
-            make = partial(self._robot.node.create_action_client, cls, action)
+            make = partial(self._robot.owners.create_action_client, cls, action)
             with self._attempt("goal", action, cls, decision.message, make) as attempt:
                 if not await attempt.client.wait_for_server(SERVER_SEC):
                     raise ServiceError(action, "there is no action server")
-                handle = await attempt.client.send_goal(decision.message)
+                goal_id = self._robot.owners.new_goal(self.identity, self.kind)
+                handle = await attempt.client.send_goal(decision.message, goal_uuid=goal_id)
                 self._goals.add(handle)
                 try:
                     async with handle:

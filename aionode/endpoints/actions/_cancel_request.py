@@ -7,14 +7,16 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints.actions.goal import CancelCode
+from aionode.endpoints.actions._common import uuid_message
+from aionode.endpoints.actions.goal import CancelCode, lost_id
 from aionode.errors import EntityDestroyedError, ServiceUnavailableError
 
 if TYPE_CHECKING:
     from aionode.endpoints.actions._client_goal import ClientGoalHandle
     from aionode.endpoints.client import Client, Exchange
+    from aionode.logging import RcutilsLogger
 
-__all__ = ["CancelRequest"]
+__all__ = ["CancelRequest", "is_rejected", "warner"]
 
 FIRST_RETRY_S = 0.1
 LONGEST_RETRY_S = 5.0
@@ -34,6 +36,8 @@ class CancelRequest:
         client: The client of the server's cancel service.
         goal: The goal.
         on_end: Called soon after the end; nothing is sent any more by then.
+        lost: Whether the goal was sent for somebody who is lost. A server that rejects the
+            request is then told so; see `lost_id`.
 
     Attributes:
         answer: The server's answer, or the error in its place; ServiceUnavailableError as soon as
@@ -45,6 +49,8 @@ class CancelRequest:
         client: Client[Any, Any],
         goal: ClientGoalHandle[Any, Any],
         on_end: Callable[[CancelRequest], None],
+        *,
+        lost: bool = False,
     ) -> None:
         self._loop = asyncio.get_running_loop()
         self.answer: asyncio.Future[Any] = self._loop.create_future()
@@ -53,6 +59,8 @@ class CancelRequest:
         self._client = client
         self._goal = goal
         self._on_end = on_end
+        self._is_lost = lost
+        self._rejection: Any = None  # what it has answered, if it was then told of the loss
         self._request = client.srv_type.Request()
         self._request.goal_info.goal_id = goal.goal_id
         self._attempts = 0
@@ -81,17 +89,19 @@ class CancelRequest:
         if self._client.service_is_ready():
             exchange = self._client._begin(self._request)
             self._exchanges.append(exchange)
-            exchange.answer.add_done_callback(partial(self._take, self._is_decided()))
+            exchange.answer.add_done_callback(
+                partial(self._take, self._request, self._is_decided())
+            )
         else:
             self._fail(ServiceUnavailableError(self._client.srv_name))
 
-    def _take(self, decided: bool, answer: asyncio.Future[Any]) -> None:
+    def _take(self, request: Any, decided: bool, answer: asyncio.Future[Any]) -> None:
         """Take the answer to one request.
 
         It is final if the server had `decided` about the goal when the request was sent. Before
         that, the server may have got the request before it knew the goal.
         """
-        if self._ended:
+        if self._ended or request is not self._request:
             return
         error = answer.exception()
         if isinstance(error, EntityDestroyedError):  # the client
@@ -126,9 +136,29 @@ class CancelRequest:
             self._take_response(unknown)
 
     def _take_response(self, response: Any) -> None:
+        if response.return_code == CancelCode.NONE and not response.goals_canceling:
+            response.return_code = int(CancelCode.REJECTED)  # so does a server of rclpy reject
+        if self._is_lost and response.return_code == CancelCode.REJECTED:
+            self._tell_lost(response)
+            return
+        if self._rejection is not None and response.return_code == CancelCode.UNKNOWN_GOAL_ID:
+            response = self._rejection  # it knows nothing of losses
         if not self.answer.done():
             self.answer.set_result(response)
         self.end()
+
+    def _tell_lost(self, rejection: Any) -> None:
+        """Ask once more, by the id which tells that nobody is there any more who wants the goal."""
+        self._is_lost, self._rejection = False, rejection
+        self._request = self._client.srv_type.Request()
+        self._request.goal_info.goal_id = uuid_message(lost_id(self._goal._key))
+        exchanges, self._exchanges = self._exchanges, []
+        for exchange in exchanges:
+            exchange.cancel()
+        if self._timer is not None:
+            self._timer.cancel()
+        self._attempts = 0
+        self._send()
 
     def _fail(self, error: BaseException) -> None:
         if not self.answer.done():
@@ -151,3 +181,22 @@ class CancelRequest:
             self._goal._sending.cancel()
         self.answer.cancel()
         self._loop.call_soon(self._on_end, self)
+
+
+def is_rejected(answer: asyncio.Future[Any]) -> bool:
+    """Return whether the server has rejected a cancel request."""
+    if answer.cancelled() or answer.exception() is not None:
+        return False
+    return bool(answer.result().return_code == CancelCode.REJECTED)
+
+
+def warner(logger: RcutilsLogger, subject: str) -> Callable[[str], None]:
+    """Return what tells that a goal, given by its id, goes on though its client has given it up."""
+
+    def tell_goes_on(goal_id: str) -> None:
+        logger.warning(
+            f"{subject}: goal {goal_id}: cancel was rejected: the goal goes on; give its server a "
+            "cancel_callback that accepts"
+        )
+
+    return tell_goes_on

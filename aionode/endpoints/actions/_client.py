@@ -13,7 +13,7 @@ from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.future import Futures, asks
 from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
-from aionode.endpoints.actions._cancel_request import CancelRequest
+from aionode.endpoints.actions._cancel_request import CancelRequest, is_rejected, warner
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.actions._common import ActionEntity, expect_action_type, uuid_message
 from aionode.endpoints.actions._life_signs import LifeSigns
@@ -131,6 +131,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._futures = Futures(self)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
         self._expect_at_end = node._expect_at_end
+        self._sends_for_others = False  # such as the clients of a gateway; see `lost_id`
+        self._tell_goes_on = warner(node.get_logger(), self._subject)
 
         impl = self.action_type.Impl
         hidden = f"{self.action_name}/_action"
@@ -424,14 +426,17 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         elif not goal._cancel_sent:
             goal._cancel_sent = True  # one request is enough, however many tasks wait
 
-            def answered(_: asyncio.Future[Any]) -> None:
+            def answered(answer: asyncio.Future[Any]) -> None:
                 goal._cancel_sent = False
+                if is_rejected(answer):
+                    self._tell_goes_on(goal.text)
 
-            self._begin_to_cancel(goal).answer.add_done_callback(answered)
+            request = self._begin_to_cancel(goal, lost=self._sends_for_others)
+            request.answer.add_done_callback(answered)
 
-    def _begin_to_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> CancelRequest:
+    def _begin_to_cancel(self, goal: Any, *, lost: bool = False) -> CancelRequest:
         goal._cancel_requested = True
-        request = CancelRequest(self._cancel_goal, goal, self._on_cancel_answered)
+        request = CancelRequest(self._cancel_goal, goal, self._on_cancel_answered, lost=lost)
         self._cancel_requests[request] = None
         self._expect_at_end(request.answer)
         return request

@@ -142,14 +142,14 @@ def seconds_to_ns(seconds: float, subject: str) -> int:
     return round(seconds * 1e9)
 
 
-def checked_client_lost(on_client_lost: str, client_lost_sec: float, subject: str) -> int:
+def checked_client_lost(on_client_lost: str | None, client_lost_sec: float, subject: str) -> int:
     """Return after how many nanoseconds without a sign a client is lost; 0 if it never is.
 
     Raises:
         TypeError: `client_lost_sec` is not a number.
         ValueError: it is too short or not finite, or `on_client_lost` is unknown.
     """
-    if on_client_lost not in ("cancel", "continue"):
+    if on_client_lost not in ("cancel", "continue", None):
         raise ValueError(
             f"{subject}: on_client_lost={brief(on_client_lost)} is unknown; "
             'use "cancel" or "continue"'

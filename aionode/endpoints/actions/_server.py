@@ -13,6 +13,7 @@ from aionode.endpoints._core.callback_runner import accepts, checked_concurrency
 from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._core.node_tasks import create_own_task
+from aionode.endpoints.actions._cancel_decision import OWNER_LOST, agrees, ends_for_lost_owner
 from aionode.endpoints.actions._client_watch import ClientWatch, announcing
 from aionode.endpoints.actions._common import (
     AbortReason,
@@ -36,12 +37,12 @@ from aionode.endpoints.actions._server_goal import ServerGoalHandle
 from aionode.endpoints.actions._status_pace import StatusPace
 from aionode.endpoints.actions.goal import (
     CancelCode,
-    CancelResponse,
     GoalKey,
     GoalResponse,
     GoalStatus,
     goals_to_cancel,
     is_cancelable,
+    lost_id,
     reason_id,
 )
 from aionode.endpoints.stats import CallbackStats
@@ -125,6 +126,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         on_client_lost: What becomes of the goals of a client that is killed, frozen, blocked or cut
             off: ``"cancel"`` cancels them, without asking `cancel_callback`; ``"continue"`` lets
             them go on, as in rclpy. The goals of a client that ends properly go on in both cases.
+            By default they go on, too, unless a gateway has lost the client for whom it sent them
+            and there is no `cancel_callback`.
         client_lost_sec: After how many seconds without a sign a client is lost; at least 0.03.
             Clients of aionode give signs three times in this time. Others, such as rclpy's, are
             lost when they leave the graph.
@@ -167,7 +170,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         concurrent: bool | int = True,
         on_error: OnError = "log",
         offload: bool = False,
-        on_client_lost: Literal["cancel", "continue"] = "continue",
+        on_client_lost: Literal["cancel", "continue"] | None = None,
         client_lost_sec: float = 3.0,
         goal_service_qos_profile: QoSProfile | int = qos_profile_services_default,
         result_service_qos_profile: QoSProfile | int = qos_profile_services_default,
@@ -184,6 +187,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._time_base = node.context.time_base
         self._callbacks = node._callbacks
         self._logger = node.get_logger()
+        self._when_lost = on_client_lost
         lost_ns = checked_client_lost(on_client_lost, client_lost_sec, self._subject)
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._offload = offload
@@ -467,6 +471,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_cancel(self, request: Any) -> Any:
         info = request.goal_info
         asked = GoalKey(info.goal_id.uuid.tobytes(), stamp_ns(info.stamp))
+        is_lost = lost_id(asked.goal_id) in self._goals
+        if is_lost:
+            asked = GoalKey(lost_id(asked.goal_id), 0)
         code, meant = goals_to_cancel([goal._current_key for goal in self._goals.values()], asked)
         response = self.action_type.Impl.CancelGoalService.Response()
         if code is CancelCode.UNKNOWN_GOAL_ID:
@@ -476,27 +483,20 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             goal = self._goals.get(goal_id)
             if goal is None or not is_cancelable(goal.status):
                 continue  # it ended during the callback for another goal
-            if not await self._yields(goal):
+            if is_lost:
+                agreed = ends_for_lost_owner(self._when_lost, self._cancel_callback)
+            else:
+                agreed = await agrees(self._cancel_callback, goal, self._warn)
+            if not agreed:
                 refused = True
             elif is_cancelable(goal.status):
                 self._client_watch.remove(goal_id)
-                goal._cancel()
+                goal._cancel(OWNER_LOST if is_lost else "")
                 response.goals_canceling.append(goal.info)
         if meant and not response.goals_canceling:
             code = CancelCode.REJECTED if refused else CancelCode.GOAL_TERMINATED
         response.return_code = int(code)
         return response
-
-    async def _yields(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> bool:
-        if self._cancel_callback is None:
-            return False
-        answer = await awaited(self._cancel_callback(goal))
-        if not isinstance(answer, CancelResponse):
-            self._warn(
-                f"cancel_callback returned {brief(answer)}, no CancelResponse; "
-                "the request is rejected"
-            )
-        return answer is CancelResponse.ACCEPT
 
     def _on_client_lost(self, goal_ids: list[bytes], text: str) -> None:
         """Cancel the goals of a lost client, as an accepted request does."""

@@ -15,7 +15,8 @@ A rejected goal has no state, since it is not kept. ``UNKNOWN`` is what a server
 that it does not know, or no longer knows.
 
 `ALL_GOALS` is the goal id of cancel requests that do not name a goal. An aionode client calls
-``get_result`` with the ids of `reason_id`, `alive_id` and `left_id` for more than the result.
+``get_result`` with the ids of `reason_id`, `alive_id` and `left_id` for more than the result, and
+``cancel_goal`` with that of `lost_id`.
 
 The states are in `_goal_states.py`, and the goals of a cancel request in `_cancel_selection.py`.
 """
@@ -56,6 +57,7 @@ __all__ = [
     "is_cancelable",
     "is_sign",
     "left_id",
+    "lost_id",
     "next_status",
     "reason_id",
 ]
@@ -107,6 +109,16 @@ def left_id(goal_id: bytes) -> bytes:
     Twice it is the id of the goal.
     """
     return bytes(byte ^ 0xAA for byte in goal_id)
+
+
+def lost_id(goal_id: bytes) -> bytes:
+    """Return the id with which a client cancels a goal whose owner is lost.
+
+    It has sent the goal for somebody else, as a gateway does, and the server has rejected to cancel
+    it by its own id. Servers that are not aionode's answer that they do not know the goal. Twice it
+    is the id of the goal.
+    """
+    return bytes(byte ^ 0x33 for byte in goal_id)
 
 
 def is_sign(asked_id: bytes, goals: Container[bytes]) -> bool:

@@ -21,6 +21,7 @@ from aionode.endpoints.client import Exchange
 from aionode.errors import ServiceUnavailableError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
+from aionode.qos import qos_profile_action_status_default
 from aionode.testing import FaultyTransport, settle
 from aionode.transport.local import LocalTransport
 from tests.support.actions import Goal, Worker, end_of
@@ -431,3 +432,56 @@ async def test_a_server_that_has_gone_does_not_hold_up_the_end_of_a_node(ends: E
         began_s = asyncio.get_running_loop().time()
 
     assert asyncio.get_running_loop().time() - began_s < 0.9
+
+
+# A server that rejects
+
+
+async def test_a_goal_that_goes_on_after_it_was_given_up_is_said(
+    ends: Ends, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The request is sent when nobody waits for its answer any more: the log has it, once."""
+    ends.server.register_cancel_callback(None)  # as in rclpy by default
+    with suppress(TimeoutError):
+        async with asyncio.timeout(None) as limit:
+            begun = beside(when_begun(ends, lambda: limit.reschedule(0.0)))
+            await by_result(ends.client)
+    await begun
+    while not caplog.records:
+        await checkpoint()
+
+    assert "fibonacci: goal " in caplog.text
+    assert caplog.text.count("cancel was rejected: the goal goes on") == 1
+    ends.server.register_cancel_callback(lambda _: CancelResponse.ACCEPT)
+
+
+async def test_an_answer_without_the_goal_is_a_rejection(context: Context) -> None:
+    """A server of rclpy rejects in this way, with the code for a success."""
+    impl = Fibonacci.Impl
+    async with quiet_node("serving", context) as node, quiet_node("asking", context) as asking:
+        node.create_service(
+            impl.SendGoalService,
+            "count/_action/send_goal",
+            lambda _: impl.SendGoalService.Response(accepted=True),
+        )
+        node.create_service(
+            impl.CancelGoalService,
+            "count/_action/cancel_goal",
+            lambda _: impl.CancelGoalService.Response(),
+        )
+        waiting = asyncio.Event()
+
+        async def wait(_: Any) -> Any:
+            await waiting.wait()
+            return impl.GetResultService.Response()
+
+        node.create_service(impl.GetResultService, "count/_action/get_result", wait)
+        node.create_publisher(impl.FeedbackMessage, "count/_action/feedback", 1)
+        status_qos = qos_profile_action_status_default
+        node.create_publisher(impl.GoalStatusMessage, "count/_action/status", status_qos)
+        client = asking.create_action_client(Fibonacci, "count")
+        await client.wait_for_server()
+        goal = await client.send_goal(Fibonacci.Goal())
+
+        assert (await goal.cancel()).return_code == 1
+        waiting.set()

@@ -1,0 +1,71 @@
+"""Whose goals the gateway has sent: where one goes on without its owner, that is said."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+if TYPE_CHECKING:
+    from aionode.gateway._audit import Audit
+    from aionode.gateway._identity import Identity
+    from aionode.node import Node
+
+__all__ = ["GoalOwners"]
+
+MOST_GOALS: Final = 10_000
+"""Goals whose owners are remembered, the newest ones."""
+
+GOES_ON: Final = "cancel was rejected: the goal goes on"
+
+
+class Owned(NamedTuple):
+    """The client for whom a goal was sent, and its way in."""
+
+    identity: Identity
+    way: str
+
+
+class GoalOwners:
+    """Makes the clients of actions, whose goals are those of the clients of the gateway.
+
+    A goal is cancelled when its owner leaves or is lost. A server of ROS without a cancel callback
+    rejects that, and the goal goes on; the log and the audit log say so then.
+
+    Args:
+        node: The node of the gateway.
+        audit: The audit log.
+    """
+
+    def __init__(self, node: Node, audit: Audit) -> None:
+        self._node = node
+        self._audit = audit
+        self._owned: dict[str, Owned] = {}  # by the id of the goal
+
+    def create_action_client(self, action_type: Any, action: str) -> Any:
+        """Return a client of an action that sends goals for others."""
+        client = self._node.create_action_client(action_type, action)
+        client._sends_for_others = True
+        client._tell_goes_on = partial(self._tell_goes_on, action)
+        return client
+
+    def new_goal(self, identity: Identity, way: str) -> Any:
+        """Return the id of a goal that a client is about to send."""
+        from aionode.interfaces.unique_identifier_msgs.msg import UUID  # few clients send goals
+
+        goal_id = self._node.context.new_uuid()
+        if len(self._owned) >= MOST_GOALS:
+            del self._owned[next(iter(self._owned))]
+        self._owned[goal_id.hex()] = Owned(identity, way)
+        return UUID(uuid=list(goal_id))
+
+    def _tell_goes_on(self, action: str, goal_id: str) -> None:
+        owned = self._owned.pop(goal_id, None)
+        who = "its client" if owned is None else owned.identity.name
+        self._node.get_logger().warning(
+            f"gateway: {action}: {who} has left, and {GOES_ON} ({goal_id}); give its server a "
+            "cancel callback that accepts"
+        )
+        if owned is not None:
+            self._audit.note(
+                owned.identity, "cancel", action, result=GOES_ON, way=owned.way, goal_id=goal_id
+            )
