@@ -414,6 +414,10 @@ class Transport(ABC):
         """
         return True
 
+    def silent_processes(self) -> list[str]:
+        """Return in words which processes have not answered `all_known`, as far as can be told."""
+        return []
+
     def abandon(self) -> None:  # noqa: B027  # most have nothing to let go of
         """Let go of what a forked child has of its parent's, without a sign to others.
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import os
+import signal
 import socket
+import subprocess
+import sys
 from contextlib import closing
 from typing import Any
 
@@ -19,6 +22,15 @@ from tests.support.fork_server import run
 from tests.support.peers import DOMAIN_ID, isolated_environment, raw_session
 
 TOPICS = 3000
+
+SILENT = """
+import socket, sys, time
+from aionode.transport.zenoh._local_sessions import announce
+server = socket.create_server(("127.0.0.1", 0))
+presence = announce(int(sys.argv[1]), server.getsockname()[1])
+print("there", flush=True)
+time.sleep(600)
+"""
 
 
 @pytest.fixture
@@ -59,6 +71,33 @@ def test_an_answer_that_may_be_incomplete_says_so(env: dict[str, str]) -> None:
 
     assert (done.returncode, done.stdout) == (0, "0\n")
     assert "this may be incomplete" in done.stderr
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
+@pytest.mark.parametrize("is_stopped", [True, False])
+def test_each_command_names_a_process_that_does_not_answer(
+    env: dict[str, str], *, is_stopped: bool
+) -> None:
+    """It listens at a port of its own, as every process after the third does."""
+    group = int(env["AIONODE_MEETING_PORTS"].split(",")[0])
+    with subprocess.Popen(
+        [sys.executable, "-c", SILENT, str(group)], stdout=subprocess.PIPE, text=True
+    ) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "there\n"
+        if is_stopped:
+            process.send_signal(signal.SIGSTOP)
+        lists = [run(["-m", "aionode", "topic", "list"], env=env, timeout=60) for _ in range(2)]
+        doctor = run(["-m", "aionode", "doctor"], env=env, timeout=60)
+        process.kill()
+
+    said = f"is stopped (kill -CONT {process.pid})" if is_stopped else "does not answer"
+    for done in lists:
+        (warning,) = [line for line in done.stderr.splitlines() if "WARNING" in line]
+        assert f"process {process.pid} (" in warning
+        assert f") {said}: this may be incomplete" in warning
+    assert f"problem: process: process {process.pid} (" in doctor.stdout
+    assert doctor.returncode == 1
 
 
 async def test_a_long_wait_is_reported_on_stderr(

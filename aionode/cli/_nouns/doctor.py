@@ -16,7 +16,7 @@ from aionode.cli._nouns.doctor_transforms import transform_findings
 from aionode.cli._support import lookup
 from aionode.cli._support.completion import complete_names
 from aionode.cli._support.options import json_option, ros2_options
-from aionode.cli._support.session import run_verb
+from aionode.cli._support.session import run_verb, silent_processes
 from aionode.clock import perf_ns
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
@@ -112,7 +112,8 @@ async def doctor(
     if names:
         lines += [f"  {pair.text()}" for pair in pairs]
     output.item("\n".join(lines), record)
-    findings = diagnose(nodes, endpoints)
+    findings = [silence_finding(who) for who in silent_processes(node)]
+    findings += diagnose(nodes, endpoints)
     hashes = {end.type_hash for end in endpoints if not end.node.bridged}
     hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
@@ -136,6 +137,16 @@ async def doctor(
     problems = sum(finding.severity == "problem" for finding in findings)
     output.text(f"\n{problems} problem(s), {len(findings) - problems} hint(s)")
     return 1 if problems else 0
+
+
+def silence_finding(who: str) -> Finding:
+    """Return the finding about a process that does not answer."""
+    return Finding(
+        "problem",
+        "process",
+        f"{who}: its nodes are missing here, and answer nobody",
+        "let it go on, or end it",
+    )
 
 
 def summary(record: Mapping[str, Any], router_port: int) -> list[str]:

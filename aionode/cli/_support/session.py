@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from aionode.node import Node
     from aionode.runner import LoopFactory
 
-__all__ = ["make_node", "run_verb"]
+__all__ = ["make_node", "run_verb", "silent_processes"]
 
 CLOSE_S = 0.9
 """Timeout for the exit of a command that has printed its answer, in seconds."""
@@ -140,10 +140,9 @@ async def wait_until_known(node: Node, output: Output) -> None:
         count = len(node.graph.nodes()) + len(node.graph.endpoints())
         output.warn(f"Waiting for discovery: {count} nodes and endpoints so far")
     if not all(await asked):
-        output.warn(
-            "WARNING: a reachable peer has not answered (frozen, overloaded or far away?): "
-            "this may be incomplete"
-        )
+        unknown = "a reachable peer has not answered (frozen, overloaded or far away?)"
+        for who in silent_processes(node) or [unknown]:
+            output.warn(f"WARNING: {who}: this may be incomplete")
     participant = node.context.participant
     hashes = {
         endpoint.type_hash
@@ -153,6 +152,11 @@ async def wait_until_known(node: Node, output: Output) -> None:
     hint = other_distribution(node.context.ros_distro, hashes)
     if hint is not None:
         output.warn(f"WARNING: {hint}")
+
+
+def silent_processes(node: Node) -> list[str]:
+    """Return in words which processes do not answer the node of a command."""
+    return [who for transport in node.context.transports for who in transport.silent_processes()]
 
 
 def run_until_stopped(

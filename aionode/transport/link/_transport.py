@@ -113,6 +113,10 @@ class LinkTransport(Transport):
         """Wait until every context that can be reached has announced its endpoints."""
         return await self.zenoh.all_known(quiet_s)
 
+    def silent_processes(self) -> list[str]:
+        """Return who does not answer."""
+        return self.zenoh.silent_processes()
+
     async def link_status(self) -> LinkStatus:
         """Return which contexts can be linked, and which are; all of them are asked."""
         return await self.zenoh.link_status()

@@ -150,11 +150,11 @@ class Connections:
         except TimeoutError:
             return
 
-    async def wait_longer(self, expected: int, limit_s: float) -> None:
-        """Wait until `expected` peers are connected, `limit_s` at most."""
+    async def wait_longer(self, is_enough: Callable[[], bool], limit_s: float) -> None:
+        """Wait until connections are enough, `limit_s` at most."""
         with suppress(TimeoutError):
             async with asyncio.timeout(limit_s):
-                while len(self.kinds) < expected:
+                while not is_enough():
                     await self._next()
 
     async def _next(self) -> None:

@@ -19,12 +19,22 @@ from __future__ import annotations
 import socket
 import sys
 from contextlib import suppress
-from typing import Final
+from pathlib import Path
+from typing import Final, NamedTuple
 
+from aionode.errors import escaped, shortened
 from aionode.transport._network import udp_sockets
 from aionode.transport.zenoh._config import LOOPBACK
 
-__all__ = ["announce", "holder_of", "listed", "reserve_port"]
+__all__ = ["LocalProcess", "announce", "holder_of", "listed", "processes", "reserve_port"]
+
+PROCESSES: Final = Path("/proc")
+
+STOPPED: Final = {"T", "t"}
+"""States of processes that a signal, or a debugger, has stopped; see proc(5)."""
+
+COMMAND: Final = 100
+"""Number of characters of a command line that are shown."""
 
 PRESENCE: Final = 97
 """The second number of these addresses, all of which belong to loopback."""
@@ -49,14 +59,60 @@ def listed(group: int) -> set[int] | None:
     lines = udp_sockets()
     if lines is None:
         return None
-    address = int.from_bytes(socket.inet_aton(address_of(group)), sys.byteorder)
-    start = f"{address:08X}:"
+    start = address_in_list(group)
     ports = set()
     for line in lines:
         remote = line.split(maxsplit=3)[2]
         if remote.startswith(start):
             ports.add(int(remote.removeprefix(start), 16))
     return ports
+
+
+class LocalProcess(NamedTuple):
+    """The process of a session that is listed.
+
+    Attributes:
+        pid: Its id.
+        command: Its command line, for people to read.
+        is_stopped: Whether a signal or a debugger has stopped it, so that it answers nobody.
+    """
+
+    pid: int
+    command: str
+    is_stopped: bool
+
+
+def processes(group: int) -> dict[int, LocalProcess]:
+    """Return the processes whose sessions are listed, by port, as far as the system tells."""
+    start = address_in_list(group)
+    ports = {}
+    for line in udp_sockets() or ():
+        columns = line.split()
+        if columns[2].startswith(start):
+            ports[f"socket:[{columns[9]}]"] = int(columns[2].removeprefix(start), 16)
+    found: dict[int, LocalProcess] = {}
+    for folder in PROCESSES.iterdir() if ports else ():
+        if folder.name.isdigit():
+            with suppress(OSError):  # it is another user's, or has ended
+                for descriptor in (folder / "fd").iterdir():
+                    port = ports.get(str(descriptor.readlink()))
+                    if port is not None:
+                        found[port] = process_in(folder)
+    return found
+
+
+def process_in(folder: Path) -> LocalProcess:
+    """Return what the system tells of a process."""
+    command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+    state = (folder / "stat").read_text(errors="replace").rpartition(") ")[2][:1]
+    text = shortened(escaped(" ".join(command.split())), COMMAND)  # in one line
+    return LocalProcess(int(folder.name), text, state in STOPPED)
+
+
+def address_in_list(group: int) -> str:
+    """Return the address of a group as the list has it, up to the port."""
+    address = int.from_bytes(socket.inet_aton(address_of(group)), sys.byteorder)
+    return f"{address:08X}:"
 
 
 def holder_of(port: int) -> int | None:

@@ -33,6 +33,7 @@ from aionode.transport.zenoh._settings import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
+    from collections.abc import Set as AbstractSet
 
     from aionode.transport._network import Network
 
@@ -216,11 +217,13 @@ class Opened(NamedTuple):
         session: The session.
         expected: How many peers are about to be connected.
         presence: What has it listed on this machine, until it is closed; None if nothing does.
+        dialled: The ports of the other sessions that are listed.
     """
 
     session: zenoh.Session
     expected: int
     presence: socket.socket | None
+    dialled: AbstractSet[int] = frozenset()
 
     def close(self) -> None:
         """Close both."""
@@ -278,7 +281,8 @@ def open_listed(network: Network, participant: str) -> Opened | None:
         session = zenoh.open(load_config(network, settings, participant))
         failed.pop_all()
     met = others & set(network.meeting_ports)
-    return Opened(session, len(met) + len(unlisted) + bool(network.near_peers), presence)
+    expected = len(met) + len(unlisted) + bool(network.near_peers)
+    return Opened(session, expected, presence, others)
 
 
 def open_unlisted(network: Network, participant: str) -> Opened:

@@ -18,6 +18,7 @@ from aionode.transport.zenoh._defects.scarcity import refuse_scarcity
 from aionode.transport.zenoh._defects.stale_transports import StaleTransports
 from aionode.transport.zenoh._graph_watcher import NodeDeclaration, Watcher
 from aionode.transport.zenoh._local_router import LocalRouter
+from aionode.transport.zenoh._local_sessions import listed, processes
 from aionode.transport.zenoh._peer_directory import ZenohPeerDirectory
 from aionode.transport.zenoh._publisher import ZenohWriter
 from aionode.transport.zenoh._router_matching import RouterMatching
@@ -28,12 +29,13 @@ from aionode.transport.zenoh._session import (
     run_in_own_thread,
 )
 from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._sockets import arrived_bytes
+from aionode.transport.zenoh._sockets import arrived_bytes, pair_of
 from aionode.transport.zenoh._subscription import ZenohReader
 
 if TYPE_CHECKING:
     import socket
     from collections import Counter
+    from collections.abc import Set as AbstractSet
 
     import zenoh
 
@@ -97,6 +99,7 @@ class ZenohTransport(Transport):
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
+        self._dialled: AbstractSet[int] = frozenset()  # the ports of this machine's other sessions
         self._recovery = Recovery(self._state, network, self._watcher)
         self._stale_transports = StaleTransports(self._state, network)
         self._local_router = LocalRouter(self._state, network)
@@ -133,7 +136,7 @@ class ZenohTransport(Transport):
     async def _open(self, graph: Graph) -> None:
         try:
             await self._local_router.open()
-            session, expected, self._presence = await open_session(
+            session, expected, self._presence, self._dialled = await open_session(
                 self.network, self._state.participant
             )
         except BaseException:
@@ -165,7 +168,7 @@ class ZenohTransport(Transport):
         if session is None or graph is None:
             return False
         if not self._is_connected():  # on a busy machine that takes longer than `open` waits
-            await self._state.connections.wait_longer(self._expected, quiet_s)
+            await self._state.connections.wait_longer(self._is_connected, quiet_s)
             self._ask(session)
         if not await self._has_answers(session, quiet_s):
             return False
@@ -193,7 +196,35 @@ class ZenohTransport(Transport):
 
     def _is_connected(self) -> bool:
         """Return whether all peers that accept connections have been connected."""
-        return len(self._state.connections.kinds) >= self._expected
+        return len(self._state.connections.kinds) >= self._expected and not self._unconnected()
+
+    def _unconnected(self) -> set[int]:
+        """Return the ports of those sessions of this machine that were dialled in vain.
+
+        None, if there are as many connections as sessions: some may have dialled this one.
+        """
+        session = self._state.session
+        there = (listed(self.network.meeting_ports[0]) or set()) & self._dialled
+        if session is None or len(self._state.connections.kinds) >= len(there):
+            return set()
+        pairs = map(pair_of, session.info.links())
+        return there - {pair.remote[1] for pair in pairs if pair is not None}
+
+    def silent_processes(self) -> list[str]:
+        """Return who does not answer, as far as the system tells: processes of this machine."""
+        group = self.network.meeting_ports[0]
+        unconnected, found = self._unconnected(), processes(group)
+        silent = []
+        for port in sorted(self._dialled & (listed(group) or set())):
+            process = found.get(port)
+            if process is None:
+                if port in unconnected:
+                    silent.append(f"a process that listens at port {port} does not answer")
+            elif process.is_stopped or port in unconnected:
+                pid, command, _ = process
+                why = f"is stopped (kill -CONT {pid})" if process.is_stopped else "does not answer"
+                silent.append(f"process {pid} ({command}) {why}")
+        return silent
 
     async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
         """Return the nodes that a gossip source sees and the graph has not; None without answer."""

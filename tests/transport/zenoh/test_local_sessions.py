@@ -13,7 +13,13 @@ import pytest
 
 from aionode.transport import _network
 from aionode.transport._network import new_participant
-from aionode.transport.zenoh._local_sessions import announce, holder_of, listed, reserve_port
+from aionode.transport.zenoh._local_sessions import (
+    announce,
+    holder_of,
+    listed,
+    processes,
+    reserve_port,
+)
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux lists the sockets of others"
@@ -32,6 +38,17 @@ def test_a_session_is_listed_with_its_port_until_it_is_closed(group: int) -> Non
         assert listed(group) == {4711, 4712}
 
     assert listed(group) == set()
+
+
+def test_a_session_is_listed_with_its_process(group: int) -> None:
+    """So that a command can name the one that does not answer."""
+    with closing(announce(group, 4711)):
+        found = processes(group)
+
+    assert list(found) == [4711]
+    assert found[4711].pid == os.getpid()
+    assert found[4711].command
+    assert not found[4711].is_stopped
 
 
 def test_sessions_of_other_groups_are_not_listed(group: int) -> None:
