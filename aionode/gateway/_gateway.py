@@ -204,7 +204,7 @@ class Gateway(Clients):
                 session.ask_for_sign()
                 # After a standstill of its own, the gateway first hears what has arrived in it.
                 silent_sec = min(connection.silent_sec(), self.robot.standstills.since_sec())
-                is_lost = is_lost or silent_sec > limit
+                is_lost = is_lost or (silent_sec > limit and not connection.has_unread())
             if is_lost:
                 session.ended.set()
                 connection.abort()

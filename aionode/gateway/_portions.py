@@ -46,6 +46,10 @@ class Portions:
         self._is_closed = False
         self.owed_sec = 0.0
 
+    def __bool__(self) -> bool:
+        """Return whether something waits."""
+        return bool(self._waiting)
+
     def add(self, data: bytes) -> None:
         """Take what was received."""
         if not self._waiting and self._turn is None and len(data) <= PART and self._is_ready():

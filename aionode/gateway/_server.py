@@ -409,6 +409,10 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         """Return how long nothing has arrived, in seconds."""
         return self.loop.time() - self._heard_s
 
+    def has_unread(self) -> bool:
+        """Return whether something of the client waits here: it is not silent, but has to wait."""
+        return bool(self._portions) or not self.queue.empty()
+
     def ping(self, answered: Callable[[], None] | None = None) -> None:
         """Ask the client for a sign, and call `answered` with it: what comes then is no older.
 

@@ -43,6 +43,9 @@ class Connection(Protocol):
     def silent_sec(self) -> float:
         """Return how long nothing has arrived, in seconds."""
 
+    def has_unread(self) -> bool:
+        """Return whether something of the client waits to be read."""
+
     def ping(self, answered: Callable[[], None] | None = None) -> None:
         """Ask the client for a sign, and call `answered` with it."""
 

@@ -192,6 +192,8 @@ def attacks_on_gateway() -> list[Attack]:
         "keep_waiting": ("500 connections to a gateway that send a byte at a time", "outsider"),
         "send_tiny_parts": ("pings, empty frames, parts and chunks to a gateway", "client"),
         "send_bombs": ("JSON of 1 MB that is made to cost, to a gateway", "client"),
+        "drive_twice": ("two programs of one identity drive through a gateway at once", "client"),
+        "drive_late": ("commands behind what a gateway refuses, which wait there", "client"),
         "read_nothing": ("20 clients of a gateway that ask for much and read nothing", "client"),
     }
     return [

@@ -7,6 +7,7 @@ which has a gateway; it returns how often it tried.
 from __future__ import annotations
 
 import itertools
+import json
 import socket
 import struct
 import time
@@ -14,8 +15,10 @@ import urllib.request
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import partial
+from http.client import HTTPConnection
 
 import psutil
+from websockets.sync.client import connect
 
 __all__ = ["GATEWAY_PROGRAMS"]
 
@@ -198,7 +201,74 @@ def guess_tokens(port: int, until: float) -> int:
     return tries
 
 
+def drive_twice(port: int, until: float) -> int:
+    """Drive over two connections of one identity; both together may not be obeyed.
+
+    Raises:
+        RuntimeError: both were obeyed.
+    """
+    drivers = [HTTPConnection("127.0.0.1", port, timeout=5.0) for _ in range(2)]
+    tries = 0
+    while time.monotonic() < until:
+        codes = []
+        for each in drivers:
+            headers = {"Content-Type": "application/json"}
+            path = "/topics/cmd_vel?type=geometry_msgs/Twist"
+            each.request("POST", path, '{"linear": {"x": 0.1}}', headers)
+            answer = each.getresponse()
+            answer.read()
+            codes.append(answer.status)
+        if codes == [204, 204]:
+            raise RuntimeError("two programs of one identity drive at once")
+        tries += 1
+        time.sleep(0.02)
+    return tries
+
+
+OLD_S = 1.0
+"""How old a command may be when the wheels hear it: what the policy allows, and some time to get
+there."""
+
+
+LISTENS_S = 4.0
+"""How long nothing more is sent at the end, while what waits would be worked off."""
+
+
+def drive_late(port: int, until: float) -> int:
+    """Have the gateway refuse so much that what is behind it waits, and put commands there.
+
+    Raises:
+        RuntimeError: an old one of them has reached the wheels.
+    """
+    url = f"ws://127.0.0.1:{port}"
+    tries = 0
+    with connect(url, proxy=None) as driver, connect(url, proxy=None) as wheels:
+        topic = {"topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
+        wheels.send(json.dumps({"op": "subscribe", **topic}))
+        while time.monotonic() < until:
+            if time.monotonic() < until - LISTENS_S:
+                for speed in ("NaN", time.monotonic()) * 10:
+                    command = {"linear": {"x": speed}}
+                    driver.send(json.dumps({"op": "publish", **topic, "msg": command}))
+                    tries += 1
+            with suppress(TimeoutError):
+                while True:
+                    heard = json.loads(wheels.recv(timeout=0.02))["msg"]["linear"]["x"]
+                    late_s = time.monotonic() - heard
+                    if heard and late_s > OLD_S:
+                        raise RuntimeError(f"a command of {late_s:.1f} s ago moves the wheels")
+    return tries
+
+
 GATEWAY_PROGRAMS = {
     attack.__name__: partial(against_gateway, attack)
-    for attack in (send_bombs, send_tiny_parts, keep_waiting, read_nothing, guess_tokens)
+    for attack in (
+        send_bombs,
+        send_tiny_parts,
+        keep_waiting,
+        read_nothing,
+        guess_tokens,
+        drive_twice,
+        drive_late,
+    )
 }

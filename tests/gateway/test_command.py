@@ -50,6 +50,10 @@ class Connection:
         """Return how long nothing has arrived."""
         return 0.0
 
+    def has_unread(self) -> bool:
+        """Return whether something waits."""
+        return False
+
     def ping(self, answered: Callable[[], None] | None = None) -> None:
         """Keep the answer."""
         if answered is not None:

@@ -147,6 +147,10 @@ class Connection:
         """Return how long nothing has arrived."""
         return 0.0
 
+    def has_unread(self) -> bool:
+        """Return whether something waits."""
+        return False
+
     def ping(self, answered: Any = None) -> None:
         """Keep it."""
         self.asked.append(answered)
