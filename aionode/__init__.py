@@ -36,7 +36,6 @@ if TYPE_CHECKING:
     )
     from aionode.clock import Clock, ClockType, Duration, Time
     from aionode.content_filter import ContentFilterOptions
-    from aionode.context import Context
     from aionode.endpoints._core.callback_runner import CallbackContext
     from aionode.endpoints.client import Client
     from aionode.endpoints.events import (
@@ -58,6 +57,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.endpoints.timer import Rate, Timer, TimerInfo
+    from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.parameter import Parameter
     from aionode.qos import (
@@ -133,7 +133,7 @@ _EXPORTS = {
     "ClockType": "aionode.clock",
     "CommandLease": "aionode.endpoints.lease",
     "ContentFilterOptions": "aionode.content_filter",
-    "Context": "aionode.context",
+    "Context": "aionode.engine.context",
     "DurabilityPolicy": "aionode.qos",
     "Duration": "aionode.clock",
     "GoalResponse": "aionode.action",

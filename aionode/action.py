@@ -29,7 +29,7 @@ from aionode.endpoints.actions._client import ActionClient
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.actions._server import ActionServer
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
-from aionode.endpoints.actions.goal import CancelResponse, GoalResponse, GoalStatus
+from aionode.engine.rules.goal import CancelResponse, GoalResponse, GoalStatus
 from aionode.errors import (
     GoalAbortedError,
     GoalCanceledError,

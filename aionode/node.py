@@ -19,7 +19,7 @@ from aionode._node import builtin_services
 from aionode._node.endpoints import NodeEndpoints
 from aionode._node.graph import NodeGraphQueries
 from aionode._node.time_source import TimeSource
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.message import Message
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from aionode.bag import Outputs, Replay
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.testing import ManualClock
 
@@ -149,7 +149,7 @@ def async_fixture(request: pytest.FixtureRequest, name: str) -> Any:
 
 async def open_context(request: pytest.FixtureRequest) -> AsyncIterator[Context]:
     """Implement `aionode_context`."""
-    from aionode.context import Context  # as above
+    from aionode.engine.context import Context  # as above
     from aionode.testing import local_context
 
     clock = (

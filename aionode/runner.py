@@ -15,10 +15,10 @@ import traceback
 from collections.abc import Callable, Coroutine, Sequence
 from typing import Any, Final, Self
 
-from aionode._signals import signals_to
-from aionode._tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
+from aionode._process.signals import signals_to
+from aionode._process.tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import AionodeError, ConfigurationError, InvalidROSArgsError
 from aionode.logging import configure, get_logger, release_root
 from aionode.node import Node

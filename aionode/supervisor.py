@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
 
 from aionode._node.end_record import NodeEnd, short_text
-from aionode._restart import Backoff, wants_another
-from aionode._tracebacks import traceback_text
+from aionode._process.restart import Backoff, wants_another
+from aionode._process.tracebacks import traceback_text
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import NodeNotRunningError
 from aionode.logging import get_logger

@@ -32,7 +32,7 @@ from rosbags.typesys import Stores, get_typestore
 from aionode import bag
 from aionode.bag._writer import topic_info
 from aionode.clock import MachineTime
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node

@@ -36,11 +36,11 @@ from roundtrip import (  # type: ignore[import-not-found]  # beside this file wh
 )
 
 from aionode import Context, Node
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire.typehash import type_hash
 from aionode.interfaces.std_msgs.msg import String
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 from rosbags.typesys import Stores, get_typestore
 
+from aionode.engine.wire import cdr
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.geometry_msgs.msg import (
     Point,
@@ -48,7 +49,6 @@ from aionode.interfaces.sensor_msgs.msg import (
 from aionode.interfaces.std_msgs.msg import Header, String
 from aionode.interfaces.tf2_msgs.msg import TFMessage
 from aionode.message import Message, type_name
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

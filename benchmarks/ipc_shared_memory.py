@@ -7,7 +7,7 @@ as a link does, with nothing else of it. The receiver decodes each image and rea
 place, which takes its time too.
 
 The table gives half a round trip for each size, and the size from which on memory is cheaper:
-`SHARED_FROM` in ``aionode/transport/link/_shared_memory.py``. Then, for 4 MB, what each step costs.
+`SHARED_FROM` in ``aionode/engine/transport/link/_shared_memory.py``. Then, for 4 MB, what each step costs.
 
 Run it with ``python benchmarks/ipc_shared_memory.py``; ``--quick`` takes a fifth of the time. It
 prints the table and writes ``link_memory.json`` to ``benchmarks/results/``.
@@ -33,16 +33,16 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from aionode.interfaces.sensor_msgs.msg import Image
-from aionode.transport.link import _protocol as protocol
-from aionode.transport.link._protocol import BufferRef, FrameParser, Kind
-from aionode.transport.link._shared_memory import (
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.link._protocol import BufferRef, FrameParser, Kind
+from aionode.engine.transport.link._shared_memory import (
     SHARED_FROM,
     BufferMappings,
     BufferPool,
     SharedBuffer,
 )
-from aionode.wire import cdr
+from aionode.engine.wire import cdr
+from aionode.interfaces.sensor_msgs.msg import Image
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

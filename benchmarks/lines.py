@@ -31,7 +31,7 @@ ROOT: Final = Path(__file__).parents[1]
 DIVIDED: Final = ("transport",)
 """Packages whose parts are rooms of their own."""
 
-INNER_ROOMS: Final = ("transport/zenoh/bridge",)
+INNER_ROOMS: Final = ("engine/transport/zenoh/bridge",)
 """Packages that are rooms of their own inside another: a protocol each."""
 
 BESIDE_RCLPY: Final = {

@@ -25,7 +25,7 @@ import uvloop
 
 from aionode import Context, Time, bag
 from aionode.bag._outputs import Tap
-from aionode.bare_node import BareNode
+from aionode.engine.bare_node import BareNode
 from aionode.qos import QoSProfile
 from aionode.testing import ManualClock, SteppedLoop, local_context
 from examples.replay.robot import OUTPUTS, make_robot, record

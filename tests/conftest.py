@@ -22,7 +22,7 @@ from tests.bytecode import share_bytecode
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Generator, Iterator
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 # How long an example takes depends on what else runs, such as the other workers.
 settings.register_profile(

@@ -8,7 +8,7 @@ import threading
 import pytest
 import uvloop
 
-from aionode._concurrency import checkpoint, run_in_thread
+from aionode._process.concurrency import checkpoint, run_in_thread
 from aionode.clock import Clock, ClockType
 from aionode.testing import ManualClock, settle
 from aionode.testing import _quiescence as module

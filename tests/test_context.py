@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING
 import pytest
 import uvloop
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.local import LocalTransport
 from aionode.errors import EntityDestroyedError, TransportError
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import ManualClock, local_context, settle
-from aionode.transport.local import LocalTransport
 
 if TYPE_CHECKING:
     from aionode.graph import Graph

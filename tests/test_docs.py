@@ -16,7 +16,7 @@ import click
 import pytest
 
 from aionode.cli._main import root
-from aionode.context import Context
+from aionode.engine.context import Context
 from docs.contents import with_contents, without_contents
 from docs.quotes import QUOTE, ROOT, fragment, pages, refreshed
 

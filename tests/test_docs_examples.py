@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode import Context, Node
+from aionode.engine.transport.local import LocalTransport
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.testing import FaultyTransport, ManualClock, settle
-from aionode.transport.local import LocalTransport
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode.arguments import parse_arguments
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import MessageError, NameValidationException, ServiceError, brief, shortened
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.interfaces.std_srvs.srv import Trigger

@@ -10,12 +10,12 @@ import numpy.typing as npt
 import PIL.Image
 import pytest
 
+from aionode.engine.wire.cdr import decode, encode
 from aionode.errors import MessageError
 from aionode.image import compress, decompress, from_numpy, from_pil, to_numpy, to_pil
 from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import check
-from aionode.wire.cdr import decode, encode
 
 HEADER = Header(frame_id="camera")
 BGR = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)

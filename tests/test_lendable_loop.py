@@ -19,7 +19,7 @@ from typing import Any
 
 import pytest
 
-from aionode._lendable_loop import LendableLoop, Readers
+from aionode._process.lendable_loop import LendableLoop, Readers
 from aionode.clock import perf_ns
 
 PATIENCE_S = 10.0

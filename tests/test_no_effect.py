@@ -6,7 +6,7 @@ import pytest
 
 from aionode.arguments import parse_arguments
 from aionode.clock import Duration
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node

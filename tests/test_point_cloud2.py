@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from aionode.engine.wire.cdr import decode, encode
 from aionode.errors import MessageError
 from aionode.interfaces.sensor_msgs.msg import PointCloud2, PointField
 from aionode.interfaces.std_msgs.msg import Header
@@ -20,7 +21,6 @@ from aionode.point_cloud2 import (
     read_points_list,
     read_points_numpy,
 )
-from aionode.wire.cdr import decode, encode
 
 XYZ = np.arange(12, dtype=np.float32).reshape(4, 3)
 HEADER = Header(frame_id="lidar")

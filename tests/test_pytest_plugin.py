@@ -16,7 +16,7 @@ from aionode.testing import settle
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 pytest_plugins = ["pytester"]
 

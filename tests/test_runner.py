@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import aionode
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.errors import AionodeError, ConfigurationError
 from aionode.node import Node
 from aionode.runner import FROZEN_BY_PYTHON, best_loop_factory, failure_text

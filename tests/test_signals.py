@@ -15,12 +15,12 @@ from types import ModuleType
 import pytest
 
 import aionode
-from aionode._sudden_end import is_sending
+from aionode._process.sudden_end import is_sending
 from tests.support.program import Program
 
 pty = pytest.importorskip("pty", reason="pseudo-terminals are of Unix")
 
-SOON = "import aionode._signals; aionode._signals.SAME_SEC = 0.0"
+SOON = "import aionode._process.signals; aionode._process.signals.SAME_SEC = 0.0"
 """A second signal is one at once, to keep tests short."""
 
 WAITS_FOR_EVER = """
@@ -74,7 +74,7 @@ aionode.run(make, args=[])
 """
 
 SAYS_STOP = """
-from aionode import _sudden_end
+from aionode._process import sudden_end as _sudden_end
 import os
 _sudden_end.STOPS.append(lambda: os.write(telling, b"stop;"))
 _sudden_end.SENDS.append(lambda ends_ns: os.write(telling, b"sent;"))
@@ -177,7 +177,7 @@ def test_a_second_signal_sends_the_stops_of_leases_and_then_what_was_published(s
 def test_a_stop_that_fails_or_hangs_keeps_no_program_alive() -> None:
     """The others are sent, and the time has a limit."""
     hooks = """
-    from aionode import _sudden_end
+    from aionode._process import sudden_end as _sudden_end
     _sudden_end.STOPS.append(lambda: 1 / 0)
     _sudden_end.STOPS.append(lambda: print("stop", flush=True))
     _sudden_end.STOPS.append(lambda: time.sleep(60))
@@ -195,7 +195,7 @@ def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
     """A frame that a socket took in part would be sent once more from its beginning."""
     body = """
     import signal
-    from aionode import _sudden_end
+    from aionode._process import sudden_end as _sudden_end
     steps = []
     _sudden_end.STOPS.append(lambda: print(steps[-1], flush=True))
 

@@ -12,7 +12,7 @@ import os, sys
 {close}
 read, write = os.pipe()
 assert {wanted} in (read, write), (read, write)
-from aionode._streams import discard_lost, standard
+from aionode._process.streams import discard_lost, standard
 os.close(read if write == {wanted} else write)  # nobody can read it any more
 discard_lost()
 sys.stderr.write(os.readlink("/proc/self/fd/{wanted}") + " " + repr(sorted(standard())))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.errors import NodeNotRunningError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
@@ -18,7 +18,7 @@ from aionode.testing import ManualClock, settle
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 
 class Robot(Node):

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import pytest
 
-from aionode._suspension import SuspensionHandler
+from aionode._process.suspension import SuspensionHandler
 from tests.support.program import Program
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked at in /proc")
 
 HOLDER = """
 import signal
-from aionode import _sudden_end
-from aionode._suspension import suspension
+from aionode._process import sudden_end as _sudden_end
+from aionode._process.suspension import suspension
 
 _sudden_end.STOPS.append(lambda: print("stop", flush=True) or True)
 
@@ -69,7 +69,7 @@ def test_a_program_is_suspended_at_once_after_its_last_lease() -> None:
     """Without a lease, a program is as it is without aionode."""
     body = """
     import signal
-    from aionode._suspension import suspension
+    from aionode._process.suspension import suspension
 
     suspension.install()
     suspension.install()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from aionode._tracebacks import traceback_text
+from aionode._process.tracebacks import traceback_text
 from aionode.errors import MessageError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.message import check
@@ -61,7 +61,7 @@ def test_an_error_that_is_all_in_aionode_keeps_its_lines() -> None:
 
 def test_the_examples_of_aionode_are_programs() -> None:
     """Their lines are shown, and copied."""
-    from aionode._tracebacks import is_of_library
+    from aionode._process.tracebacks import is_of_library
 
     assert not is_of_library(failure_text.__code__.co_filename.replace("runner", "examples/pubsub"))
     assert is_of_library(failure_text.__code__.co_filename)

@@ -15,7 +15,7 @@ import pytest
 import uvicorn
 from fastapi.responses import StreamingResponse
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import to_json

@@ -8,16 +8,16 @@ from functools import partial, wraps
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from aionode import names
-from aionode._concurrency import to_the_end
 from aionode._node.end_record import EndRecord, NodeEnd, failure_text
+from aionode._process.concurrency import to_the_end
 from aionode.arguments import Arguments, Usage, parse_arguments
 from aionode.clock import ROSClock
 from aionode.endpoints._core.callback_runner import Callbacks
 from aionode.endpoints._core.endpoint import Endpoint
 from aionode.endpoints._core.entity import EndStage
-from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints._core.node_tasks import OWNER, NodeTasks
 from aionode.endpoints._core.shutdown import Shutdown
+from aionode.engine.loop_affinity import in_loop_thread
 from aionode.errors import EntityDestroyedError
 from aionode.logging import get_logger
 
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.clock import Clock
-    from aionode.context import Context
     from aionode.endpoints._core.entity import Entity
+    from aionode.engine.context import Context
+    from aionode.engine.transport.base import Registration
     from aionode.graph import Graph
     from aionode.logging import RcutilsLogger
-    from aionode.transport.base import Registration
 
 __all__ = ["NodeBase"]
 

@@ -10,7 +10,7 @@ import contextlib
 from typing import TYPE_CHECKING
 
 from aionode import qos
-from aionode._node.log_services import LevelAnswers, log_message
+from aionode.engine.log_levels import LevelAnswers, log_message
 from aionode.errors import QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import Log, ParameterDescriptor, ParameterEvent
 from aionode.interfaces.rcl_interfaces.srv import GetLoggerLevels, SetLoggerLevels
@@ -107,7 +107,7 @@ def serve_type_descriptions(node: NodeEndpoints) -> None:
     def describe(
         request: GetTypeDescription.Request, response: GetTypeDescription.Response
     ) -> GetTypeDescription.Response:
-        from aionode._node.type_descriptions import describe_type, type_of  # rarely asked for
+        from aionode.engine.type_descriptions import describe_type, type_of  # rarely asked for
 
         entities = (*node.publishers, *node.subscriptions, *node.services, *node.clients)
         answer: GetTypeDescription.Response = describe_type(

@@ -9,7 +9,6 @@ from aionode import qos
 from aionode._node.parameters import NodeParameters
 from aionode.clock import Clock
 from aionode.endpoints._core.endpoint import EndpointSetup
-from aionode.endpoints._core.loop_affinity import in_loop_thread
 from aionode.endpoints._core.silence_watch import SILENCE_SEC, Silence
 from aionode.endpoints.client import Client
 from aionode.endpoints.publisher import Publisher
@@ -17,6 +16,7 @@ from aionode.endpoints.service import Service
 from aionode.endpoints.subscription import Subscription
 from aionode.endpoints.timer import Rate, Timer
 from aionode.endpoints.timer._timer import to_period_ns
+from aionode.engine.loop_affinity import in_loop_thread
 from aionode.errors import brief, shortened
 from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.message import Message, ServiceType, holds_arrays

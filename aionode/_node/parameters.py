@@ -13,7 +13,7 @@ from aionode.parameter import Parameter, ParameterStore, declare_struct
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from aionode.interfaces.rcl_interfaces.msg import (
         ListParametersResult,
         ParameterDescriptor,

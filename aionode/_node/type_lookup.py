@@ -9,11 +9,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode._distribution import NO_TYPE_HASH
+from aionode.engine.wire._described_type import action_from_descriptions, type_from_description
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, InterfaceNotFoundError, TypeDescriptionError
 from aionode.graph import EndpointKind
 from aionode.interfaces import get_interface
-from aionode.wire._described_type import action_from_descriptions, type_from_description
-from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

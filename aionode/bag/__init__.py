@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode._first_use import imported_on_first_use
+from aionode._process.first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`

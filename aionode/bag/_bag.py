@@ -8,7 +8,7 @@ from pathlib import Path
 from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
 from typing import TYPE_CHECKING, Any, Final, Self, TypeVar
 
-from aionode._concurrency import run_in_thread
+from aionode._process.concurrency import run_in_thread
 from aionode.bag._losses import LOSSES, losses_from
 from aionode.bag._metadata import FILE_NAME, read_metadata, topics_in
 from aionode.bag._order import in_order

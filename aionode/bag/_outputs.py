@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from os import PathLike
 
-    from aionode.bare_node import BareNode
     from aionode.clock import TimeBase
+    from aionode.engine.bare_node import BareNode
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
 

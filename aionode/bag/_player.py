@@ -8,7 +8,7 @@ from contextlib import AsyncExitStack, ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
-from aionode._concurrency import SLICE_NS, checkpoint, run_in_thread
+from aionode._process.concurrency import SLICE_NS, checkpoint, run_in_thread
 from aionode.bag._bag import next_batch, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._copy import merged_records
 from aionode.bag._player_files import FilesInPlay, in_order_sent
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from aionode.bag._bag import Bag
     from aionode.bag._record import Record, TopicInfo
     from aionode.clock import Time
-    from aionode.context import Context
     from aionode.endpoints.publisher import Publisher
+    from aionode.engine.context import Context
 
 __all__ = ["Player"]
 

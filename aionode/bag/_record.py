@@ -118,7 +118,7 @@ class Record:
             DecodeError: the bytes are not a message of this type.
         """
         if self._message is None:
-            from aionode.wire import cdr
+            from aionode.engine.wire import cdr
 
             self._message = cdr.decode(self.info.msg_type, self.raw)
         return self._message

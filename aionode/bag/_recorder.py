@@ -8,7 +8,7 @@ from contextlib import AsyncExitStack
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Self
 
-from aionode._concurrency import run_in_thread
+from aionode._process.concurrency import run_in_thread
 from aionode.bag._recorder_services import RecorderServices
 from aionode.bag._recording import Key, Recording, TopicStats, summary_of
 from aionode.bag._selection import Selection
@@ -16,12 +16,12 @@ from aionode.bag._types import known_class
 from aionode.bag._writer import BagWriter, topic_info
 from aionode.bag._writer_thread import Row
 from aionode.clock import Time
+from aionode.engine.wire import cdr
 from aionode.errors import BagError, InterfaceNotFoundError, TimeSourceChangedError
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Iterable, Mapping
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.bag._mcap_writer import Parts
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from aionode.graph import EndpointInfo
 
 __all__ = ["Recorder", "TopicStats", "adapted_qos"]

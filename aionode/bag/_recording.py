@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode._concurrency import run_in_thread, to_the_end
+from aionode._process.concurrency import run_in_thread, to_the_end
 from aionode.bag._losses import LOSSES, Lost, losses_text
 from aionode.bag._writer_thread import Row, WriterThread
 

@@ -17,9 +17,9 @@ import msgspec
 from aionode.bag._bag import open as open_bag
 from aionode.bag._machine_use import MachineUse
 from aionode.bag._outputs import Outputs, Tap
-from aionode.bare_node import BareNode
 from aionode.clock import Time
-from aionode.context import Context
+from aionode.engine.bare_node import BareNode
+from aionode.engine.context import Context
 from aionode.errors import BagError, DecodeError, InterfaceNotFoundError
 from aionode.graph import EndpointKind
 from aionode.logging import get_logger
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from aionode.bag._bag import Bag
     from aionode.bag._record import Record, TopicInfo
-    from aionode.bare_node import BarePublisher
+    from aionode.engine.bare_node import BarePublisher
 
 __all__ = ["PIECE_VARIABLE", "Piece", "Replay", "replay"]
 

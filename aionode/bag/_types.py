@@ -6,10 +6,10 @@ import re
 from functools import cache
 from typing import Any, Final
 
+from aionode.engine.wire.typehash import referenced_types, type_hash
 from aionode.errors import AionodeError, IdlError, InterfaceNotFoundError
 from aionode.interfaces import get_interface
 from aionode.message import type_name
-from aionode.wire.typehash import referenced_types, type_hash
 
 __all__ = ["class_of", "definition_of", "known_class"]
 

@@ -15,11 +15,11 @@ from aionode.bag._metadata import FilePart, metadata_of, metadata_text, sync_fol
 from aionode.bag._qos import profiles_to_yaml
 from aionode.bag._record import TopicInfo
 from aionode.bag._types import definition_of
+from aionode.engine.wire import cdr
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import BagError, BagWriteError
 from aionode.message import type_name
 from aionode.qos import QoSProfile
-from aionode.wire import cdr
-from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from aionode._streams import discard, open_missing
+from aionode._process.streams import discard, open_missing
 from aionode.cli._support.error_text import limited, one_line
 from aionode.cli._support.exit import INTERRUPTED, OWN_PROCESS, status_of
 from aionode.cli._support.output import unwritable

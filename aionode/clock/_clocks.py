@@ -7,7 +7,7 @@ from contextlib import suppress
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock._time_base import Alarm, MachineTime, TimeBase
 from aionode.clock._timer_heap import TimerHeap
 from aionode.clock._values import S_TO_NS, ClockType, Duration, Time, expect_clock_type, time_at

@@ -14,7 +14,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Protocol
 from weakref import WeakKeyDictionary
 
-from aionode._concurrency import SLICE_NS
+from aionode._process.concurrency import SLICE_NS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -14,6 +14,7 @@ from aionode.endpoints.service_introspection import (
     IntrospectedEntity,
 )
 from aionode.endpoints.stats import ClientStats
+from aionode.engine.transport.base import SampleInfo
 from aionode.errors import (
     AionodeError,
     EntityDestroyedError,
@@ -23,7 +24,6 @@ from aionode.errors import (
     silence,
 )
 from aionode.message import Message, checker
-from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
+    from aionode.engine.transport.base import Call, Requester
     from aionode.errors import ServiceError
-    from aionode.transport.base import Call, Requester
 
 __all__ = ["Client", "Exchange"]
 

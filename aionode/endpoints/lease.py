@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, Self, TypeVar
 
 from aionode.clock import S_TO_NS, Clock, MachineTime, SilenceAlarm
 from aionode.endpoints._core.lease_watch import REPEAT_S, watch
-from aionode.endpoints._core.loop_affinity import LoopAffinity
+from aionode.engine.loop_affinity import LoopAffinity
 from aionode.errors import ForkedProcessError, LeaseExpiredError, brief
 from aionode.logging import get_logger
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.clock import TimeBase
-    from aionode.transport.base import StopSender
+    from aionode.engine.transport.base import StopSender
 
 __all__ = ["CommandLease", "send_stops"]
 

@@ -1,7 +1,7 @@
 """Publishers.
 
-`wire/cdr/_encoder.py` encodes messages, field by field; the writers in
-`transport/link/_publisher.py` and `transport/zenoh/_publisher.py` send them.
+`engine/wire/cdr/_encoder.py` encodes messages, field by field; the writers in
+`engine/transport/link/_publisher.py` and `engine/transport/zenoh/endpoints/publisher.py` send them.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.publisher_monitor import PublisherMonitor, SignOfLife
 from aionode.endpoints.lease import CommandLease
 from aionode.endpoints.stats import PublisherStats
+from aionode.engine.transport.base import Writer
 from aionode.errors import (
     EntityDestroyedError,
     InvalidQoSProfileException,
@@ -26,7 +27,6 @@ from aionode.errors import (
 )
 from aionode.message import Message, checker, snapshot
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, depth_of, keeps_all
-from aionode.transport.base import Writer
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from aionode.clock import Clock, TimeBase
     from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
-    from aionode.transport.base import StopSender
+    from aionode.engine.transport.base import StopSender
 
 __all__ = ["Publisher"]
 
@@ -179,7 +179,7 @@ class Publisher(Endpoint, Generic[MsgT]):
     def _fitting(self, msg: Any) -> Any:
         """Return `msg`, decoded if it is bytes; TypeError if it is of an unrelated class."""
         if isinstance(msg, bytes | bytearray | memoryview):
-            from aionode.wire import cdr  # most publishers never need the codec
+            from aionode.engine.wire import cdr  # most publishers never need the codec
 
             return cdr.decode(self.msg_type, msg)
         self._check(msg)  # raises the TypeError; subclasses pass

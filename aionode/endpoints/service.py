@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.callback_runner import OnError
     from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
-    from aionode.transport.base import Registration, Request
+    from aionode.engine.transport.base import Registration, Request
 
 __all__ = ["Service", "ServiceCallback"]
 

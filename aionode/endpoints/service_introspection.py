@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from aionode.clock import Clock
     from aionode.endpoints._core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
+    from aionode.engine.transport.base import SampleInfo
     from aionode.qos import QoSProfile
-    from aionode.transport.base import SampleInfo
 
 __all__ = ["ServiceIntrospectionState"]
 

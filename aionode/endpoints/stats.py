@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from aionode.engine.transport.base import Writer
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Writer
 
 __all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Coroutine
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.content_filter import ContentFilterOptions, compile_filter
 from aionode.endpoints._core.callback_runner import (
@@ -29,11 +29,11 @@ from aionode.endpoints._core.subscription_reader import (
 from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.transport.base import ReaderRegistration
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.message import Message
 from aionode.message._memory_size import memory_size
 from aionode.qos import is_unlimited
-from aionode.transport.base import ReaderRegistration
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
@@ -47,8 +47,8 @@ if TYPE_CHECKING:
         SubscriptionEvent,
         SubscriptionEventCallbacks,
     )
+    from aionode.engine.transport.base import Registration
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Registration
 
 __all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
 
@@ -345,7 +345,7 @@ class Subscription(Endpoint, Generic[ItemT]):
 
 def decoding(msg_type: type[Message], accepts: Callable[[Any], bool]) -> Callable[[Any], bool]:
     """Return a filter for messages that are delivered as CDR bytes."""
-    from aionode.wire import cdr  # few subscriptions are raw
+    from aionode.engine.wire import cdr  # few subscriptions are raw
 
     decode = cdr.decoder(msg_type)
 

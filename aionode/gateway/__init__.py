@@ -15,13 +15,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from aionode._first_use import imported_on_first_use
+from aionode._process.first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import GatewayStats
     from aionode.gateway._gateway import Gateway
-    from aionode.gateway._identity import Credentials, Identity
-    from aionode.gateway._policy import (
+    from aionode.gateway.http.typescript import typescript
+    from aionode.gateway.policy.identity import Credentials, Identity
+    from aionode.gateway.policy.policy import (
         Decision,
         FieldLimit,
         LeaseRule,
@@ -32,8 +33,7 @@ if TYPE_CHECKING:
         Verb,
         Who,
     )
-    from aionode.gateway._session import Session
-    from aionode.gateway._typescript import typescript
+    from aionode.gateway.session.session import Session
 
 __all__ = [
     "Credentials",

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode.errors import RefusedError
-from aionode.gateway._identity import Identity
-from aionode.gateway._session import Session
+from aionode.gateway.policy.identity import Identity
+from aionode.gateway.session.session import Session
 
 if TYPE_CHECKING:
-    from aionode.gateway._identity import Credentials
-    from aionode.gateway._policy import Policy
-    from aionode.gateway._robot import Robot
+    from aionode.gateway.policy.identity import Credentials
+    from aionode.gateway.policy.policy import Policy
+    from aionode.gateway.session.robot import Robot
     from aionode.node import Node
 
 __all__ = ["Clients", "GatewayStats"]

@@ -13,17 +13,20 @@ from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.routing import WebSocketRoute
 
-from aionode._concurrency import to_the_end
+from aionode._process.concurrency import to_the_end
 from aionode.errors import ConfigurationError, PolicyFileError
-from aionode.gateway import _foxglove, _http, _page_files, _rosbridge
-from aionode.gateway._audit import Audit
-from aionode.gateway._client_list import ClientList
 from aionode.gateway._clients import Clients
-from aionode.gateway._door import Door
-from aionode.gateway._identity import parsed_address
-from aionode.gateway._policy import Policy
-from aionode.gateway._robot import Bucket, Robot
-from aionode.gateway._server import Server, server_config
+from aionode.gateway.foxglove import websocket as _foxglove
+from aionode.gateway.http import routes as _http
+from aionode.gateway.page import files as _page_files
+from aionode.gateway.policy.identity import parsed_address
+from aionode.gateway.policy.policy import Policy
+from aionode.gateway.rosbridge import websocket as _rosbridge
+from aionode.gateway.rosbridge.client_list import ClientList
+from aionode.gateway.server.door import Door
+from aionode.gateway.server.server import Server, server_config
+from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.robot import Bucket, Robot
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -32,8 +35,8 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
     from aionode.bag import Player
-    from aionode.gateway._robot import Ask
-    from aionode.gateway._session import Session
+    from aionode.gateway.session.robot import Ask
+    from aionode.gateway.session.session import Session
     from aionode.node import Node
 
 __all__ = ["Gateway"]

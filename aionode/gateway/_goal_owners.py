@@ -6,8 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 if TYPE_CHECKING:
-    from aionode.gateway._audit import Audit
-    from aionode.gateway._identity import Identity
+    from aionode.gateway.policy.identity import Identity
+    from aionode.gateway.session.audit import Audit
     from aionode.node import Node
 
 __all__ = ["GoalOwners"]

@@ -18,6 +18,7 @@ and `LifecycleManager` from a program.
 
 from __future__ import annotations
 
+from aionode.engine.rules.lifecycle_states import State, TransitionCallbackReturn
 from aionode.errors import EntityInactiveError, TransitionError
 from aionode.lifecycle._entities import (
     LifecyclePublisher,
@@ -29,7 +30,6 @@ from aionode.lifecycle._manager import LifecycleManager
 from aionode.lifecycle._node import LifecycleNode
 from aionode.lifecycle._node_watch import ManagedNodeEvent
 from aionode.lifecycle._runner import LifecycleEvent
-from aionode.lifecycle.states import State, TransitionCallbackReturn
 
 __all__ = [
     "EntityInactiveError",

@@ -5,8 +5,8 @@ from __future__ import annotations
 import functools
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from aionode.engine.rules.lifecycle_states import ACTIVE, TransitionCallbackReturn
 from aionode.errors import EntityInactiveError
-from aionode.lifecycle.states import ACTIVE, TransitionCallbackReturn
 from aionode.message import Message
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.stats import PublisherStats
     from aionode.endpoints.timer import Timer
-    from aionode.lifecycle.states import State
+    from aionode.engine.rules.lifecycle_states import State
     from aionode.qos import QoSProfile
 
 __all__ = [

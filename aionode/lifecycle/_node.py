@@ -5,6 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.endpoints._core.callback_runner import accepts
+from aionode.engine.rules.lifecycle_answers import StateAnswers, fill_event
+from aionode.engine.rules.lifecycle_states import (
+    ERROR_PROCESSING,
+    TRANSITIONS,
+    TransitionCallbackReturn,
+)
 from aionode.errors import brief
 from aionode.interfaces.lifecycle_msgs import msg
 from aionode.interfaces.lifecycle_msgs.srv import (
@@ -13,11 +19,9 @@ from aionode.interfaces.lifecycle_msgs.srv import (
     GetAvailableTransitions,
     GetState,
 )
-from aionode.lifecycle._answers import StateAnswers, fill_event
 from aionode.lifecycle._entities import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
 from aionode.lifecycle._events import EventSource
 from aionode.lifecycle._runner import SUCCESS, TransitionRunner
-from aionode.lifecycle.states import ERROR_PROCESSING, TRANSITIONS, TransitionCallbackReturn
 from aionode.message import Message
 from aionode.node import Node
 from aionode.qos import QoSProfile
@@ -30,8 +34,8 @@ if TYPE_CHECKING:
     from aionode.endpoints.service import Service, ServiceCallback
     from aionode.endpoints.subscription import Subscription, SubscriptionCallback
     from aionode.endpoints.timer import TimerCallback
+    from aionode.engine.rules.lifecycle_states import State
     from aionode.lifecycle._runner import LifecycleEvent
-    from aionode.lifecycle.states import State
     from aionode.message import ServiceClass
 
     Result: TypeAlias = TransitionCallbackReturn | Any

@@ -19,23 +19,23 @@ import inspect
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from aionode._concurrency import is_cancelled_task
-from aionode._tracebacks import traceback_text
-from aionode.errors import CallbackCancelledError, TransitionError
-from aionode.lifecycle._entities import enabled_of, settle_entities
-from aionode.lifecycle.states import (
+from aionode._process.concurrency import is_cancelled_task
+from aionode._process.tracebacks import traceback_text
+from aionode.engine.rules.lifecycle_states import (
     ACTIVE,
     ERROR_PROCESSING,
     StateMachine,
     TransitionCallbackReturn,
 )
+from aionode.errors import CallbackCancelledError, TransitionError
+from aionode.lifecycle._entities import enabled_of, settle_entities
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.engine.rules.lifecycle_states import State, Transition
     from aionode.lifecycle._entities import ManagedEntity
     from aionode.lifecycle._events import EventSource
-    from aionode.lifecycle.states import State, Transition
     from aionode.logging import RcutilsLogger
 
 __all__ = ["LifecycleEvent", "TransitionRunner"]

@@ -2,7 +2,7 @@
 
 The only public attributes of a message class are its fields and constants, as those may have any
 name. Everything else is available from functions: `type_name`, `fields`, `constants`.
-`aionode.wire.cdr` encodes messages, by the functions that `wire/cdr/_encoder.py` generates.
+`aionode.wire.cdr` encodes messages, by the functions that `engine/wire/cdr/_encoder.py` generates.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ import msgspec
 from aionode import bag
 from aionode.bag._types import definition_of, known_class
 from aionode.clock import Time as PlainTime
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, BagError, InterfaceNotFoundError
 from aionode.qos import QoSProfile
 from aionode.rclpy._rosbag2_live import (
@@ -24,7 +25,6 @@ from aionode.rclpy._rosbag2_live import (
 from aionode.rclpy._rosbag2_rewrite import Reindexer, bag_rewrite
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
-from aionode.wire.typehash import type_hash
 
 __all__ = [
     "BagMetadata",

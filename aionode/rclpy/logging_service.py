@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode._node.log_services import LevelAnswers
+from aionode.engine.log_levels import LevelAnswers
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.parameter_service import unless_refused
 

@@ -60,7 +60,7 @@ class TypeDescriptionService:
         node = self._node_weak_ref()
         if node is None:
             raise ReferenceError("Expected valid node weak reference")
-        from aionode._node.type_descriptions import describe_type, type_of  # rarely asked for
+        from aionode.engine.type_descriptions import describe_type, type_of  # rarely asked for
 
         entities = (*node._publishers, *node._subscriptions, *node._services, *node._clients)
         used = [aionode_class(type_of(entity)) for entity in entities]

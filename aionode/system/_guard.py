@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode._sudden_end import SENDS
+from aionode._process.sudden_end import SENDS
 from aionode.errors import ProgramStartError
 from aionode.system import _guardian
 from aionode.system._guardian import LOOK_S, Program, descendants, owned_by, send

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final, TextIO, TypeAlias
 
 import msgspec
 
-from aionode._streams import accepts, is_lost
+from aionode._process.streams import accepts, is_lost
 from aionode.clock import MachineTime
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict
 
-from aionode._restart import Backoff, wants_another
+from aionode._process.restart import Backoff, wants_another
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import AionodeError, NotReadyError
 from aionode.system._readiness import Fact, missing_of

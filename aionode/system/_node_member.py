@@ -15,9 +15,9 @@ import yaml
 
 from aionode._node.base import NodeBase
 from aionode._node.end_record import failure_text
-from aionode._tracebacks import traceback_text
+from aionode._process.tracebacks import traceback_text
 from aionode.arguments import Usage, parse_arguments
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.system._member import Member
 from aionode.system._status import MemberEnd
 

@@ -8,9 +8,9 @@ import sys
 from typing import TYPE_CHECKING, Final, Self, Unpack
 
 from aionode import names
-from aionode._concurrency import to_the_end
+from aionode._process.concurrency import to_the_end
 from aionode.clock import S_TO_NS, SteadyClock
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import ConfigurationError, MemberNotFoundError
 from aionode.node import Node
 from aionode.system._control import Control

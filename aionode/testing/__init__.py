@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.testing._faults import FaultyTransport
 from aionode.testing._manual_clock import ManualClock
 from aionode.testing._quiescence import settle

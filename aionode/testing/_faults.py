@@ -7,8 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
-from aionode.message import snapshot
-from aionode.transport.base import (
+from aionode.engine.transport.base import (
     Registration,
     Requester,
     SampleInfo,
@@ -16,13 +15,14 @@ from aionode.transport.base import (
     Transport,
     Writer,
 )
+from aionode.message import snapshot
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import TimeBase
+    from aionode.engine.transport.base import Call, LinkStatus, Reader, ReplyTo, Serve
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Call, LinkStatus, Reader, ReplyTo, Serve
 
 __all__ = ["FaultyTransport"]
 

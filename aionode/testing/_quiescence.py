@@ -12,7 +12,7 @@ from collections import deque
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from aionode._concurrency import checkpoint, thread_calls
+from aionode._process.concurrency import checkpoint, thread_calls
 
 if TYPE_CHECKING:
     from collections.abc import Sized

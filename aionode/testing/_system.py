@@ -10,7 +10,7 @@ import socket
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import ConfigurationError
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from collections import Counter, deque
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from weakref import finalize, ref
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.tf._buffer_core import time_ns_of
 from aionode.tf._frame_listing import seconds_text

@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.clock import S_TO_NS, Duration
-from aionode.endpoints.actions.goal import CancelResponse
+from aionode.engine.rules.goal import CancelResponse
 from aionode.errors import (
     ConnectivityException,
     ExtrapolationException,

@@ -1,1 +1,1 @@
-"""The wire format of ROS 2 on Zenoh; these modules do no I/O."""
+"""The wire format of ROS 2, under its public names."""

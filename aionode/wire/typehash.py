@@ -1,31 +1,5 @@
-"""RIHS01 type hashes, which tell whether two nodes use the same definition of a type.
+"""Hashes of types; see `aionode.engine.wire.typehash`."""
 
-It is part of the keys of topics and services: only endpoints with equal hashes communicate.
-"""
-
-from __future__ import annotations
-
-import hashlib
-import json
-from functools import cache
-from typing import Any
-
-from aionode.message import unserialized
-from aionode.wire._type_description import describe, description_message, referenced_types
+from aionode.engine.wire.typehash import description_message, referenced_types, type_hash
 
 __all__ = ["description_message", "referenced_types", "type_hash"]
-
-
-@cache
-def type_hash(cls: type[Any]) -> str:
-    """Return the hash of a message, service or action class: ``RIHS01_`` and 64 hex digits.
-
-    Constants, comments and default values do not affect it. Requests, responses and the other parts
-    of services and actions have hashes of their own.
-
-    Raises:
-        TypeError: `cls` is not such a class.
-    """
-    # ROS 2 hashes exactly this output of json.dumps, including the order of keys and the blanks.
-    text = json.dumps(describe(unserialized(cls)))
-    return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()

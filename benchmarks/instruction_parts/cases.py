@@ -19,20 +19,20 @@ from typing import Any, Final
 import zenoh
 
 from aionode import Context, Node
+from aionode.engine.transport.base import Reader, Registration, Requester, Serve, Transport, Writer
+from aionode.engine.transport.content_filters import ContentFilters
+from aionode.engine.transport.link import LinkTransport
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.local import LocalTransport
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.endpoints.subscription import ZenohReader
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import qos_profile_sensor_data
-from aionode.transport._content_filters import ContentFilters
-from aionode.transport.base import Reader, Registration, Requester, Serve, Transport, Writer
-from aionode.transport.link import LinkTransport
-from aionode.transport.link import _protocol as protocol
-from aionode.transport.local import LocalTransport
-from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._subscription import ZenohReader
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
 from benchmarks.ipc_parts.common import TEXT, is_linked, node_of
 
 __all__ = ["CASES", "TURNS", "Count", "calibrate"]

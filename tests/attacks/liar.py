@@ -14,18 +14,18 @@ from typing import Any
 
 import zenoh  # plays another participant, without aionode
 
+from aionode.engine.transport.content_filters import filter_token
+from aionode.engine.transport.reliability import submessage as acknack
+from aionode.engine.transport.reliability.submessage import SubmessageKind
+from aionode.engine.transport.zenoh.delivery.acknowledgements import submessage_key
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import Side, data_key
+from aionode.engine.wire._liveliness import endpoint_token, gid_of, node_token, parse_token
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.message import type_name
 from aionode.qos import QoSProfile
-from aionode.transport._content_filters import filter_token
-from aionode.transport._reliability import submessage as acknack
-from aionode.transport._reliability.submessage import SubmessageKind
-from aionode.transport.zenoh._acknowledgements import submessage_key
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import Side, data_key
-from aionode.wire._liveliness import endpoint_token, gid_of, node_token, parse_token
-from aionode.wire.typehash import type_hash
 from tests.support.peers import raw_session
 
 __all__ = ["LIAR", "Liar", "lying", "pace"]

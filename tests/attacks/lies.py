@@ -15,6 +15,7 @@ from typing import Any
 import zenoh  # plays another participant, without aionode
 
 from aionode._distribution import NO_TYPE_HASH
+from aionode.engine.transport.reliability.submessage import SubmessageKind, pack_ranges
 from aionode.graph import EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Parameter, ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import (
@@ -33,7 +34,6 @@ from aionode.interfaces.type_description_interfaces.msg import (
 )
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.qos import QoSProfile
-from aionode.transport._reliability.submessage import SubmessageKind, pack_ranges
 from tests.attacks.liar import Liar
 
 __all__ = ["LIES", "describe", "nested_type"]

@@ -11,12 +11,12 @@ from collections.abc import Callable
 from typing import Any
 
 from aionode import content_filter
+from aionode.engine.transport import content_filters
+from aionode.engine.transport.reliability import writer_proxy
+from aionode.engine.transport.reliability.limits import NEVER
+from aionode.engine.wire import _described_type as described_type
+from aionode.engine.wire.cdr import _layout as layout
 from aionode.message import fields
-from aionode.transport import _content_filters as content_filters
-from aionode.transport._reliability import writer_proxy
-from aionode.transport._reliability.limits import NEVER
-from aionode.wire import _described_type as described_type
-from aionode.wire.cdr import _layout as layout
 from tests.faults import process
 
 __all__ = ["DEFECTS"]

@@ -20,6 +20,13 @@ from dataclasses import replace
 import psutil
 import zenoh  # plays another participant, without aionode
 
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.link._continuation import STOPS, seal
+from aionode.engine.transport.reliability import submessage as acknack
+from aionode.engine.transport.reliability.submessage import SubmessageKind
+from aionode.engine.transport.zenoh.session.local_sessions import announce
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
 from aionode.graph import EndpointInfo, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Parameter, ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import (
@@ -33,13 +40,6 @@ from aionode.interfaces.rcl_interfaces.srv import (
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.qos import DurabilityPolicy, HistoryPolicy, LivelinessPolicy, QoSProfile
-from aionode.transport._reliability import submessage as acknack
-from aionode.transport._reliability.submessage import SubmessageKind
-from aionode.transport.link import _protocol as protocol
-from aionode.transport.link._continuation import STOPS, seal
-from aionode.transport.zenoh._local_sessions import announce
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
 from tests.attacks.gateway_clients import GATEWAY_PROGRAMS
 from tests.attacks.liar import Liar, lying, pace
 from tests.attacks.lies import LIES, describe, nested_type

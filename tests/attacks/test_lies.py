@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
-from aionode.transport._reliability import submessage as acknack
-from aionode.transport._reliability import writer_proxy
-from aionode.transport._reliability.submessage import SubmessageKind
-from aionode.transport._reliability.writer_proxy import WriterProxy
+from aionode.engine.transport.reliability import submessage as acknack
+from aionode.engine.transport.reliability import writer_proxy
+from aionode.engine.transport.reliability.submessage import SubmessageKind
+from aionode.engine.transport.reliability.writer_proxy import WriterProxy
 from tests.attacks.liar import Liar
 from tests.attacks.lies import lie_in_submessage
 from tests.attacks.planted import plant_submessages

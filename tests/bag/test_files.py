@@ -18,13 +18,13 @@ from aionode import bag
 from aionode.bag._mcap_writer import LARGE_BYTES
 from aionode.bag._writer import topic_info
 from aionode.clock import Duration, Time
+from aionode.engine.wire import cdr
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import BagError, InterfaceNotFoundError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Imu
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from aionode.wire import cdr
-from aionode.wire.typehash import type_hash
 
 LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 Row = tuple[str, int, int, int, bytes]

@@ -14,6 +14,7 @@ from aionode.action import ActionServer, CancelResponse, ServerGoalHandle
 from aionode.bag._writer import topic_info
 from aionode.clock import ClockType, Duration, Time
 from aionode.endpoints.service_introspection import ServiceIntrospectionState
+from aionode.engine.wire import cdr
 from aionode.errors import BagError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -24,7 +25,6 @@ from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import ManualClock, local_context, settle
-from aionode.wire import cdr
 
 LATCHED = QoSProfile(depth=9, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

@@ -18,9 +18,10 @@ import pytest
 
 from aionode import bag
 from aionode.bag._recorder import adapted_qos
-from aionode.bare_node import BareNode
 from aionode.clock import ClockType, Time
-from aionode.context import Context
+from aionode.engine.bare_node import BareNode
+from aionode.engine.context import Context
+from aionode.engine.wire import cdr
 from aionode.errors import BagError, BagWriteError, InterfaceNotFoundError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rosbag2_interfaces.srv import IsPaused, Snapshot
@@ -30,7 +31,6 @@ from aionode.interfaces.std_msgs.msg import Float64MultiArray, Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from aionode.testing import local_context, settle
-from aionode.wire import cdr
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 

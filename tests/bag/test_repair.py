@@ -13,9 +13,9 @@ from aionode import bag
 from aionode.bag import _mcap_writer
 from aionode.bag._writer import topic_info
 from aionode.clock import Duration, Time
+from aionode.engine.wire import cdr
 from aionode.errors import BagError, BagWriteError
 from aionode.interfaces.std_msgs.msg import Int32, String
-from aionode.wire import cdr
 
 
 def record(path: Path, count: int = 3, topic: str = "/words", first_s: int = 1) -> None:

@@ -16,12 +16,12 @@ from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as McapLibraryWriter
 
 from aionode import bag
+from aionode.engine.wire import cdr
+from aionode.engine.wire.typehash import type_hash
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy
 from aionode.testing import local_context, settle
-from aionode.wire import cdr
-from aionode.wire.typehash import type_hash
 
 TYPE = "std_msgs/msg/String"
 TEXTS = ["a", "b", "c"]

@@ -14,9 +14,9 @@ from aionode.bag._writer import topic_info
 from aionode.cli._main import main
 from aionode.cli._nouns.bag_options import checked_selection, length_of, overrides
 from aionode.clock import Duration
+from aionode.engine.wire import cdr
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import ReliabilityPolicy
-from aionode.wire import cdr
 
 Captured = pytest.CaptureFixture[str]
 

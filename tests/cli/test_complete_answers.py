@@ -14,10 +14,10 @@ from typing import Any
 import pytest
 
 from aionode.cli._support.session import wait_until_known
+from aionode.engine.wire._liveliness import endpoint_token
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.node import Node
 from aionode.qos import qos_profile_default
-from aionode.wire._liveliness import endpoint_token
 from tests.support.fork_server import run
 from tests.support.peers import DOMAIN_ID, isolated_environment, raw_session
 
@@ -25,7 +25,7 @@ TOPICS = 3000
 
 SILENT = """
 import socket, sys, time
-from aionode.transport.zenoh._local_sessions import announce
+from aionode.engine.transport.zenoh.session.local_sessions import announce
 server = socket.create_server(("127.0.0.1", 0))
 presence = announce(int(sys.argv[1]), server.getsockname()[1])
 print("there", flush=True)

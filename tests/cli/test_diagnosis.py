@@ -10,11 +10,11 @@ import pytest
 from aionode import Node, QoSProfile, ReliabilityPolicy
 from aionode.cli._nouns.doctor import doctor, network_findings
 from aionode.cli._support.lookup import ALIKE, close_to, likeness
+from aionode.engine.transport.network import network_from
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.message import Message, int32
-from aionode.transport._network import network_from
 
 
 @pytest.fixture

@@ -214,12 +214,12 @@ def test_threads_of_a_node_that_was_run_are_waited_for(env: dict[str, str], tmp_
 
 HANGING_LOOP = """
 import threading
-from aionode.transport.zenoh._session_state import Declaration
+from aionode.engine.transport.zenoh._session_state import Declaration
 Declaration.undeclare = lambda _: threading.Event().wait()
 """
 HANGING_THREAD = """
 import threading
-from aionode.transport.zenoh import _transport as transport
+from aionode.engine.transport.zenoh import _transport as transport
 async def close_session(session):
     threading.Thread(target=threading.Event().wait).start()
 transport.close_session = close_session
@@ -261,7 +261,7 @@ import asyncio, sys
 from pathlib import Path
 from aionode.cli import main
 from aionode.cli._support import session
-from aionode.transport.zenoh import _transport as transport
+from aionode.engine.transport.zenoh import _transport as transport
 
 session.CLOSE_S = 0.01
 close = transport.close_session

@@ -16,15 +16,15 @@ from aionode.cli._nouns import node as node_verbs
 from aionode.cli._nouns import topic as topic_verbs
 from aionode.cli._nouns.topic_measure import hz
 from aionode.cli._support.session import make_node, wait_until_known
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire._liveliness import endpoint_token, gid_of, node_token
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import QoSProfile
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token, gid_of, node_token
-from aionode.wire.typehash import type_hash
 from tests.support.peers import DOMAIN_ID, isolated_environment, ros_router, ros_session
 
 NODES = 300

@@ -20,7 +20,7 @@ from aionode import Context
 from aionode.cli import main
 from aionode.cli._main import root
 from aionode.cli._support import completion
-from aionode.transport.link import available
+from aionode.engine.transport.link import available
 from tests.support.fork_server import run, start
 from tests.support.peers import isolated_environment
 

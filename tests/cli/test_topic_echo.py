@@ -10,6 +10,7 @@ import pytest
 from aionode import Context, Node, QoSProfile, ReliabilityPolicy
 from aionode.cli._nouns.topic_echo import echo
 from aionode.cli._support.session import make_node
+from aionode.engine.transport.local import LocalTransport
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.sensor_msgs.msg import JointState
@@ -22,7 +23,6 @@ from aionode.interfaces.std_msgs.msg import (
 )
 from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from aionode.testing import FaultyTransport, settle
-from aionode.transport.local import LocalTransport
 
 
 async def echoed(

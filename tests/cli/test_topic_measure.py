@@ -12,13 +12,13 @@ from aionode import Context, Node, QoSProfile
 from aionode.cli._nouns import topic_measure
 from aionode.cli._nouns.topic_measure import bw, delay, hz
 from aionode.cli._support.session import make_node
+from aionode.engine.transport.local import LocalTransport
 from aionode.errors import CommandError
 from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.geometry_msgs.msg import TwistStamped
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import Header, String
 from aionode.testing import FaultyTransport, ManualClock, settle
-from aionode.transport.local import LocalTransport
 
 
 @pytest.fixture

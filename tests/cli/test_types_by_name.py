@@ -12,11 +12,11 @@ from aionode.cli._nouns.action import send_goal
 from aionode.cli._nouns.service import call
 from aionode.cli._nouns.topic_echo import echo
 from aionode.cli._support.lookup import topic_type
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.message import ActionType, Message, ServiceType, int32
 from aionode.testing import settle
-from aionode.wire.typehash import type_hash
 
 # `by_name=False`: the command finds none of them, as if they were in another process.
 

@@ -21,7 +21,7 @@ import uvloop
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import (
     Alarm,
     Clock,

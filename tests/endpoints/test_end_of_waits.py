@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from aionode.clock import Duration
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import EntityDestroyedError, QueueFullError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String

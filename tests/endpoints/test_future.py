@@ -19,7 +19,7 @@ from tests.support.actions import Goal, Worker
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 Request = AddTwoInts.Request
 Response = AddTwoInts.Response

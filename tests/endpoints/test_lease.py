@@ -15,6 +15,8 @@ import pytest
 from aionode import CommandLease, Context, Node, Publisher
 from aionode.clock import Clock, ROSClock, Time
 from aionode.endpoints.lease import send_stops
+from aionode.engine.transport.local import LocalTransport
+from aionode.engine.wire import cdr
 from aionode.errors import (
     EntityDestroyedError,
     EntityInactiveError,
@@ -27,8 +29,6 @@ from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.lifecycle import LifecycleNode
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import FaultyTransport, ManualClock, local_context, settle
-from aionode.transport.local import LocalTransport
-from aionode.wire import cdr
 from tests.support.arrivals import reader_of
 
 T = TypeVar("T")

@@ -15,10 +15,10 @@ from aionode import CommandLease, Context, Node
 from aionode.clock import perf_ns
 from aionode.endpoints._core import lease_watch
 from aionode.endpoints.lease import send_stops
+from aionode.engine.transport.base import StopSender, Writer
+from aionode.engine.transport.local import LocalTransport
 from aionode.errors import LeaseExpiredError, LeaseHeldError
 from aionode.interfaces.std_msgs.msg import Int8
-from aionode.transport.base import StopSender, Writer
-from aionode.transport.local import LocalTransport
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.local import LocalRequest, LocalTransport
 from aionode.errors import (
     CallbackSignatureError,
     EntityDestroyedError,
@@ -22,7 +23,6 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts, SetBool
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import FaultyTransport, settle
-from aionode.transport.local import LocalRequest, LocalTransport
 from tests.support.living import living
 
 if TYPE_CHECKING:

@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from aionode.clock import Duration
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.local import LocalTransport
+from aionode.engine.wire import cdr
 from aionode.errors import (
     CallbackSignatureError,
     DecodeError,
@@ -30,8 +32,6 @@ from aionode.message import Message, int32
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from aionode.testing import FaultyTransport, settle
-from aionode.transport.local import LocalTransport
-from aionode.wire import cdr
 from tests.support.arrivals import direct_subscription, gid_of, reader_of
 
 if TYPE_CHECKING:

@@ -19,6 +19,8 @@ import msgspec
 
 import aionode
 from aionode import Context, Node
+from aionode.engine.transport.zenoh.session.session import close_session, open_router
+from aionode.engine.wire import cdr
 from aionode.errors import AionodeError, QueueFullError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.rcl_interfaces.msg import ParameterValue
@@ -26,8 +28,6 @@ from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.transport.zenoh._session import close_session, open_router
-from aionode.wire import cdr
 from tests.faults.motion.wheels import Wheels, move
 from tests.faults.roles import (
     REPORTS_VARIABLE,

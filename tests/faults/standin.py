@@ -18,15 +18,15 @@ from typing import Any
 import msgspec
 import zenoh  # plays another participant, without aionode
 
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire._liveliness import endpoint_token, gid_of, node_token
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
 from aionode.qos import QoSProfile
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token, gid_of, node_token
-from aionode.wire.typehash import type_hash
 from tests.faults.motion.ros_session import commander, obey, send_goal
 from tests.faults.process import REPORT_S, Reporter, text
 from tests.faults.roles import Publish, Role, stream_key

@@ -15,6 +15,15 @@ import msgspec
 
 from aionode.arguments import parse_arguments, remove_ros_args
 from aionode.arguments._parameter_yaml import parse_parameter_yaml, parse_value
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.link._listener import Advertisement
+from aionode.engine.transport.link._protocol import BufferRef, Frame, FrameParser, Kind
+from aionode.engine.transport.network import network_from
+from aionode.engine.transport.zenoh.endpoints.services import error_payload, parse_error
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import parse_data_key
+from aionode.engine.wire._liveliness import parse_qos, parse_token
 from aionode.errors import (
     ConfigurationError,
     DecodeError,
@@ -27,15 +36,6 @@ from aionode.errors import (
 from aionode.idl import define
 from aionode.message import Message, type_name
 from aionode.names import resolve
-from aionode.transport._network import network_from
-from aionode.transport.link import _protocol as protocol
-from aionode.transport.link._listener import Advertisement
-from aionode.transport.link._protocol import BufferRef, Frame, FrameParser, Kind
-from aionode.transport.zenoh._services import error_payload, parse_error
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import parse_data_key
-from aionode.wire._liveliness import parse_qos, parse_token
 from tests.support.samples import all_samples
 
 __all__ = ["TARGETS", "Target", "cdr_input"]

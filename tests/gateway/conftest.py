@@ -6,7 +6,7 @@ from collections.abc import AsyncIterator, Callable
 
 import pytest
 
-from aionode.gateway._robot import Robot
+from aionode.gateway.session.robot import Robot
 from aionode.node import Node
 from aionode.testing import settle
 from tests.support.gateway_bench import Bench, bench_of_gateway

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from aionode.gateway import Identity
-from aionode.gateway._audit import MOST_TEXT, REFUSALS_PER_SEC, append, shortened
+from aionode.gateway.session.audit import MOST_TEXT, REFUSALS_PER_SEC, append, shortened
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.std_msgs.msg import String
 from aionode.parameter import Parameter

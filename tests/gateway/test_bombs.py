@@ -14,12 +14,12 @@ import pytest
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import ConnectionClosed
 
+from aionode.engine.wire import cdr
 from aionode.errors import MessageError
 from aionode.gateway import Gateway, Policy
-from aionode.gateway._json import decoded
+from aionode.gateway.session.client_json import decoded
 from aionode.interfaces.geometry_msgs.msg import PoseArray
 from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
-from aionode.wire import cdr
 from tests.support.gateway_server import busiest_turn, http_client, raw_connect, serving, upgraded
 from tests.support.waiting import until
 

@@ -13,17 +13,20 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError, RefusedError
-from aionode.gateway import Policy, Session, _feed, _foxglove_client, _rosapi
-from aionode.gateway._foxglove_client import Client
-from aionode.gateway._lanes import Lanes
-from aionode.gateway._outbox import Outbox
-from aionode.gateway._robot import Robot
-from aionode.gateway._rosbridge_client import MOST_MALFORMED, serve_frames
-from aionode.gateway._rosbridge_request import FragmentStore
-from aionode.gateway._session_base import MOST_QUESTIONS
-from aionode.gateway._sharing import MOST_UNUSED, Shared
+from aionode.gateway import Policy, Session
+from aionode.gateway.foxglove import client as _foxglove_client
+from aionode.gateway.foxglove.client import Client
+from aionode.gateway.rosbridge import rosapi as _rosapi
+from aionode.gateway.rosbridge.client import MOST_MALFORMED, serve_frames
+from aionode.gateway.rosbridge.request import FragmentStore
+from aionode.gateway.session import feed as _feed
+from aionode.gateway.session.base import MOST_QUESTIONS
+from aionode.gateway.session.lanes import Lanes
+from aionode.gateway.session.outbox import Outbox
+from aionode.gateway.session.robot import Robot
+from aionode.gateway.session.sharing import MOST_UNUSED, Shared
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node

@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed
 
 from aionode.action import CancelResponse
 from aionode.gateway import Gateway, Policy
-from aionode.gateway._server import WebSocketConnection
+from aionode.gateway.server.server import WebSocketConnection
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
@@ -409,7 +409,7 @@ async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_no
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A frozen page: what waits for it keeps the connection open if nobody cuts it."""
-    monkeypatch.setattr("aionode.gateway._server.PING_SEC", 0.2)
+    monkeypatch.setattr("aionode.gateway.server.server.PING_SEC", 0.2)
     async with serving(Policy.parse(POLICY)) as gateway:
         words = gateway.node.create_publisher(String, "/words", 10)
         _, writer, _ = await upgraded(gateway)
@@ -487,7 +487,7 @@ async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """The gateway waits some seconds for the client's own goodbye, which may be behind it."""
-    monkeypatch.setattr("aionode.gateway._rosbridge_client.MOST_MALFORMED", 3)
+    monkeypatch.setattr("aionode.gateway.rosbridge.client.MOST_MALFORMED", 3)
     read = 0
     handle_text = WebSocketConnection.handle_text
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.gateway import Gateway, Policy
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node

@@ -16,11 +16,12 @@ from typing import Any, Final, cast
 import pytest
 
 from aionode.clock import S_TO_NS
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import PolicyFileError
-from aionode.gateway import Gateway, Identity, Policy, Rule, Session, _audit
-from aionode.gateway._door import STATUS
-from aionode.gateway._policy import LIMITED, VERBS
+from aionode.gateway import Gateway, Identity, Policy, Rule, Session
+from aionode.gateway.policy.policy import LIMITED, VERBS
+from aionode.gateway.server.door import STATUS
+from aionode.gateway.session import audit as _audit
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import TwistStamped

@@ -12,8 +12,10 @@ from uvicorn.protocols.http import h11_impl
 from uvicorn.protocols.websockets import websockets_sansio_impl
 from websockets.exceptions import InvalidStatus
 
-from aionode.context import Context
-from aionode.gateway import Gateway, Policy, _audit, _server
+from aionode.engine.context import Context
+from aionode.gateway import Gateway, Policy
+from aionode.gateway.server import server as _server
+from aionode.gateway.session import audit as _audit
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile

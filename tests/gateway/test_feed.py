@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 from typing import TYPE_CHECKING
 
-from aionode.gateway._feed import Feed, Received
+from aionode.gateway.session.feed import Feed, Received
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import LivelinessPolicy, QoSProfile
 from aionode.testing import settle

@@ -18,7 +18,7 @@ from tests.support.waiting import until
 from tests.support.web_server import web_server
 
 if TYPE_CHECKING:
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from tests.support.chromium import Browser
 
 pytestmark = [

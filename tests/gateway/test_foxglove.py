@@ -17,24 +17,24 @@ from websockets.typing import Subprotocol
 from aionode import bag
 from aionode.bag._writer import topic_info
 from aionode.clock import Time
+from aionode.engine.wire import cdr
 from aionode.gateway import Gateway, Identity, Policy, Session
-from aionode.gateway._audit import Audit
-from aionode.gateway._foxglove_client import serve_frames
-from aionode.gateway._robot import Robot
+from aionode.gateway.foxglove.client import serve_frames
+from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.robot import Robot
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.std_srvs.srv import SetBool
 from aionode.node import Node
 from aionode.parameter import Parameter
-from aionode.wire import cdr
 from examples.gateway import play_bag
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
 
     from aionode.bag import Player
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 WITHOUT_LIMIT = """
 [[who]]

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode.errors import MessageError
-from aionode.gateway import _foxglove_frames as frames
+from aionode.gateway.foxglove import frames
 from aionode.parameter import Parameter, ParameterType
 
 NOT_SET = ParameterType.NOT_SET

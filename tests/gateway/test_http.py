@@ -15,9 +15,9 @@ import pytest
 
 from aionode import image
 from aionode.action import CancelResponse, GoalResponse, ServerGoalHandle
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.gateway import Gateway, Policy
-from aionode.gateway._server import HttpConnection
+from aionode.gateway.server.server import HttpConnection
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist

@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from aionode.action import CancelResponse
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.gateway import Gateway, Policy
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts

@@ -11,7 +11,7 @@ import httpx
 import pytest
 from websockets.asyncio.client import connect
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.gateway import Gateway, Identity, Policy
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -345,7 +345,7 @@ async def test_a_page_of_another_origin_and_a_wrong_token_are_refused(
     aionode_context: Context, headers: dict[str, str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On every route, before it runs."""
-    monkeypatch.setattr("aionode.gateway._door.MOST_WRONG", 100)
+    monkeypatch.setattr("aionode.gateway.server.door.MOST_WRONG", 100)
     async with robot_and_client(aionode_context, EVERYTHING) as (_, client):
         answers = {
             (method, path): await client.request(method, path, headers=headers)

@@ -14,7 +14,8 @@ import pytest
 from websockets.asyncio.client import connect
 from websockets.typing import Subprotocol
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.wire import cdr
 from aionode.errors import RefusedError
 from aionode.gateway import Gateway, Policy
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
@@ -25,7 +26,6 @@ from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTraject
 from aionode.interfaces.turtlesim.action import RotateAbsolute
 from aionode.node import Node
 from aionode.testing import settle
-from aionode.wire import cdr
 from tests.support.gateway_bench import Bench
 from tests.support.http_client import http_client
 from tests.support.ways_in import Ask, until, way_in

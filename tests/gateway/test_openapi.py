@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from aionode.gateway._openapi import Offer, openapi
+from aionode.gateway.http.openapi import Offer, openapi
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import PoseWithCovarianceStamped, Twist

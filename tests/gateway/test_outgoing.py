@@ -9,9 +9,15 @@ import pytest
 from websockets.frames import Frame as WebSocketFrame
 from websockets.frames import Opcode
 
-from aionode._concurrency import checkpoint
-from aionode.gateway._outbox import LongFrame
-from aionode.gateway._outgoing import MOST_CONTROL_BYTES, SLICE, SLICES_IN_A_TURN, Framing, Outgoing
+from aionode._process.concurrency import checkpoint
+from aionode.gateway.server.outgoing import (
+    MOST_CONTROL_BYTES,
+    SLICE,
+    SLICES_IN_A_TURN,
+    Framing,
+    Outgoing,
+)
+from aionode.gateway.session.outbox import LongFrame
 
 LARGE = bytes(range(256)) * 16 * 1024  # 4 MiB
 

@@ -19,7 +19,7 @@ from tests.support.chromium import CHROMIUM, chromium
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from tests.support.chromium import Page
 
 pytestmark = [

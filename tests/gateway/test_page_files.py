@@ -9,7 +9,7 @@ import httpx
 import pytest
 
 from aionode.gateway import Gateway
-from aionode.gateway._page_files import FOLDER
+from aionode.gateway.page.files import FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

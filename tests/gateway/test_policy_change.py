@@ -9,12 +9,12 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
 from aionode.errors import RefusedError
 from aionode.gateway import Gateway, Policy, Session
-from aionode.gateway._foxglove_client import serve_frames
-from aionode.gateway._robot import Robot
+from aionode.gateway.foxglove.client import serve_frames
+from aionode.gateway.session.robot import Robot
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from aionode.action import ActionServer
-from aionode.gateway._policy import Policy
-from aionode.gateway._robot import Robot
+from aionode.gateway.policy.policy import Policy
+from aionode.gateway.session.robot import Robot
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist

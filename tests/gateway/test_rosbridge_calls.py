@@ -19,8 +19,8 @@ from aionode.action import (
     ServerGoalHandle,
 )
 from aionode.errors import ServiceError
-from aionode.gateway._policy import Policy
-from aionode.gateway._robot import Robot
+from aionode.gateway.policy.policy import Policy
+from aionode.gateway.session.robot import Robot
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.node import Node

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from aionode.gateway._robot import Robot
+from aionode.gateway.session.robot import Robot
 from tests.support.rosbridge import RosbridgeClient, rosbridge_client
 
 OPS = (

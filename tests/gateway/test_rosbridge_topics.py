@@ -8,7 +8,8 @@ import json
 
 import pytest
 
-from aionode.gateway._robot import Robot
+from aionode.engine.wire import cdr
+from aionode.gateway.session.robot import Robot
 from aionode.interfaces.geometry_msgs.msg import Vector3
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -16,7 +17,6 @@ from aionode.message import to_builtins
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import settle
-from aionode.wire import cdr
 from tests.support.rosbridge import RosbridgeClient, rosbridge_client
 
 # Subscriptions

@@ -14,15 +14,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image as Picture
 
+from aionode.engine.wire import cdr
 from aionode.errors import MessageError
-from aionode.gateway._rosbridge_frames import (
+from aionode.gateway.session.frames import (
     cbor_frame,
     cbor_raw_frame,
     fragments,
     json_frame,
     png_frame,
 )
-from aionode.gateway._rosbridge_values import from_json, json_of
+from aionode.gateway.session.values import from_json, json_of
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.geometry_msgs.msg import PointStamped, Twist
 from aionode.interfaces.sensor_msgs.msg import CameraInfo, Image, LaserScan
@@ -39,7 +40,6 @@ from aionode.interfaces.std_msgs.msg import (
 from aionode.interfaces.test_msgs.msg import Arrays, UnboundedSequences
 from aionode.interfaces.unique_identifier_msgs.msg import UUID
 from aionode.message import snapshot
-from aionode.wire import cdr
 
 NOW_NS = 12 * 10**9 + 34
 

@@ -17,7 +17,7 @@ import pytest
 import websockets
 
 from aionode.gateway import Gateway, Policy
-from aionode.gateway._client_list import ConnectedClients
+from aionode.gateway.rosbridge.client_list import ConnectedClients
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy

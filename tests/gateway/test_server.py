@@ -18,11 +18,11 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.protocol import State
 from websockets.typing import Origin
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import ConfigurationError, RefusedError
 from aionode.gateway import Gateway, Identity, Policy, _gateway
-from aionode.gateway._door import Guesses
 from aionode.gateway._gateway import paced
+from aionode.gateway.server.door import Guesses
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
@@ -236,7 +236,9 @@ async def test_tokens_are_tried_so_often_and_no_more(
     first: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever the way in: then not even the right one counts, as its answer would tell it."""
-    monkeypatch.setattr("aionode.gateway._door.WRONG_NS", 10**15)  # the test may take some seconds
+    monkeypatch.setattr(
+        "aionode.gateway.server.door.WRONG_NS", 10**15
+    )  # the test may take some seconds
     right = {"authorization": f"Bearer {TOKEN}"}
     async with (
         serving(Policy.parse(POLICY)) as gateway,

@@ -21,7 +21,7 @@ from aionode.errors import (
     ServiceError,
 )
 from aionode.gateway import FieldLimit, Policy, Rule, Session
-from aionode.gateway._feed import Received
+from aionode.gateway.session.feed import Received
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError
 from aionode.idl import _installed as installed
 from aionode.idl._distribution_differences import DIFFERENCES
@@ -19,7 +20,6 @@ from aionode.interfaces import get_interface
 from aionode.interfaces.sensor_msgs import msg as sensor_msgs
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import fields
-from aionode.wire.typehash import type_hash
 
 HUMBLE_RANGE = DIFFERENCES["humble"]["sensor_msgs/msg/Range"]
 

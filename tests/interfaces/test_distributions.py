@@ -10,9 +10,9 @@ from typing import Any
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
+from aionode.engine.wire.typehash import type_hash
 from aionode.interfaces import get_interface, get_message
 from aionode.message import FieldType, fields, type_name
-from aionode.wire.typehash import type_hash
 from tests.support.strategies import shipped_types
 
 OTHER: dict[str, set[str]] = {

@@ -8,6 +8,7 @@ import pkgutil
 import pytest
 
 import aionode.interfaces
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError
 from aionode.interfaces import (
     get_action,
@@ -22,7 +23,6 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import Log
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
-from aionode.wire.typehash import type_hash
 from tests.support.strategies import shipped_types
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.lifecycle.states import (
+from aionode.engine.rules.lifecycle_states import (
     ACTIVE,
     FINALIZED,
     STATES,

@@ -8,13 +8,13 @@ from typing import Any
 
 import pytest
 
+from aionode.engine.wire import cdr
 from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from aionode.interfaces.geometry_msgs.msg import PoseStamped, Twist
 from aionode.interfaces.nav_msgs.msg import Path
 from aionode.interfaces.sensor_msgs.msg import Image, LaserScan
 from aionode.interfaces.std_msgs.msg import Header, Int32, String
 from aionode.message._memory_size import memory_size
-from aionode.wire import cdr
 
 LARGE = [
     String(data="x" * 100_000),

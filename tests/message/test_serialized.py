@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
+from aionode.engine.wire import cdr
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import DecodeError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Imu
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.message import SerializedMessage, fields, serialized, type_name, unserialized
-from aionode.wire import cdr
-from aionode.wire.typehash import type_hash
 
 
 def test_encoding_returns_the_bytes_as_they_are() -> None:

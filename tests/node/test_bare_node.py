@@ -9,20 +9,20 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import Context, Node
-from aionode.bare_node import BareNode
+from aionode.engine.bare_node import BareNode
+from aionode.engine.transport.base import SampleInfo
+from aionode.engine.wire import cdr
 from aionode.errors import EntityDestroyedError, QueueFullError, ServiceError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import serialized
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.transport.base import SampleInfo
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from aionode.engine.transport.base import Request
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Request
 
 TEN = QoSProfile(depth=10)
 

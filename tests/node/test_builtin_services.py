@@ -10,6 +10,7 @@ import hypothesis
 import pytest
 from hypothesis import strategies as st
 
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import (
     ParameterNotDeclaredException,
     UnknownROSArgsError,
@@ -34,13 +35,12 @@ from aionode.parameter import Parameter
 from aionode.parameter_client import AsyncParameterClient
 from aionode.qos import qos_profile_rosout_default
 from aionode.testing import local_context, settle
-from aionode.wire.typehash import type_hash
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 # Parameters
 

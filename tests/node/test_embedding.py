@@ -7,18 +7,18 @@ import threading
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 from aionode import Context, Node
+from aionode.engine.transport.base import Registration, Requester, Transport, Writer
+from aionode.engine.transport.local import LocalTransport
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import local_context
-from aionode.transport.base import Registration, Requester, Transport, Writer
-from aionode.transport.local import LocalTransport
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
     from concurrent.futures import Future
     from types import TracebackType
 
+    from aionode.engine.transport.base import Reader, Serve
     from aionode.graph import EndpointInfo, Graph, NodeInfo
-    from aionode.transport.base import Reader, Serve
 
 T = TypeVar("T")
 

@@ -10,11 +10,13 @@ import anyio
 import pytest
 
 import aionode
-from aionode._concurrency import checkpoint, to_the_end
+from aionode._process.concurrency import checkpoint, to_the_end
 from aionode.action import CancelResponse
-from aionode.context import Context
 from aionode.endpoints._core import shutdown
 from aionode.endpoints._core.entity import Entity
+from aionode.engine.context import Context
+from aionode.engine.transport.base import Registration, Writer
+from aionode.engine.transport.local import LocalReader, LocalTransport, LocalWriter
 from aionode.errors import EntityDestroyedError
 from aionode.graph import NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -22,8 +24,6 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Float64
 from aionode.node import Node
 from aionode.testing import local_context, settle
-from aionode.transport.base import Registration, Writer
-from aionode.transport.local import LocalReader, LocalTransport, LocalWriter
 from tests.support.living import living
 
 

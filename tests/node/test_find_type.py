@@ -9,13 +9,13 @@ from typing import Any
 import pytest
 
 from aionode import Node
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError
 from aionode.graph import EndpointKind
 from aionode.interfaces import get_action, get_message, get_service, interface_names
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 from aionode.message import ActionType, Message, ServiceType
-from aionode.wire.typehash import type_hash
 
 
 class Foreign(Message, typename="foreign/msg/Foreign", by_name=False):
@@ -113,7 +113,7 @@ async def test_a_description_with_another_hash_is_not_believed(
     """Messages of a type are read as the type of which the graph shows the hash, or not at all."""
 
     def describe(_: Any, response: Any) -> Any:
-        from aionode.wire.typehash import description_message
+        from aionode.engine.wire.typehash import description_message
 
         response.successful = True
         response.type_description = description_message(String)

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.wire import cdr
 from aionode.errors import ServiceError
 from aionode.interfaces.lifecycle_msgs import srv as lifecycle
 from aionode.interfaces.rcl_interfaces import srv
@@ -25,7 +26,6 @@ from aionode.logging import get_logger_level, set_logger_level_for_others
 from aionode.node import Node
 from aionode.parameter import _store as parameter_store
 from aionode.parameter._services import LARGEST_ANSWER, MOST_HELD
-from aionode.wire import cdr
 
 LONG = "x" * 10_000
 MANY = 10_000

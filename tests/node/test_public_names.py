@@ -7,9 +7,9 @@ import inspect
 import pytest
 
 from aionode import Context, Node, Supervisor
+from aionode.engine.transport.local import LocalTransport
 from aionode.lifecycle import LifecycleNode
 from aionode.testing import FaultyTransport, ManualClock, local_context
-from aionode.transport.local import LocalTransport
 
 LIFETIME = """
 context destroy_node destroyed ended get_clock get_fully_qualified_name get_logger get_name

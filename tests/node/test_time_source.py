@@ -19,7 +19,7 @@ from aionode.testing import settle
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 
 async def test_simulated_time_follows_the_clock_topic(context: Context, node: Node) -> None:

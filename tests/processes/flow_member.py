@@ -15,7 +15,7 @@ from typing import Any
 
 import aionode
 from aionode import Node
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.errors import AionodeError, QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import ParameterValue
 from aionode.interfaces.rcl_interfaces.srv import GetParameters

@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import AionodeError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node

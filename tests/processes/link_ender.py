@@ -10,7 +10,7 @@ import asyncio
 import os
 import sys
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from tests.support.peers import KEEP_ALL

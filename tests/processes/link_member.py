@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import sys
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
 

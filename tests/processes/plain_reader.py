@@ -13,13 +13,13 @@ from threading import Event
 
 import zenoh  # noqa: TID251  # plays another participant, without aionode's transport
 
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire._liveliness import endpoint_token, node_token
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import QoSProfile
-from aionode.wire import _attachment as attachment
-from aionode.wire._key_expression import data_key
-from aionode.wire._liveliness import endpoint_token, node_token
-from aionode.wire.typehash import type_hash
 from tests.support.peers import raw_session
 
 

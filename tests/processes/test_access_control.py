@@ -15,10 +15,10 @@ import pytest
 import trustme
 import zenoh  # noqa: TID251  # plays all participants, without aionode
 
-from aionode.transport._content_filters import filter_token
-from aionode.transport.zenoh._acknowledgements import submessage_key
-from aionode.transport.zenoh._handlers import direct
-from aionode.wire._key_expression import Side, side_key
+from aionode.engine.transport.content_filters import filter_token
+from aionode.engine.transport.zenoh.connections.handlers import direct
+from aionode.engine.transport.zenoh.delivery.acknowledgements import submessage_key
+from aionode.engine.wire._key_expression import Side, side_key
 from tests.processes.test_security import CONFIGS, router, write
 from tests.support.peers import free_ports
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode.action import ServerGoalHandle
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh._defects import forgotten_peers, lingering
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh.connections import sockets as _sockets
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.transport.zenoh import _sockets
-from aionode.transport.zenoh._defects import forgotten_peers, lingering
-from aionode.transport.zenoh._session_state import SessionState
 from tests.processes.process import Process
 from tests.support.guest import guest
 from tests.support.links import Counting, Two, folder, link_of, two_nodes, writer_of

@@ -17,15 +17,15 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.link._connection import Connection
+from aionode.engine.transport.link._protocol import FrameParser
+from aionode.engine.transport.link._publisher import LinkWriter
+from aionode.engine.transport.link._subscription import Route
+from aionode.engine.transport.link._transport import LinkTransport
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
-from aionode.transport.link._connection import Connection
-from aionode.transport.link._protocol import FrameParser
-from aionode.transport.link._publisher import LinkWriter
-from aionode.transport.link._subscription import Route
-from aionode.transport.link._transport import LinkTransport
 from tests.processes.link_member import STREAMED_BYTES
 from tests.support import fork_server
 from tests.support.arrivals import reader_of, writers_of

@@ -13,9 +13,9 @@ from typing import Any
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.link._subscription import Route
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.link._subscription import Route
 from tests.support.links import folder, freeze, manager_of
 from tests.support.peers import KEEP_ALL, quiet_node
 

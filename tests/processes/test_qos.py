@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode.context import Context
-from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints.events import QoSLivelinessChangedInfo
+from aionode.engine.context import Context
+from aionode.engine.rules.liveliness import PublisherLiveliness
 from aionode.interfaces.std_msgs.msg import Int32
 from tests.processes.process import Process
 from tests.processes.qos_member import PROFILE

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from aionode.clock import MachineTime, SteadyClock
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.std_msgs.msg import Int64
 from aionode.node import Node
 from tests.processes.process import Process

@@ -13,8 +13,8 @@ import pytest
 
 import aionode.rclpy
 from aionode.action import GoalStatus
-from aionode.endpoints.actions import _status_pace
-from aionode.endpoints.actions._goal_store import GoalStore
+from aionode.engine.rules import status_pace as _status_pace
+from aionode.engine.rules.goal_store import GoalStore
 from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
 from aionode.interfaces.tf2_msgs.action import LookupTransform as OwnLookupTransform
 from aionode.rclpy._impl.errors import RCLError

@@ -16,6 +16,7 @@ import pytest
 
 from aionode import rclpy
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
+from aionode.engine.transport.base import SampleInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
@@ -34,7 +35,6 @@ from aionode.rclpy.serialization import serialize_message
 from aionode.rclpy.service_introspection import ServiceIntrospectionState
 from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
 from aionode.rclpy.task import Future
-from aionode.transport.base import SampleInfo
 from tests.support.fork_server import start
 from tests.support.peers import isolated_environment
 

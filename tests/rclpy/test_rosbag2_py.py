@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from aionode import bag
+from aionode.engine.wire import cdr
 from aionode.interfaces.std_msgs.msg import Float64, String
 from aionode.rclpy import _rosbag2_py as rosbag2_py
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from pathlib import Path

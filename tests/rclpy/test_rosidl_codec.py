@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 
+from aionode.engine.wire import cdr
 from aionode.errors import DecodeError, MessageError
 from aionode.message import Message, snapshot
 from aionode.rclpy._rosidl import (
@@ -19,7 +20,6 @@ from aionode.rclpy._rosidl import (
     service_class,
     to_aionode,
 )
-from aionode.wire import cdr
 from tests.support.strategies import any_messages, message_classes
 
 String = message_class("std_msgs/msg/String")

@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from aionode.action import GoalStatus, ServerGoalHandle
-from aionode.endpoints.actions.goal import alive_id, left_id
+from aionode.engine.rules.goal import alive_id, left_id
 from aionode.interfaces.action_msgs.msg import GoalInfo, GoalStatusArray
 from aionode.interfaces.action_msgs.srv import CancelGoal
 from aionode.interfaces.builtin_interfaces.msg import Time

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
-    from aionode.bare_node import BarePublisher
     from aionode.endpoints._core.subscription_reader import SubscriptionReader
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.service import Service
     from aionode.endpoints.subscription import Subscription
+    from aionode.engine.bare_node import BarePublisher
+    from aionode.engine.transport.base import Serve, Writer
     from aionode.node import Node
-    from aionode.transport.base import Serve, Writer
 
 __all__ = ["direct_subscription", "gid_of", "reader_of", "serve_of", "writers_of"]
 

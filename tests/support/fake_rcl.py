@@ -20,6 +20,8 @@ from typing import Any, Self
 import pytest
 
 from aionode.clock import Duration, perf_ns
+from aionode.engine.transport.rcl import _bindings, _services, _state, _topics
+from aionode.engine.transport.rcl._bindings import ByteArray
 from aionode.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -27,8 +29,6 @@ from aionode.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from aionode.transport.rcl import _bindings, _services, _state, _topics
-from aionode.transport.rcl._bindings import ByteArray
 
 __all__ = ["FakeRcl", "Reference", "install"]
 

@@ -11,9 +11,9 @@ import argparse
 import random
 from typing import TYPE_CHECKING, Any
 
+from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from aionode.errors import DecodeError
-from aionode.wire import cdr
-from aionode.wire.cdr._fallback_decoder import decode_slowly
 from tests.support.samples import all_samples
 
 if TYPE_CHECKING:

@@ -7,10 +7,10 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.gateway import Identity, Policy, Session
-from aionode.gateway._audit import Audit
-from aionode.gateway._robot import Robot
+from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.robot import Robot
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import ManualClock, local_context, settle

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.link import _manager as manager
+from aionode.engine.transport.link._connection import Connection
+from aionode.engine.transport.link._publisher import LinkWriter
+from aionode.engine.transport.link._transport import LinkTransport
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from aionode.transport.link import _manager as manager
-from aionode.transport.link._connection import Connection
-from aionode.transport.link._publisher import LinkWriter
-from aionode.transport.link._transport import LinkTransport
 from tests.support.arrivals import writers_of
 from tests.support.peers import quiet_node
 

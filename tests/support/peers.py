@@ -13,7 +13,7 @@ from typing import Any
 
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 

@@ -11,14 +11,14 @@ from typing import Any, Final
 import cbor2
 import msgspec
 
-from aionode.gateway._audit import Audit
-from aionode.gateway._identity import Identity
-from aionode.gateway._outbox import Frame, LongFrame
-from aionode.gateway._policy import Policy
-from aionode.gateway._robot import Robot
-from aionode.gateway._rosbridge_client import serve_frames
-from aionode.gateway._rosbridge_frames import Fragmented
-from aionode.gateway._session import Session
+from aionode.gateway.policy.identity import Identity
+from aionode.gateway.policy.policy import Policy
+from aionode.gateway.rosbridge.client import serve_frames
+from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.frames import Fragmented
+from aionode.gateway.session.outbox import Frame, LongFrame
+from aionode.gateway.session.robot import Robot
+from aionode.gateway.session.session import Session
 from aionode.node import Node
 
 __all__ = ["RosbridgeClient", "robot_of", "rosbridge_client"]

@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 import pytest
 
 from aionode import Context, Node
-from aionode._sudden_end import SENDS
+from aionode._process.sudden_end import SENDS
 from aionode.errors import MemberNotFoundError, NotReadyError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String

@@ -13,19 +13,19 @@ from hypothesis import strategies as st
 
 from aionode import Publisher, Subscription
 from aionode.content_filter import ContentFilterOptions, compile_filter
-from aionode.errors import ContentFilterError, EntityDestroyedError, MessageError
-from aionode.interfaces.std_msgs.msg import Int32, String
-from aionode.node import Node
-from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.testing import settle
-from aionode.transport import _content_filters as content_filters
-from aionode.transport._content_filters import (
+from aionode.engine.transport import content_filters
+from aionode.engine.transport.content_filters import (
     ContentFilters,
     filter_from_text,
     filter_token,
     text_of_filter,
 )
-from aionode.wire import cdr
+from aionode.engine.wire import cdr
+from aionode.errors import ContentFilterError, EntityDestroyedError, MessageError
+from aionode.interfaces.std_msgs.msg import Int32, String
+from aionode.node import Node
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
+from aionode.testing import settle
 from tests.support.peers import Collector, contexts_over, quiet_node, raw_session
 
 if TYPE_CHECKING:
@@ -547,7 +547,7 @@ def test_a_filter_is_compiled_once_for_each_type(monkeypatch: pytest.MonkeyPatch
         compiled.append(expression)
         return compile_filter(Int32, expression, *args, **options)
 
-    monkeypatch.setattr("aionode.transport._content_filters.compile_filter", counted)
+    monkeypatch.setattr("aionode.engine.transport.content_filters.compile_filter", counted)
     filters = ContentFilters()
     announced(filters, gid_of(1), "data = 1")
 

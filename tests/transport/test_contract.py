@@ -15,8 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pytest
 
-from aionode.context import Context
 from aionode.endpoints.service_introspection import ServiceIntrospectionState
+from aionode.engine.context import Context
+from aionode.engine.transport.rcl import RclTransport
+from aionode.engine.wire import cdr
 from aionode.errors import MessageError, ServiceError, ServiceUnavailableError
 from aionode.interfaces.sensor_msgs.msg import Image, JointState
 from aionode.interfaces.std_msgs.msg import Int8, Int32
@@ -25,8 +27,6 @@ from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.parameter_client import AsyncParameterClient
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.transport.rcl import RclTransport
-from aionode.wire import cdr
 from tests.support import fake_rcl
 from tests.support.arrivals import direct_subscription, reader_of
 from tests.support.peers import contexts_over, two_contexts

@@ -10,10 +10,10 @@ from functools import partial
 
 import pytest
 
-from aionode._concurrency import SLICE_NS, checkpoint
+from aionode._process.concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
-from aionode.transport import _loop_waker as loop_waker
-from aionode.transport._loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
+from aionode.engine.transport import loop_waker
+from aionode.engine.transport.loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 
 
 @pytest.fixture(params=["eventfd", "socketpair"])

@@ -8,8 +8,7 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # asks Zenoh whether it knows the settings
 
-from aionode.errors import ConfigurationError
-from aionode.transport._network import (
+from aionode.engine.transport.network import (
     MEETING_PORTS,
     ROUTER_PORT,
     DiscoveryRange,
@@ -17,13 +16,14 @@ from aionode.transport._network import (
     is_near,
     network_from,
 )
-from aionode.transport.zenoh._config import probed_ports
-from aionode.transport.zenoh._settings import (
+from aionode.engine.transport.zenoh.connections.config import probed_ports
+from aionode.engine.transport.zenoh.session.settings import (
     GOSSIPING,
     Neighbours,
     router_settings,
     session_settings,
 )
+from aionode.errors import ConfigurationError
 
 H1, H2, H3 = MEETING_PORTS
 

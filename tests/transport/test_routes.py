@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.base import LinkStatus
+from aionode.engine.transport.local import LocalTransport
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.testing import FaultyTransport
-from aionode.transport.base import LinkStatus
-from aionode.transport.local import LocalTransport
 from tests.support.arrivals import reader_of
 from tests.support.links import (
     Counting,

@@ -10,12 +10,12 @@ from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any
 
+from aionode.engine.transport.link._manager import LinkManager
+from aionode.engine.transport.link._protocol import Open, Opened, Switched
 from aionode.graph import EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.testing import local_context
-from aionode.transport.link._manager import LinkManager
-from aionode.transport.link._protocol import Open, Opened, Switched
 from tests.support.arrivals import writers_of
 from tests.support.links import Counting, folder, link_of, manager_of, transport_of, two_nodes
 
@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 
     import pytest
 
+    from aionode.engine.transport.link._connection import Connection
+    from aionode.engine.transport.link._protocol import Control
     from aionode.graph import EndpointInfo
-    from aionode.transport.link._connection import Connection
-    from aionode.transport.link._protocol import Control
 
 __all__ = ["folder"]  # a fixture
 

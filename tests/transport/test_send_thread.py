@@ -10,9 +10,9 @@ from collections.abc import AsyncIterator
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.transport._loop_waker import LoopWaker
-from aionode.transport._send_thread import SendQueue, SendThread, end_all
+from aionode._process.concurrency import checkpoint
+from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.send_thread import SendQueue, SendThread, end_all
 
 
 @pytest.fixture
@@ -162,8 +162,8 @@ def test_a_process_that_exits_waits_for_the_send_that_a_thread_is_in() -> None:
     """Its end must not meet a thread inside Zenoh, which would abort it (SIGABRT)."""
     program = """
 import os, threading, time
-from aionode.transport._loop_waker import LoopWaker
-from aionode.transport._send_thread import SendThread
+from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.send_thread import SendThread
 
 began = threading.Event()
 
@@ -184,7 +184,7 @@ def test_a_process_that_exits_waits_for_a_thread_that_a_daemon_has_started() -> 
     """It is a daemon then, too: Python would end while it is inside Zenoh."""
     program = """
 import os, threading, time
-from aionode.transport._send_thread import start_thread
+from aionode.engine.transport.send_thread import start_thread
 
 def close():
     time.sleep(0.2)

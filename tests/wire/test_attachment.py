@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.wire import _attachment as attachment
+from aionode.engine.wire import _attachment as attachment
 
 GOLDEN: dict[str, Any] = json.loads(
     Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()

@@ -8,9 +8,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
-from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from aionode.wire._bridge import (
+from aionode.engine.wire._bridge import (
     BridgedEndpoint,
     bridge_key,
     bridge_token,
@@ -22,6 +20,8 @@ from aionode.wire._bridge import (
     takes_for_its_own,
     token_of,
 )
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from tests.support.bridge import cause_of_death
 
 ZID = "8b20917502ee955ac4476e0266340d5c"

@@ -8,6 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from aionode.engine.wire import cdr
+from aionode.engine.wire._described_type import action_from_descriptions, type_from_description
+from aionode.engine.wire._type_description import description_message
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError, TypeDescriptionError
 from aionode.interfaces import get_action, get_interface
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -31,10 +35,6 @@ from aionode.message import (
     int32,
     wstring,
 )
-from aionode.wire import cdr
-from aionode.wire._described_type import action_from_descriptions, type_from_description
-from aionode.wire._type_description import description_message
-from aionode.wire.typehash import type_hash
 
 MESSAGE, INT32, STRING, ARRAY, BOUNDED = 1, 6, 17, 48, 96
 

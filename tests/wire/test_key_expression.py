@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode._distribution import NO_TYPE_HASH
-from aionode.wire import _key_expression as key_expression
+from aionode.engine.wire import _key_expression as key_expression
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()

@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode.clock import CONST_INFINITE_NS, Duration
+from aionode.engine.wire import _liveliness as liveliness
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.qos import (
     DurabilityPolicy,
@@ -25,7 +26,6 @@ from aionode.qos import (
     qos_profile_services_default,
     qos_profile_system_default,
 )
-from aionode.wire import _liveliness as liveliness
 
 VECTORS: dict[str, Any] = json.loads(
     Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()

@@ -7,13 +7,13 @@ from typing import Any
 
 import pytest
 
+from aionode.engine.wire._type_description import describe, description_message
+from aionode.engine.wire.typehash import type_hash
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.test_msgs.msg import Defaults
 from aionode.message import Array, Bounded, Message, Sequence, byte, char, int32, wstring
-from aionode.wire._type_description import describe, description_message
-from aionode.wire.typehash import type_hash
 from tests.support.samples import rosidl_hashes, type_of, vectors
 
 

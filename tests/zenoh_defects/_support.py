@@ -21,7 +21,7 @@ from typing import Any
 
 import zenoh
 
-from aionode._socket_queue import queued_bytes
+from aionode._process.socket_queue import queued_bytes
 from tests.support.peers import free_ports
 
 __all__ = [

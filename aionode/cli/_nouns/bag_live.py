@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.bag._yaml_files import PRESETS, chunk_compression, static_topics_in
 from aionode.cli._nouns.bag_options import (
     bag_names,
@@ -164,7 +164,7 @@ def set_level(node: Node, level: str | None) -> None:
 def record_command(**values: Any) -> None:
     """Record topics, until Ctrl-C. SPACE pauses and resumes."""
     from aionode.bag import Recorder
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
     options = recorder_options(values)
     out, output = values["out"] or output_folder(), Output(json=values["json"])
@@ -346,7 +346,7 @@ def play_command(**values: Any) -> None:
     """
     from aionode.bag import Player
     from aionode.clock import Time
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
     paths, options = player_options(values)
     length, until_ns = values["playback_duration"], values["playback_until_nsec"]
@@ -388,7 +388,7 @@ def play_command(**values: Any) -> None:
 def burst_command(**values: Any) -> None:
     """Play messages as fast as possible."""
     from aionode.bag import Player
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
     paths, options = player_options(values)
     player = Player(paths, start_paused=True, context=Context(), **options)

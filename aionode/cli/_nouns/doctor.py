@@ -18,17 +18,17 @@ from aionode.cli._support.completion import complete_names
 from aionode.cli._support.options import json_option, ros2_options
 from aionode.cli._support.session import run_verb, silent_processes
 from aionode.clock import perf_ns
+from aionode.engine.transport.network import DiscoveryRange, unheard_middleware
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
-from aionode.transport._network import DiscoveryRange, unheard_middleware
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from aionode.cli._support.output import Output
+    from aionode.engine.transport.network import Network
     from aionode.graph import EndpointInfo, NodeInfo
     from aionode.node import Node
-    from aionode.transport._network import Network
 
 __all__ = ["doctor", "doctor_command", "network_findings"]
 

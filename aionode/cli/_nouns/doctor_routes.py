@@ -14,10 +14,10 @@ from aionode.graph import EndpointKind
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from aionode.engine.transport.base import LinkStatus
+    from aionode.engine.transport.link import Advertisement
     from aionode.graph import EndpointInfo
     from aionode.node import Node
-    from aionode.transport.base import LinkStatus
-    from aionode.transport.link import Advertisement
 
 __all__ = ["Pair", "link_findings", "pairs_of", "query_links"]
 
@@ -79,7 +79,7 @@ class Pair(NamedTuple):
 
 async def query_links(node: Node) -> LinkStatus:
     """Return which processes are linked, and which could be."""
-    from aionode.transport.base import LinkStatus
+    from aionode.engine.transport.base import LinkStatus
 
     asked = [await transport.link_status() for transport in node.context.transports]
     return LinkStatus(
@@ -90,7 +90,7 @@ async def query_links(node: Node) -> LinkStatus:
 
 def pairs_of(endpoints: Iterable[EndpointInfo], links: LinkStatus) -> list[Pair]:
     """Return each publisher with each subscription that it reaches, sorted by topic."""
-    from aionode.transport.link import Advertisement
+    from aionode.engine.transport.link import Advertisement
 
     endpoints = sorted(endpoints, key=lambda end: (end.name, end.node.fully_qualified_name))
     advertisements = {
@@ -119,7 +119,7 @@ def route(
     advertisements: Mapping[str, Advertisement],
 ) -> tuple[str, str]:
     """Return the route of messages, and the reason if it is Zenoh."""
-    from aionode.transport.link import can_link
+    from aionode.engine.transport.link import can_link
 
     if publisher.node.bridged or subscription.node.bridged:
         return "bridge", ""

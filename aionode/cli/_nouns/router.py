@@ -39,7 +39,7 @@ def router_command(listen: tuple[str, ...], connect: tuple[str, ...], json: bool
     On a single machine no router is needed. On another one, run
     `aionode router --connect <this machine>`: nodes find the router of their own machine.
     """
-    from aionode.transport._network import ROUTER_PORT, network_from, peer_endpoints
+    from aionode.engine.transport.network import ROUTER_PORT, network_from, peer_endpoints
 
     endpoints = listen or (f"tcp/[::]:{network_from(os.environ).router_port}",)
     peers = [
@@ -62,7 +62,7 @@ async def route(endpoints: Sequence[str], peers: Sequence[str] = (), *, output: 
     Raises:
         TransportError: it cannot listen there.
     """
-    from aionode.transport.zenoh._session import close_session, open_router
+    from aionode.engine.transport.zenoh.session.session import close_session, open_router
 
     session = await open_router(endpoints, peers)
     try:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import _thread
 import contextlib
 
-from aionode._sudden_end import start_thread
+from aionode._process.sudden_end import start_thread
 from aionode.cli._support.exit import leave
 
 __all__ = ["Deadline"]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final, NoReturn
 
 import click
 
-from aionode._streams import accepts
+from aionode._process.streams import accepts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

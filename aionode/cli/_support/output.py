@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 import msgspec
 
-from aionode._streams import discard
+from aionode._process.streams import discard
 from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:

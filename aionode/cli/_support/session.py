@@ -17,7 +17,7 @@ from aionode.errors import AionodeError
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Coroutine
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.runner import LoopFactory
 
@@ -51,7 +51,7 @@ def make_node(
     environment of its first use, and belongs to the program that runs the command.
     """
     # Imported when a command runs; its help does not need them.
-    from aionode.context import Context
+    from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.parameter import Parameter
 
@@ -174,7 +174,7 @@ def run_until_stopped(
     Raises:
         BaseException: what `work` raised; the first error where it raised several.
     """
-    from aionode._signals import signals_to
+    from aionode._process.signals import signals_to
     from aionode.runner import Stop
 
     stop = Stop()

@@ -14,8 +14,8 @@ from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
-from aionode._concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
-from aionode._tracebacks import traceback_text
+from aionode._process.concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
+from aionode._process.tracebacks import traceback_text
 from aionode.clock import perf_ns
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints._core.thread_time import ThreadTime

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from collections.abc import Set as AbstractSet
 
     from aionode.endpoints._core.callback_runner import Callbacks
-    from aionode.endpoints._core.loop_affinity import LoopAffinity
+    from aionode.engine.loop_affinity import LoopAffinity
     from aionode.graph import EndpointInfo, Graph
 
 __all__ = ["Endpoint", "EndpointSetup", "heavy_text", "report_heavy"]

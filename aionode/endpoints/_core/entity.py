@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
     from typing import Any
 
-    from aionode.endpoints._core.loop_affinity import LoopAffinity
     from aionode.endpoints._core.node_tasks import NodeTasks
+    from aionode.engine.loop_affinity import LoopAffinity
 
 __all__ = ["EndStage", "Entity"]
 

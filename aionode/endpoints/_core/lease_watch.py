@@ -8,8 +8,8 @@ from contextlib import suppress
 from queue import Empty, SimpleQueue
 from typing import Final, Protocol
 
-from aionode._sudden_end import STOPS
-from aionode._suspension import suspension
+from aionode._process.sudden_end import STOPS
+from aionode._process.suspension import suspension
 from aionode.clock import perf_ns
 
 __all__ = ["REPEAT_S", "LeaseWatch", "Watched", "watch"]

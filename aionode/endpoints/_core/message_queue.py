@@ -6,7 +6,7 @@ import asyncio
 from collections import deque
 from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
-from aionode._concurrency import SLICE_NS, checkpoint
+from aionode._process.concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
 from aionode.endpoints._core.inline_call import InlineCall
 

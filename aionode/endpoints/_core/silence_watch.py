@@ -19,11 +19,11 @@ import asyncio
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.node_tasks import create_own_task
-from aionode.endpoints._core.publication_times import PublicationTimes
+from aionode.engine.rules.publication_times import PublicationTimes
 from aionode.errors import brief
 from aionode.qos import DurabilityPolicy
 
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.callback_runner import CallbackRunner
     from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints._core.subscription_reader import SubscriptionReader
+    from aionode.engine.transport.base import SampleInfo
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import SampleInfo
 
 __all__ = ["SILENCE_SEC", "Silence", "SilenceWatch"]
 

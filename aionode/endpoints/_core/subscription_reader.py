@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any, Protocol, TypedDict
 from aionode.clock import perf_ns
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.stats import NOTED_CALLS, CallbackStats
+from aionode.engine.transport.base import SampleInfo
 from aionode.qos import HistoryPolicy, depth_of
-from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
     from collections.abc import Coroutine
 
     from aionode.clock import TimeBase
     from aionode.endpoints._core.callback_runner import CallbackRunner
+    from aionode.engine.transport.base import Raw
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import Raw
 
 __all__ = [
     "REMEMBERED_PUBLISHERS",

@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
-from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (
     PublisherEventCallbacks,
     QoSLivelinessLostInfo,
     QoSOfferedDeadlineMissedInfo,
 )
+from aionode.engine.rules.matching import Matching
+from aionode.engine.transport.base import Writer
 from aionode.qos import LivelinessPolicy, is_unlimited
-from aionode.transport.base import Writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

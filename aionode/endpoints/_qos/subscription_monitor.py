@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
-from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems, expires_ns
-from aionode.endpoints._qos.liveliness import PublisherLiveliness
-from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (
     QoSMessageLostInfo,
     QoSRequestedDeadlineMissedInfo,
     SubscriptionEventCallbacks,
 )
+from aionode.engine.rules.lifespan import NEVER_NS, ExpiringItems, expires_ns
+from aionode.engine.rules.liveliness import PublisherLiveliness
+from aionode.engine.rules.matching import Matching
 from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
     from aionode.endpoints.stats import CallbackStats
+    from aionode.engine.transport.base import SampleInfo
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import SampleInfo
 
 __all__ = ["MonitoredReader", "SubscriptionMonitor"]
 

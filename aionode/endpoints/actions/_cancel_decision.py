@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from aionode.endpoints.actions._common import awaited
-from aionode.endpoints.actions.goal import CancelResponse
+from aionode.engine.rules.goal import CancelResponse
 from aionode.errors import brief
 
 __all__ = ["OWNER_LOST", "agrees", "ends_for_lost_owner"]

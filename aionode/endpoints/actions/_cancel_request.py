@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints.actions._common import uuid_message
-from aionode.endpoints.actions.goal import CancelCode, lost_id
+from aionode.engine.rules.goal import CancelCode, lost_id
 from aionode.errors import EntityDestroyedError, ServiceUnavailableError
 
 if TYPE_CHECKING:

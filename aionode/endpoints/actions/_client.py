@@ -7,18 +7,18 @@ from collections.abc import Awaitable, Callable, Coroutine
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.endpoints._core.callback_runner import accepts, consume
 from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._core.future import Futures, asks
-from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._cancel_request import CancelRequest, is_rejected, warner
 from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
 from aionode.endpoints.actions._common import ActionEntity, expect_action_type, uuid_message
 from aionode.endpoints.actions._life_signs import LifeSigns
-from aionode.endpoints.actions.goal import GoalStatus, reason_id
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.loop_affinity import in_thread_of_node
+from aionode.engine.rules.goal import GoalStatus, reason_id
 from aionode.errors import (
     GoalAbortedError,
     GoalCanceledError,

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeVar
 from weakref import WeakSet
 
 from aionode.endpoints._core.message_queue import MessageQueue
-from aionode.endpoints.actions.goal import GoalStatus
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.rules.goal import GoalStatus
 from aionode.message import Message
 
 if TYPE_CHECKING:

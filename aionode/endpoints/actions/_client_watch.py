@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from aionode.clock import Duration
-from aionode.endpoints.actions.goal import alive_id, left_id
+from aionode.engine.rules.goal import alive_id, left_id
 from aionode.graph import EndpointKind
 from aionode.qos import as_profile
 

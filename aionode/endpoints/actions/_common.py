@@ -7,9 +7,9 @@ from collections.abc import Awaitable
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints._core.entity import EndStage, Entity
-from aionode.endpoints.actions.goal import is_sign
 from aionode.endpoints.client import Client
 from aionode.endpoints.service import Service
+from aionode.engine.rules.goal import is_sign
 from aionode.errors import brief, shortened
 from aionode.message import ActionType
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints.actions._client_watch import SIGNS_IN_TIME
 from aionode.endpoints.actions._common import uuid_message
-from aionode.endpoints.actions.goal import alive_id, left_id
+from aionode.engine.rules.goal import alive_id, left_id
 from aionode.graph import EndpointKind
 from aionode.qos import is_unlimited
 

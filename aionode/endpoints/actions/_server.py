@@ -7,10 +7,9 @@ from collections.abc import Callable, Coroutine
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, cast
 
-from aionode._concurrency import is_cancelled_task
+from aionode._process.concurrency import is_cancelled_task
 from aionode.clock import perf_ns
 from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
-from aionode.endpoints._core.loop_affinity import in_thread_of_node
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints.actions._cancel_decision import OWNER_LOST, agrees, ends_for_lost_owner
@@ -27,15 +26,11 @@ from aionode.endpoints.actions._common import (
     tell_full,
     tell_rejected,
 )
-from aionode.endpoints.actions._early_cancels import EarlyCancels
-from aionode.endpoints.actions._goal_store import (
-    MAX_GOALS,
-    AlarmedGoalStore,
-    checked_max_goals,
-)
 from aionode.endpoints.actions._server_goal import ServerGoalHandle
-from aionode.endpoints.actions._status_pace import StatusPace
-from aionode.endpoints.actions.goal import (
+from aionode.endpoints.stats import CallbackStats
+from aionode.engine.loop_affinity import in_thread_of_node
+from aionode.engine.rules.early_cancels import EarlyCancels
+from aionode.engine.rules.goal import (
     CancelCode,
     GoalKey,
     GoalResponse,
@@ -45,7 +40,12 @@ from aionode.endpoints.actions.goal import (
     lost_id,
     reason_id,
 )
-from aionode.endpoints.stats import CallbackStats
+from aionode.engine.rules.goal_store import (
+    MAX_GOALS,
+    AlarmedGoalStore,
+    checked_max_goals,
+)
+from aionode.engine.rules.status_pace import StatusPace
 from aionode.errors import CallbackCancelledError, QueueFullError, brief
 from aionode.message import Message, snapshotter, type_name
 from aionode.qos import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
-from aionode.endpoints.actions.goal import TRANSITIONS, GoalEvent, GoalKey, GoalStatus, next_status
+from aionode.engine.rules.goal import TRANSITIONS, GoalEvent, GoalKey, GoalStatus, next_status
 from aionode.errors import GoalTransitionError
 from aionode.message import Message
 

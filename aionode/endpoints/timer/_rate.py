@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import S_TO_NS
 from aionode.endpoints._core.entity import EndStage, Entity
-from aionode.endpoints.timer._schedule import Ticker
+from aionode.engine.rules.schedule import Ticker
 from aionode.errors import brief
 
 if TYPE_CHECKING:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Coroutine
 from typing import TYPE_CHECKING, Any
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import S_TO_NS, Time, perf_ns
 from aionode.endpoints._core.callback_runner import accepts
 from aionode.endpoints._core.entity import Entity
 from aionode.endpoints._core.inline_call import InlineCall
 from aionode.endpoints.stats import CallbackStats
-from aionode.endpoints.timer._schedule import Ticker
+from aionode.engine.rules.schedule import Ticker
 from aionode.errors import brief
 
 if TYPE_CHECKING:

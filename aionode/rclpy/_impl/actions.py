@@ -8,9 +8,9 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import S_TO_NS, MachineTime
-from aionode.endpoints.actions._goal_store import GoalStore
-from aionode.endpoints.actions._status_pace import StatusSpacing
-from aionode.endpoints.actions.goal import GoalEvent, GoalKey, GoalStatus, goals_to_cancel
+from aionode.engine.rules.goal import GoalEvent, GoalKey, GoalStatus, goals_to_cancel
+from aionode.engine.rules.goal_store import GoalStore
+from aionode.engine.rules.status_pace import StatusSpacing
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.services import ClientHandle, ServiceHandle

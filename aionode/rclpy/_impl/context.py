@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from aionode import Context
 from aionode.arguments import Arguments, parse_arguments
 from aionode.clock import MachineTime
+from aionode.engine.transport import send_thread as _send_thread  # noqa: F401  # for the order, see `close_all`
 from aionode.errors import InvalidROSArgsError
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import (
@@ -20,7 +21,6 @@ from aionode.rclpy._impl.errors import (
     UnknownROSArgsError,
 )
 from aionode.rclpy._impl.io_thread import IoThread
-from aionode.transport import _send_thread  # noqa: F401  # for the order, see `close_all`
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

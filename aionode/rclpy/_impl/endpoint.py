@@ -11,7 +11,7 @@ from aionode.rclpy._impl.qos import profile_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.bare_node import BareEndpoint
+    from aionode.engine.bare_node import BareEndpoint
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
     from aionode.rclpy._impl.node import NodeHandle

@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import SilenceAlarm
 from aionode.endpoints._core.subscription_reader import missing_before
-from aionode.endpoints._qos.liveliness import PublisherLiveliness
-from aionode.endpoints._qos.matching import Matching
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,
@@ -25,6 +23,8 @@ from aionode.endpoints.events import (
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
 )
+from aionode.engine.rules.liveliness import PublisherLiveliness
+from aionode.engine.rules.matching import Matching
 from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.topics import PublisherHandle, SubscriptionHandle
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import Duration
+    from aionode.engine.transport.base import SampleInfo
     from aionode.graph import EndpointInfo
-    from aionode.transport.base import SampleInfo
 
 __all__ = [
     "PUBLISHER_WATCHES",

@@ -6,8 +6,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints import service_introspection as core
+from aionode.engine.transport.base import SampleInfo
 from aionode.rclpy._impl.topics import PublisherHandle
-from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
     from aionode.rclpy._impl.node import NodeHandle

@@ -11,7 +11,7 @@ from threading import Lock, Thread, get_ident
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import Context
-from aionode._lendable_loop import LendableLoop
+from aionode._process.lendable_loop import LendableLoop
 from aionode.clock import MachineTime
 from aionode.errors import ForkedProcessError
 from aionode.rclpy._impl import uninterrupted
@@ -19,7 +19,7 @@ from aionode.rclpy._impl.destroyable import Wakeup
 from aionode.rclpy._impl.errors import InvalidHandle
 
 if TYPE_CHECKING:
-    from aionode._lendable_loop import Readers
+    from aionode._process.lendable_loop import Readers
 
 __all__ = ["IoThread"]
 

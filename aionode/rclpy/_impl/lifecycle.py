@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.lifecycle._answers import fill_event
-from aionode.lifecycle.states import StateMachine, TransitionCallbackReturn
+from aionode.engine.rules.lifecycle_answers import fill_event
+from aionode.engine.rules.lifecycle_states import StateMachine, TransitionCallbackReturn
 from aionode.logging import get_logger
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.topics import PublisherHandle
 
 if TYPE_CHECKING:
-    from aionode.lifecycle.states import Transition
+    from aionode.engine.rules.lifecycle_states import Transition
     from aionode.rclpy._impl.node import NodeHandle
 
 __all__ = ["LifecycleStateMachine", "TransitionCallbackReturn"]

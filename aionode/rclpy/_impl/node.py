@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import errors, names
 from aionode._node.graph import NamesAndTypes, names_and_types_of
-from aionode._node.log_services import log_message
 from aionode.arguments import Arguments
-from aionode.bare_node import BareNode
 from aionode.clock import MachineTime, Time
+from aionode.engine.bare_node import BareNode
+from aionode.engine.log_levels import log_message
 from aionode.errors import NameValidationException
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 from aionode.interfaces.rcl_interfaces.msg import Log
@@ -23,7 +23,7 @@ from aionode.rclpy._impl.qos import profile_of
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from aionode.bare_node import BarePublisher
+    from aionode.engine.bare_node import BarePublisher
     from aionode.graph import EndpointInfo, Graph, NodeInfo
     from aionode.logging import LogEvent
     from aionode.rclpy._impl.context import ContextHandle

@@ -8,7 +8,6 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode.bare_node import BareClient, BareEndpoint
 from aionode.clock import MachineTime
 from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints.service_introspection import (
@@ -17,6 +16,7 @@ from aionode.endpoints.service_introspection import (
     RESPONSE_RECEIVED,
     RESPONSE_SENT,
 )
+from aionode.engine.bare_node import BareClient, BareEndpoint
 from aionode.errors import DecodeError
 from aionode.rclpy._impl.endpoint import BareT, EndpointHandle
 from aionode.rclpy._impl.introspection import Introspection
@@ -27,11 +27,11 @@ if TYPE_CHECKING:
 
     from aionode.clock import Clock
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.engine.transport.base import Request
     from aionode.errors import ServiceError
     from aionode.qos import QoSProfile
     from aionode.rclpy._impl.destroyable import Arrivals
     from aionode.rclpy._impl.node import NodeHandle
-    from aionode.transport.base import Request
 
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Self
 
 from aionode.clock import Clock, ClockType, Duration, JumpThreshold
-from aionode.endpoints.timer._schedule import ClockedSchedule
+from aionode.engine.rules.schedule import ClockedSchedule
 from aionode.rclpy._impl.destroyable import Destroyable
 from aionode.rclpy._impl.errors import RCLError, TimerCancelledError
 

@@ -8,18 +8,18 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.bare_node import BareEndpoint, BarePublisher
 from aionode.clock import MachineTime
 from aionode.endpoints._core.endpoint import heavy_text
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
-from aionode.endpoints._qos.lifespan import expires_ns
+from aionode.engine.bare_node import BareEndpoint, BarePublisher
+from aionode.engine.rules.lifespan import expires_ns
+from aionode.engine.transport.base import SampleInfo
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.endpoint import EndpointHandle
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.typesupport import message_support
 from aionode.rclpy._rosidl import aionode_class
-from aionode.transport.base import SampleInfo
 
 if TYPE_CHECKING:
     from collections.abc import Callable

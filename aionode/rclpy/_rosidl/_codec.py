@@ -7,10 +7,10 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any, Final
 
+from aionode.engine.wire.cdr import Data, MessageFamily, decoder, encoder
 from aionode.message import Field, FieldType, Message, fields, type_name
 from aionode.rclpy._rosidl._classes import aionode_class, python_class
 from aionode.rclpy._rosidl._field_types import TYPE_CODES, is_numeric
-from aionode.wire.cdr import Data, MessageFamily, decoder, encoder
 
 __all__ = ["decode", "decoder_of", "encode", "from_aionode", "to_aionode"]
 

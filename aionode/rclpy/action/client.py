@@ -7,7 +7,7 @@ import uuid
 import weakref
 from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.endpoints.actions.goal import GoalStatus
+from aionode.engine.rules.goal import GoalStatus
 from aionode.rclpy._entities import wait_until
 from aionode.rclpy._impl.actions import ActionClientHandle
 from aionode.rclpy._impl.destroyable import Wakeup

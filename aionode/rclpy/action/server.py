@@ -9,8 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
 from aionode.endpoints.actions._common import tell_full
-from aionode.endpoints.actions._goal_store import MAX_GOALS, checked_max_goals
-from aionode.endpoints.actions.goal import (
+from aionode.engine.rules.goal import (
     CancelResponse,
     GoalEvent,
     GoalResponse,
@@ -18,6 +17,7 @@ from aionode.endpoints.actions.goal import (
     next_status,
     reason_id,
 )
+from aionode.engine.rules.goal_store import MAX_GOALS, checked_max_goals
 from aionode.errors import GoalTransitionError
 from aionode.rclpy._impl.actions import ActionServerHandle
 from aionode.rclpy._impl.errors import RCLError

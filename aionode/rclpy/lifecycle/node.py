@@ -5,7 +5,7 @@ from __future__ import annotations
 from traceback import format_exc
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from aionode.lifecycle._answers import StateAnswers
+from aionode.engine.rules.lifecycle_answers import StateAnswers
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.lifecycle import LifecycleStateMachine, TransitionCallbackReturn

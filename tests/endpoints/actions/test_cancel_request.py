@@ -12,18 +12,18 @@ import anyio
 import pytest
 from starlette.responses import StreamingResponse
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse, GoalStatus
-from aionode.context import Context
 from aionode.endpoints.actions._cancel_request import CancelRequest
-from aionode.endpoints.actions._early_cancels import EarlyCancels
 from aionode.endpoints.client import Exchange
+from aionode.engine.context import Context
+from aionode.engine.rules.early_cancels import EarlyCancels
+from aionode.engine.transport.local import LocalTransport
 from aionode.errors import ServiceUnavailableError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node
 from aionode.qos import qos_profile_action_status_default
 from aionode.testing import FaultyTransport, settle
-from aionode.transport.local import LocalTransport
 from tests.support.actions import Goal, Worker, end_of
 from tests.support.living import living
 from tests.support.peers import contexts_over, isolated_environment, quiet_node

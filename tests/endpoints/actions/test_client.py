@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.action import (
     ActionClient,
     ActionServer,

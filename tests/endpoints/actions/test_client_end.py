@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.action import ActionClient, ActionServer, CancelResponse, GoalResponse, GoalStatus
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.errors import EntityDestroyedError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.node import Node

@@ -18,9 +18,9 @@ from aionode.action import (
     ServerGoalHandle,
 )
 from aionode.clock._time_base import Alarm
-from aionode.context import Context
 from aionode.endpoints.actions._client_watch import ClientWatch
 from aionode.endpoints.actions._life_signs import LifeSigns
+from aionode.engine.context import Context
 from aionode.errors import GoalCanceledError, ServiceError, ServiceUnavailableError
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.endpoints.actions.goal import (
+from aionode.engine.rules.goal import (
     ALL_GOALS,
     CancelCode,
     GoalEvent,

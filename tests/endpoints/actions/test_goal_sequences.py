@@ -9,7 +9,7 @@ import hypothesis
 import pytest
 from hypothesis import strategies as st
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.action import CancelResponse
 from aionode.interfaces.action_msgs.msg import GoalInfo
 from aionode.interfaces.builtin_interfaces.msg import Time

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode.action import ActionServer, GoalResponse, GoalStatus
-from aionode.endpoints.actions._goal_store import GoalStore
-from aionode.endpoints.actions._status_pace import StatusPace
+from aionode.engine.rules.goal_store import GoalStore
+from aionode.engine.rules.status_pace import StatusPace
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import settle

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.action import ActionServer, CancelResponse, GoalResponse, GoalStatus
 from aionode.errors import (
     CallbackSignatureError,

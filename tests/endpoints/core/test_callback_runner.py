@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.endpoints._core import callback_runner
 from aionode.endpoints._core.callback_runner import CallbackContext
@@ -25,9 +25,9 @@ from tests.support.arrivals import reader_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.context import Context
     from aionode.endpoints.subscription import Subscription
     from aionode.endpoints.timer import TimerInfo
+    from aionode.engine.context import Context
 
 
 def busy(milliseconds: float) -> None:

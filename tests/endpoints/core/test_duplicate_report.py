@@ -7,12 +7,12 @@ from collections.abc import Callable
 import pytest
 
 from aionode import ActionServer, Context, Node
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.message import type_name
 from aionode.qos import qos_profile_services_default
-from aionode.wire.typehash import type_hash
 
 
 def add(request: AddTwoInts.Request) -> AddTwoInts.Response:

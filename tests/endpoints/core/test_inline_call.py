@@ -9,22 +9,22 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
+from aionode.engine.transport.base import Request, SampleInfo
 from aionode.errors import CallbackCancelledError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.testing import settle
-from aionode.transport.base import Request, SampleInfo
 from tests.support.arrivals import reader_of, serve_of
 
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
-    from aionode.context import Context
     from aionode.endpoints._core.callback_runner import CallbackContext
     from aionode.endpoints.subscription import MessageInfo, Subscription
+    from aionode.engine.context import Context
 
 MINUTE_NS = 60 * 10**9
 

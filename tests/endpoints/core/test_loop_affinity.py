@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode.endpoints._core import loop_affinity
-from aionode.endpoints._core.loop_affinity import LoopAffinity
+from aionode.engine import loop_affinity
+from aionode.engine.loop_affinity import LoopAffinity
 from aionode.errors import EntityDestroyedError, MessageError, QueueFullError
 from aionode.interfaces.std_msgs.msg import String
 from aionode.qos import HistoryPolicy, QoSProfile

@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from aionode import Context, Node
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts, SetBool
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.message import Message, type_name
 from aionode.qos import qos_profile_default
-from aionode.wire.typehash import type_hash
 
 
 def warnings(caplog: pytest.LogCaptureFixture) -> list[str]:

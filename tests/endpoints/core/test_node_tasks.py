@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
     from typing import Any
 
-    from aionode.context import Context
+    from aionode.engine.context import Context
 
 End = asyncio.CancelledError | EntityDestroyedError
 

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 import pytest
 
 from aionode import Context, Node
-from aionode.endpoints._core.peer_warnings import PeerWarnings
+from aionode.engine.reports.peer_warnings import PeerWarnings
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.message import type_name
 from aionode.qos import qos_profile_default
-from aionode.wire.typehash import type_hash
 
 NODE = NodeInfo("abc", 1, "robot", "/")
 

@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.endpoints._core import publication_times
-from aionode.endpoints._core.publication_times import PublicationTimes
+from aionode.engine.rules import publication_times
+from aionode.engine.rules.publication_times import PublicationTimes
 from tests.support.living import living
 
 S = 10**9

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from aionode.clock import Duration, SteadyClock, Time, perf_ns
-from aionode.context import Context
 from aionode.endpoints._core import silence_watch
+from aionode.engine.context import Context
+from aionode.engine.transport.local import LocalTransport
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import HistoryPolicy, QoSProfile
 from aionode.testing import FaultyTransport, ManualClock, settle
-from aionode.transport.local import LocalTransport
-from aionode.wire.typehash import type_hash
 from tests.support.arrivals import reader_of
 from tests.support.peers import quiet_node
 from tests.support.waiting import until

@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import ROSClock, SteadyClock, Time
-from aionode.context import Context
 from aionode.endpoints.publisher import Publisher
+from aionode.engine.context import Context
 from aionode.errors import CallbackSignatureError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.lifecycle import LifecycleNode

@@ -7,7 +7,7 @@ from typing import Any
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.endpoints._qos.lifespan import NEVER_NS, ExpiringItems
+from aionode.engine.rules.lifespan import NEVER_NS, ExpiringItems
 
 STEPS = st.lists(
     st.one_of(

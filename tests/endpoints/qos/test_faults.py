@@ -7,18 +7,18 @@ from collections.abc import AsyncIterator
 import pytest
 
 from aionode.clock import Duration, Time
-from aionode.context import Context
 from aionode.endpoints.events import (
     QoSLivelinessChangedInfo,
     QoSLivelinessLostInfo,
     QoSMessageLostInfo,
     QoSRequestedDeadlineMissedInfo,
 )
+from aionode.engine.context import Context
+from aionode.engine.transport.local import LocalTransport
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
 from aionode.qos import LivelinessPolicy, QoSProfile
 from aionode.testing import FaultyTransport, ManualClock, settle
-from aionode.transport.local import LocalTransport
 from tests.endpoints.qos.conftest import waiting
 from tests.support.arrivals import reader_of
 from tests.support.peers import quiet_node

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import Duration
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh.endpoints.subscription import ZenohReader
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
 from aionode.testing import settle
-from aionode.transport.zenoh._subscription import ZenohReader
 from tests.endpoints.qos.conftest import Pair
 from tests.support.arrivals import reader_of
 from tests.support.peers import quiet_node

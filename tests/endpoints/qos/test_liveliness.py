@@ -6,14 +6,14 @@ import asyncio
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import Duration
-from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints.events import (
     QoSLivelinessChangedInfo,
     QoSLivelinessLostInfo,
     SubscriptionEventCallbacks,
 )
+from aionode.engine.rules.liveliness import PublisherLiveliness
 from aionode.errors import EntityDestroyedError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import LivelinessPolicy, QoSProfile

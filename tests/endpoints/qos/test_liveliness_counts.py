@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from aionode.clock import Duration
-from aionode.endpoints._qos.liveliness import PublisherLiveliness
 from aionode.endpoints.events import QoSLivelinessChangedInfo
+from aionode.engine.rules.liveliness import PublisherLiveliness
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.qos import LivelinessPolicy, QoSProfile
 from aionode.testing import ManualClock

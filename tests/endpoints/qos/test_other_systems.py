@@ -11,9 +11,8 @@ import pytest
 import zenoh  # noqa: TID251  # plays the ROS 2 node, without aionode
 from zenoh import ext  # noqa: TID251  # the same
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import Duration, Time
-from aionode.context import Context
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,
@@ -23,6 +22,12 @@ from aionode.endpoints.events import (
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
 )
+from aionode.engine.context import Context
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import Side, data_key, side_key
+from aionode.engine.wire._liveliness import endpoint_token, gid_of
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.message import type_name
@@ -35,11 +40,6 @@ from aionode.qos import (
     ReliabilityPolicy,
 )
 from aionode.testing import ManualClock
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import Side, data_key, side_key
-from aionode.wire._liveliness import endpoint_token, gid_of
-from aionode.wire.typehash import type_hash
 from tests.endpoints.qos.conftest import next_of, waiting
 from tests.support.links import folder, transport_of
 from tests.support.peers import DOMAIN_ID, Collector, isolated_environment, quiet_node, raw_session

@@ -9,7 +9,7 @@ import pytest
 
 from aionode.clock import ROSClock, Time
 from aionode.endpoints.timer import Rate
-from aionode.endpoints.timer._schedule import Ticker
+from aionode.engine.rules.schedule import Ticker
 from aionode.errors import EntityDestroyedError
 from aionode.testing import ManualClock, settle
 from tests.support.living import living

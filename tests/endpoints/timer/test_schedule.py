@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.endpoints.timer._schedule import Schedule
+from aionode.engine.rules.schedule import Schedule
 
 PERIOD = 100
 

@@ -11,13 +11,13 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import Clock, ClockType, ROSClock, Time
 from aionode.endpoints._core.callback_runner import CallbackRunner, Callbacks
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer import Timer, TimerInfo
-from aionode.endpoints.timer._schedule import Ticker
 from aionode.endpoints.timer._timer import to_period_ns
+from aionode.engine.rules.schedule import Ticker
 from aionode.errors import AionodeError, EntityDestroyedError
 from aionode.testing import ManualClock, settle
 from tests.support.living import living

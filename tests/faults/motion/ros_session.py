@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import zenoh  # plays another participant, without aionode
 
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._liveliness import gid_of
 from aionode.graph import EndpointKind
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.test_msgs.action import Fibonacci
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._liveliness import gid_of
 from tests.faults.motion.words import Handed, Mover, What, Wheel
 
 if TYPE_CHECKING:

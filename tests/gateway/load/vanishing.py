@@ -14,7 +14,7 @@ from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.gateway import Gateway, Policy
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.node import Node

@@ -9,9 +9,9 @@ from concurrent.futures import Future
 from contextlib import asynccontextmanager
 
 from aionode import Context
-from aionode._concurrency import checkpoint
-from aionode._lendable_loop import LendableLoop
-from aionode.bare_node import BareNode, BarePublisher
+from aionode._process.concurrency import checkpoint
+from aionode._process.lendable_loop import LendableLoop
+from aionode.engine.bare_node import BareNode, BarePublisher
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile
 from tests.support.arrivals import writers_of

@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.transport.link._connection import Connection
-from aionode.transport.link._protocol import Gone
-from aionode.transport.link._shared_memory import BufferPool
+from aionode._process.concurrency import checkpoint
+from aionode.engine.transport.link._connection import Connection
+from aionode.engine.transport.link._protocol import Gone
+from aionode.engine.transport.link._shared_memory import BufferPool
 
 
 class Owner:

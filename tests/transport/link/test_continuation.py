@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from aionode.engine.transport.link import _continuation as continuation
+from aionode.engine.transport.link._continuation import STOPS, LinkSecrets, seal
+from aionode.engine.transport.link._protocol import Kind, RetransmitDone, pack
 from aionode.errors import FrameError
-from aionode.transport.link import _continuation as continuation
-from aionode.transport.link._continuation import STOPS, LinkSecrets, seal
-from aionode.transport.link._protocol import Kind, RetransmitDone, pack
 
 SECRET = bytes(range(16))
 GID = b"g" * 16

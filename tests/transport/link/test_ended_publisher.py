@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
+from aionode.engine.transport.link import _subscription as subscriptions
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.link import _subscription as subscriptions
 from tests.support import arrivals
 from tests.support.links import folder, manager_of, two_nodes, writer_of
 from tests.support.peers import KEEP_ALL

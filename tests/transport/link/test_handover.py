@@ -9,11 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from aionode.engine.transport.link._protocol import Frame, Kind
+from aionode.engine.transport.link._subscription import MAX_HELD, LinkReader, RemotePublisher, Route
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile
-from aionode.transport.link._protocol import Frame, Kind
-from aionode.transport.link._subscription import MAX_HELD, LinkReader, RemotePublisher, Route
 from tests.support.peers import KEEP_ALL
 
 if TYPE_CHECKING:

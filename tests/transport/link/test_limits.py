@@ -11,26 +11,26 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
-from aionode.errors import TransportError
-from aionode.interfaces.sensor_msgs.msg import Image
-from aionode.transport.link import (
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.link import (
     _connection,
 )
-from aionode.transport.link import (
+from aionode.engine.transport.link import (
     _connection as connection,
 )
-from aionode.transport.link import (
+from aionode.engine.transport.link import (
     _manager as manager,
 )
-from aionode.transport.link import _protocol as protocol
-from aionode.transport.link import (
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.link import (
     _send_queue as send_queue,
 )
-from aionode.transport.link._listener import Advertisement, Listener, socket_folder
-from aionode.transport.link._protocol import Kind
-from aionode.transport.link._publisher import LinkWriter
+from aionode.engine.transport.link._listener import Advertisement, Listener, socket_folder
+from aionode.engine.transport.link._protocol import Kind
+from aionode.engine.transport.link._publisher import LinkWriter
+from aionode.errors import TransportError
+from aionode.interfaces.sensor_msgs.msg import Image
 from tests.support.links import (
     Counting,
     fd_of,

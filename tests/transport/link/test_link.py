@@ -15,25 +15,25 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.content_filter import ContentFilterOptions
-from aionode.context import Context
 from aionode.endpoints.subscription import MessageInfo
+from aionode.engine.context import Context
+from aionode.engine.transport.link import _listener as listener
+from aionode.engine.transport.link import _subscription as subscription
+from aionode.engine.transport.link._continuation import seal
+from aionode.engine.transport.link._protocol import RetransmitDone
+from aionode.engine.transport.link._subscription import LinkReader
+from aionode.engine.transport.link._transport import LinkTransport
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import ConfigurationError, ServiceUnavailableError
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile, ReliabilityPolicy
-from aionode.transport.link import _listener as listener
-from aionode.transport.link import _subscription as subscription
-from aionode.transport.link._continuation import seal
-from aionode.transport.link._protocol import RetransmitDone
-from aionode.transport.link._subscription import LinkReader
-from aionode.transport.link._transport import LinkTransport
-from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire.typehash import type_hash
 from tests.support.arrivals import gid_of
 from tests.support.links import (
     Counting,

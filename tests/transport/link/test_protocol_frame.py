@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.link._protocol import BufferRef, Frame, FrameParser, Kind
 from aionode.errors import FrameError
-from aionode.transport.link import _protocol as protocol
-from aionode.transport.link._protocol import BufferRef, Frame, FrameParser, Kind
 
 NUMBERS = st.integers(-(2**63), 2**63 - 1)
 GIDS = st.binary(min_size=16, max_size=16)

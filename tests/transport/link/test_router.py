@@ -11,14 +11,14 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the router and who listens behind it, without aionode
 
+from aionode.engine.transport.zenoh._defects.stale_transports import cut_participants
+from aionode.engine.transport.zenoh.discovery import router_matching
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.session.settings import router_settings
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire.typehash import type_hash
 from aionode.interfaces.std_msgs.msg import Int32
-from aionode.transport.zenoh import _router_matching as router_matching
-from aionode.transport.zenoh._defects.stale_transports import cut_participants
-from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._settings import router_settings
-from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire.typehash import type_hash
 from tests.support.links import Counting, Two, folder, link_of, transport_of, two_nodes, writer_of
 from tests.support.peers import (
     DOMAIN_ID,

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pytest
 
+from aionode.engine.transport.link import _shared_memory as shared_memory
+from aionode.engine.transport.link._shared_memory import BufferMappings, BufferPool, SharedBuffer
+from aionode.engine.wire import cdr
 from aionode.errors import FrameError
 from aionode.interfaces.sensor_msgs.msg import Image
-from aionode.transport.link import _shared_memory as shared_memory
-from aionode.transport.link._shared_memory import BufferMappings, BufferPool, SharedBuffer
-from aionode.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -402,9 +402,7 @@ def test_only_the_sender_can_write_to_sealed_memory(pool: BufferPool) -> None:
 
 def test_numpy_is_imported_with_the_first_payload_only() -> None:
     """It takes a tenth of a second, and a process of small messages never needs it."""
-    code = (
-        "import sys, aionode.transport.link._shared_memory as m; m.BufferPool(); m.BufferMappings()"
-    )
+    code = "import sys, aionode.engine.transport.link._shared_memory as m; m.BufferPool(); m.BufferMappings()"
     code += "; assert 'numpy' not in sys.modules"
 
     subprocess.run([sys.executable, "-c", code], check=True)

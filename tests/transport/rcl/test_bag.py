@@ -10,7 +10,7 @@ import pytest
 
 from aionode import bag
 from aionode.clock import Time
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node

@@ -14,18 +14,18 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
 from aionode.endpoints.publisher import Publisher
 from aionode.endpoints.subscription import Subscription
+from aionode.engine.context import Context
+from aionode.engine.transport.rcl import _participants, _transport, _wake
+from aionode.engine.transport.rcl._bindings import view
 from aionode.errors import ServiceUnavailableError, TransportError
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import Int32, String, UInt8MultiArray
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
-from aionode.transport.rcl import _participants, _transport, _wake
-from aionode.transport.rcl._bindings import view
 from tests.support import fake_rcl
 from tests.support.arrivals import reader_of
 

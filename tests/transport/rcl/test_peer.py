@@ -11,7 +11,6 @@ import pytest
 from aionode._node.type_lookup import described
 from aionode.action import ActionServer, CancelResponse, GoalStatus, ServerGoalHandle
 from aionode.clock import Duration
-from aionode.context import Context
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,
@@ -19,6 +18,8 @@ from aionode.endpoints.events import (
     QoSRequestedDeadlineMissedInfo,
     QoSRequestedIncompatibleQoSInfo,
 )
+from aionode.engine.context import Context
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import ServiceUnavailableError
 from aionode.graph import EndpointKind
 from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
@@ -34,7 +35,6 @@ from aionode.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from aionode.wire.typehash import type_hash
 from tests.support.ros import ros_domain, ros_missing, ros_peer
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
 from aionode.node import Node
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
 from tests.support.ros import ros_domain, ros_missing, ros_peer

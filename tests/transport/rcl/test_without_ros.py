@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.network import unheard_middleware
+from aionode.engine.transport.rcl import RclTransport, _types
+from aionode.engine.transport.rcl._bindings import load
+from aionode.engine.transport.rcl._types import find, hash_text, rosidl_class
 from aionode.errors import ConfigurationError, TransportError
-from aionode.transport._network import unheard_middleware
-from aionode.transport.rcl import RclTransport, _types
-from aionode.transport.rcl._bindings import load
-from aionode.transport.rcl._types import find, hash_text, rosidl_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

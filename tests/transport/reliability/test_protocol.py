@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability.limits import NEVER, QUIET_NS, WINDOW_BYTES
-from aionode.transport._reliability.stateful_reader import GONE_TICKS, StatefulReader
-from aionode.transport._reliability.stateful_writer import (
+from aionode.engine.transport.reliability.limits import NEVER, QUIET_NS, WINDOW_BYTES
+from aionode.engine.transport.reliability.stateful_reader import GONE_TICKS, StatefulReader
+from aionode.engine.transport.reliability.stateful_writer import (
     FLAPPING_NS,
     HEARTBEAT_NS,
     KNOWN_NS,
@@ -21,11 +21,11 @@ from aionode.transport._reliability.stateful_writer import (
     UNANSWERED_EACH_TICK,
     StatefulWriter,
 )
-from aionode.transport._reliability.submessage import Submessage, SubmessageKind, pack, unpack
+from aionode.engine.transport.reliability.submessage import Submessage, SubmessageKind, pack, unpack
 
 if TYPE_CHECKING:
-    from aionode.transport._reliability.reader_proxy import ReaderProxy
-    from aionode.transport._reliability.writer_proxy import WriterProxy
+    from aionode.engine.transport.reliability.reader_proxy import ReaderProxy
+    from aionode.engine.transport.reliability.writer_proxy import WriterProxy
 
 HEARTBEAT, ACKNACK, GAP, DATA = (
     SubmessageKind.HEARTBEAT,

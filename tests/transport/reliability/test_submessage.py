@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport._reliability.submessage import (
+from aionode.engine.transport.reliability.submessage import (
     LARGEST,
     MAX_RANGES,
     Submessage,

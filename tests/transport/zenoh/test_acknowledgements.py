@@ -15,28 +15,28 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays another process, without aionode
 
-from aionode._concurrency import checkpoint
+from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.reliability import stateful_writer
+from aionode.engine.transport.reliability import submessage as acknack
+from aionode.engine.transport.reliability.stateful_reader import StatefulReader
+from aionode.engine.transport.reliability.stateful_writer import StatefulWriter
+from aionode.engine.transport.reliability.submessage import Submessage, SubmessageKind
+from aionode.engine.transport.send_thread import Worker
+from aionode.engine.transport.zenoh import _session_state as session_state
+from aionode.engine.transport.zenoh._defects import forgotten_peers
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh.connections import sockets as _sockets
+from aionode.engine.transport.zenoh.delivery import acknowledgements
+from aionode.engine.transport.zenoh.endpoints import publisher as publishers
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.wire import cdr
 from aionode.graph import EndpointInfo
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
-from aionode.transport._reliability import stateful_writer
-from aionode.transport._reliability import submessage as acknack
-from aionode.transport._reliability.stateful_reader import StatefulReader
-from aionode.transport._reliability.stateful_writer import StatefulWriter
-from aionode.transport._reliability.submessage import Submessage, SubmessageKind
-from aionode.transport._send_thread import Worker
-from aionode.transport.zenoh import _acknowledgements as acknowledgements
-from aionode.transport.zenoh import _publisher as publishers
-from aionode.transport.zenoh import _session_state as session_state
-from aionode.transport.zenoh import _sockets
-from aionode.transport.zenoh._defects import forgotten_peers
-from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._transport import ZenohTransport
-from aionode.wire import cdr
 from tests.support.peers import (
     DOMAIN_ID,
     KEEP_ALL,

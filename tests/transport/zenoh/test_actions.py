@@ -17,10 +17,10 @@ import pytest
 import zenoh  # noqa: TID251  # the peer, without aionode
 
 from aionode.action import CancelResponse, GoalStatus
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.wire import cdr
 from aionode.errors import GoalLostError
 from aionode.interfaces.example_interfaces.action import Fibonacci
-from aionode.wire import cdr
 from tests.support.actions import Goal, Worker, uuid_of
 from tests.support.peers import Collector, quiet_node, raw_session
 

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from aionode.transport.zenoh import _transport
-from aionode.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh import _transport
+from aionode.engine.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import quiet_node
 
 QUIET_S = 0.02

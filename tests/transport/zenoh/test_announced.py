@@ -8,20 +8,20 @@ import pytest
 import zenoh  # noqa: TID251  # its kinds of samples
 
 from aionode.clock import MachineTime
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh.bridge._state import BridgeState
+from aionode.engine.transport.zenoh.delivery.acknowledgements import GONE
+from aionode.engine.transport.zenoh.discovery import graph_watcher
+from aionode.engine.transport.zenoh.session import announced
+from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
+from aionode.engine.wire._liveliness import endpoint_token
+from aionode.engine.wire.typehash import type_hash
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.message import type_name
 from aionode.qos import QoSProfile
-from aionode.transport._loop_waker import LoopWaker
-from aionode.transport.zenoh import _announced as announced
-from aionode.transport.zenoh import _graph_watcher as graph_watcher
-from aionode.transport.zenoh._acknowledgements import GONE
-from aionode.transport.zenoh._announced import AnnouncedLimit
-from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh.bridge._state import BridgeState
-from aionode.wire._liveliness import endpoint_token
-from aionode.wire.typehash import type_hash
 from tests.support.peers import DOMAIN_ID, quiet_node, raw_session
 
 LIMIT = 4_000_000

@@ -11,8 +11,9 @@ from typing import Any
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.wire import cdr
 from aionode.errors import RequestTimeoutError
 from aionode.graph import EndpointKind
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -22,7 +23,6 @@ from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.parameter_client import AsyncParameterClient
-from aionode.wire import cdr
 from tests.support.arrivals import writers_of
 from tests.support.bridge import ADD, FAST, HEADER, LATCHED, StandIn, add, stand_in, string
 from tests.support.peers import KEEP_ALL, kept, quiet_node, two_contexts

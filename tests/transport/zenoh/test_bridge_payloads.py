@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from aionode.action import CancelResponse
 from aionode.clock import Duration
+from aionode.engine.wire import cdr
 from aionode.errors import AionodeError
 from aionode.interfaces.action_msgs.srv import CancelGoal
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -25,7 +26,6 @@ from aionode.interfaces.std_srvs.srv import Empty as NoRequest
 from aionode.message import type_name
 from aionode.node import Node
 from aionode.qos import QoSProfile
-from aionode.wire import cdr
 from tests.support.bridge import LATCHED, StandIn, stand_in, string
 from tests.support.peers import KEEP_ALL, kept, quiet_node
 from tests.support.strategies import messages

@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.transport._network import DiscoveryRange, Network, network_from
-from aionode.transport.zenoh import _connect_slots
-from aionode.transport.zenoh._connect_slots import connecting, is_idle, one_at_a_time
-from aionode.transport.zenoh._local_sessions import announce
+from aionode._process.concurrency import checkpoint
+from aionode.engine.transport.network import DiscoveryRange, Network, network_from
+from aionode.engine.transport.zenoh.session import connect_slots as _connect_slots
+from aionode.engine.transport.zenoh.session.connect_slots import connecting, is_idle, one_at_a_time
+from aionode.engine.transport.zenoh.session.local_sessions import announce
 from tests.support.peers import free_ports
 
 pytestmark = [

@@ -9,9 +9,13 @@ import pytest
 import zenoh  # noqa: TID251  # tells of connections, as Zenoh does
 
 from aionode.clock import perf_ns
-from aionode.transport._loop_waker import LoopWaker
-from aionode.transport.zenoh import _connections
-from aionode.transport.zenoh._connections import MOMENT_NS, ConnectionChange, Connections
+from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.zenoh.connections import connections as _connections
+from aionode.engine.transport.zenoh.connections.connections import (
+    MOMENT_NS,
+    ConnectionChange,
+    Connections,
+)
 
 pytestmark = pytest.mark.one_loop
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
-from aionode.transport._loop_waker import LoopWaker
-from aionode.transport.zenoh._control_messages import ControlSubscribers
+from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.zenoh.delivery.control_messages import ControlSubscribers
 from tests.support.waiting import until
 
 

@@ -13,17 +13,17 @@ from typing import Any
 import pytest
 
 from aionode.endpoints.publisher import Publisher
+from aionode.engine.transport.send_thread import Worker
+from aionode.engine.transport.zenoh import _session_state as session_state
+from aionode.engine.transport.zenoh._defects import crowd
+from aionode.engine.transport.zenoh._defects.crowd import CROWDED
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.session import announced
+from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
+from aionode.engine.wire._key_expression import Side
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import QoSProfile, ReliabilityPolicy
-from aionode.transport._send_thread import Worker
-from aionode.transport.zenoh import _announced as announced
-from aionode.transport.zenoh import _session_state as session_state
-from aionode.transport.zenoh._announced import AnnouncedLimit
-from aionode.transport.zenoh._defects import crowd
-from aionode.transport.zenoh._defects.crowd import CROWDED
-from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._session_state import SessionState
-from aionode.wire._key_expression import Side
 from tests.support.arrivals import writers_of
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.network import network_from
+from aionode.engine.transport.zenoh import _defects
+from aionode.engine.transport.zenoh._defects._switch import defects, is_mended
+from aionode.engine.transport.zenoh.session.settings import router_settings, session_settings
 from aionode.errors import ConfigurationError
-from aionode.transport._network import network_from
-from aionode.transport.zenoh import _defects
-from aionode.transport.zenoh._defects._switch import defects, is_mended
-from aionode.transport.zenoh._settings import router_settings, session_settings
 
 ROOT = Path(__file__).parents[3]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from aionode.transport.zenoh._expiry import unless_expired
-from aionode.wire import _attachment as attachment
+from aionode.engine.transport.zenoh.delivery.expiry import unless_expired
+from aionode.engine.wire import _attachment as attachment
 
 GID = bytes(16)
 

@@ -17,13 +17,13 @@ import pytest
 import zenoh  # noqa: TID251  # the peer, without aionode
 
 from aionode import Context
+from aionode.engine.wire import cdr
 from aionode.interfaces import get_message
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import from_builtins
-from aionode.wire import cdr
 from tests.support.actions import Goal
 from tests.support.peers import Collector, known, quiet_node, raw_session, ros_value
 

@@ -12,6 +12,9 @@ from typing import Any
 import pytest
 
 from aionode import Context, Duration, Node
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire._key_expression import parse_data_key
+from aionode.engine.wire._liveliness import endpoint_token, node_token, parse_token
 from aionode.graph import EndpointInfo, EndpointKind
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import String
@@ -26,9 +29,6 @@ from aionode.qos import (
     qos_profile_sensor_data,
     qos_profile_system_default,
 )
-from aionode.wire import _attachment as attachment
-from aionode.wire._key_expression import parse_data_key
-from aionode.wire._liveliness import endpoint_token, node_token, parse_token
 from tests.support.peers import known, raw_session
 
 RECORDED: dict[str, Any] = json.loads(

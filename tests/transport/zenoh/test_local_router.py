@@ -8,12 +8,12 @@ from contextlib import AsyncExitStack
 import pytest
 import zenoh  # noqa: TID251  # type of sessions
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh.session import local_router
+from aionode.engine.transport.zenoh.session.local_router import ROUTER_IDS
+from aionode.engine.transport.zenoh.session.session import answering_ports
 from aionode.errors import ConfigurationError
-from aionode.transport.zenoh import _local_router as local_router
-from aionode.transport.zenoh._local_router import ROUTER_IDS
-from aionode.transport.zenoh._session import answering_ports
-from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import ros_router
 from tests.support.waiting import until
 

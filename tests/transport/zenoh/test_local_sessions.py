@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from aionode.transport import _network
-from aionode.transport._network import new_participant
-from aionode.transport.zenoh._local_sessions import (
+from aionode.engine.transport import network as _network
+from aionode.engine.transport.network import new_participant
+from aionode.engine.transport.zenoh.session.local_sessions import (
     announce,
     holder_of,
     listed,
@@ -60,7 +60,7 @@ def test_sessions_of_other_groups_are_not_listed(group: int) -> None:
 def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int) -> None:
     """Nothing is left to be removed."""
     program = (
-        "from aionode.transport.zenoh._local_sessions import announce\n"
+        "from aionode.engine.transport.zenoh.session.local_sessions import announce\n"
         f"presence = announce({group}, 4711)\n"
         "print('there', flush=True)\n"
         "input()\n"

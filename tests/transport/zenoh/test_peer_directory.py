@@ -12,10 +12,10 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
+from aionode.engine.transport.network import network_from
+from aionode.engine.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh.session.session import close_session, open_router
 from aionode.graph import Graph
-from aionode.transport._network import network_from
-from aionode.transport.zenoh._session import close_session, open_router
-from aionode.transport.zenoh._transport import ZenohTransport
 from tests.support.peers import (
     DOMAIN_ID,
     Collector,

@@ -9,9 +9,9 @@ from functools import partial
 
 import pytest
 
-from aionode.transport._loop_waker import LoopWaker
-from aionode.transport.zenoh import _peer_senders as peer_senders
-from aionode.transport.zenoh._peer_senders import (
+from aionode.engine.transport.loop_waker import LoopWaker
+from aionode.engine.transport.zenoh.delivery import peer_senders
+from aionode.engine.transport.zenoh.delivery.peer_senders import (
     ALLOWANCE_BYTES,
     OVERHEAD_BYTES,
     UNSEEN_BYTES,

@@ -14,23 +14,24 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode._concurrency import checkpoint
-from aionode.graph import Graph, NodeInfo
-from aionode.transport._network import Network, network_from
-from aionode.transport.zenoh import _config, _sockets
-from aionode.transport.zenoh._config import PROBE_IDS, is_probe
-from aionode.transport.zenoh._defects import forgotten_peers as recovery
-from aionode.transport.zenoh._defects import stale_transports
-from aionode.transport.zenoh._defects._connection_mend import ATTEMPTS
-from aionode.transport.zenoh._defects.forgotten_peers import (
+from aionode._process.concurrency import checkpoint
+from aionode.engine.transport.network import Network, network_from
+from aionode.engine.transport.zenoh._defects import forgotten_peers as recovery
+from aionode.engine.transport.zenoh._defects import stale_transports
+from aionode.engine.transport.zenoh._defects._connection_mend import ATTEMPTS
+from aionode.engine.transport.zenoh._defects.forgotten_peers import (
     GossipSource,
     Recovery,
     addresses_of,
     participant_of,
 )
-from aionode.transport.zenoh._defects.incomplete_answers import tokens
-from aionode.transport.zenoh._sockets import Descriptor, split_locator
-from aionode.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh._defects.incomplete_answers import tokens
+from aionode.engine.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh.connections import config as _config
+from aionode.engine.transport.zenoh.connections import sockets as _sockets
+from aionode.engine.transport.zenoh.connections.config import PROBE_IDS, is_probe
+from aionode.engine.transport.zenoh.connections.sockets import Descriptor, split_locator
+from aionode.graph import Graph, NodeInfo
 from tests.support.peers import (
     DOMAIN_ID,
     Collector,

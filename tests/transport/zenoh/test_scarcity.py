@@ -8,10 +8,10 @@ import sys
 
 import pytest
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh._defects import scarcity
 from aionode.errors import TransportError
 from aionode.node import Node
-from aionode.transport.zenoh._defects import scarcity
 from tests.support.peers import isolated_environment
 
 pytestmark = [

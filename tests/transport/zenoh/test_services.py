@@ -15,23 +15,23 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode.context import Context
 from aionode.endpoints.client import Client
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh._transport import ZenohTransport
+from aionode.engine.transport.zenoh.delivery.request_room import RequestRoom
+from aionode.engine.transport.zenoh.endpoints import services
+from aionode.engine.transport.zenoh.endpoints.services import error_payload, parse_error
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import RequestTimeoutError, ServiceError, ServiceUnavailableError
 from aionode.interfaces import get_service
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import Parameter
 from aionode.interfaces.rcl_interfaces.srv import SetParameters
 from aionode.message import from_builtins
-from aionode.transport.zenoh import _services as services
-from aionode.transport.zenoh._request_room import RequestRoom
-from aionode.transport.zenoh._services import error_payload, parse_error
-from aionode.transport.zenoh._session_state import SessionState
-from aionode.transport.zenoh._transport import ZenohTransport
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import data_key
-from aionode.wire.typehash import type_hash
 from tests.support.peers import (
     DOMAIN_ID,
     Collector,

@@ -14,19 +14,19 @@ from pathlib import Path
 
 import pytest
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
-from aionode.errors import ConfigurationError, TransportError
-from aionode.interfaces.std_msgs.msg import Int32
-from aionode.node import Node
-from aionode.transport.zenoh._session import (
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh.session.session import (
     answering_ports,
     close_session,
     open_router,
     run_in_own_thread,
     speaking_ports,
 )
-from aionode.transport.zenoh._settings import GOSSIPING
+from aionode.engine.transport.zenoh.session.settings import GOSSIPING
+from aionode.errors import ConfigurationError, TransportError
+from aionode.interfaces.std_msgs.msg import Int32
+from aionode.node import Node
 from tests.support.peers import free_ports, quiet_node, ros_router, ros_session
 
 pytestmark = pytest.mark.one_loop
@@ -103,7 +103,7 @@ async def both_seen(node: Node) -> None:
 
 def list_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have sessions meet as on systems that do not list them."""
-    monkeypatch.setattr("aionode.transport._network.UDP_SOCKETS", Path("/nowhere"))
+    monkeypatch.setattr("aionode.engine.transport.network.UDP_SOCKETS", Path("/nowhere"))
 
 
 async def test_processes_meet_elsewhere_if_others_have_all_their_ports(
@@ -156,7 +156,8 @@ async def test_a_session_opens_where_loopback_is_down(monkeypatch: pytest.Monkey
     """In a sandbox without a network: nobody can be met, but nodes of the process work."""
     nobody_may_connect = "255.255.255.255"
     monkeypatch.setattr(
-        "aionode.transport.zenoh._local_sessions.address_of", lambda _: nobody_may_connect
+        "aionode.engine.transport.zenoh.session.local_sessions.address_of",
+        lambda _: nobody_may_connect,
     )
     async with quiet_node("one") as one:
         assert knows(one, ["one"])

@@ -15,13 +15,12 @@ from typing import TYPE_CHECKING, Any
 import pytest
 import zenoh  # noqa: TID251  # makes real connections
 
-from aionode.context import Context
-from aionode.transport.zenoh import _sockets
-from aionode.transport.zenoh._defects import closing as closing_defect
-from aionode.transport.zenoh._defects import lingering
-from aionode.transport.zenoh._defects.stale_transports import cut_participants
-from aionode.transport.zenoh._session import open_router
-from aionode.transport.zenoh._sockets import (
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh._defects import closing as closing_defect
+from aionode.engine.transport.zenoh._defects import lingering
+from aionode.engine.transport.zenoh._defects.stale_transports import cut_participants
+from aionode.engine.transport.zenoh.connections import sockets as _sockets
+from aionode.engine.transport.zenoh.connections.sockets import (
     Pair,
     descriptors,
     duplicates,
@@ -30,6 +29,7 @@ from aionode.transport.zenoh._sockets import (
     pair_of,
     polled_by_zenoh,
 )
+from aionode.engine.transport.zenoh.session.session import open_router
 from tests.support.guest import locks
 from tests.support.peers import free_ports, two_contexts, zenoh_config
 from tests.support.waiting import until

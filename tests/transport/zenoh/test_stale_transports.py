@@ -9,12 +9,16 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # tells of connections, as Zenoh does
 
+from aionode.engine.transport.network import network_from
+from aionode.engine.transport.zenoh._defects import stale_transports
+from aionode.engine.transport.zenoh._defects._connection_mend import ATTEMPTS, POSTPONED_S
+from aionode.engine.transport.zenoh._defects.stale_transports import (
+    DECLARED_S,
+    FEW,
+    StaleTransports,
+)
+from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.testing import ManualClock, SteppedLoop
-from aionode.transport._network import network_from
-from aionode.transport.zenoh._defects import stale_transports
-from aionode.transport.zenoh._defects._connection_mend import ATTEMPTS, POSTPONED_S
-from aionode.transport.zenoh._defects.stale_transports import DECLARED_S, FEW, StaleTransports
-from aionode.transport.zenoh._session_state import SessionState
 from tests.support.peers import DOMAIN_ID
 
 LONG_S = 20 * DECLARED_S

@@ -11,11 +11,11 @@ import pytest
 
 from aionode import Context, Node
 from aionode.clock import perf_ns
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.endpoints.stop import REPEAT_NS
 from aionode.errors import LeaseExpiredError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from aionode.transport.zenoh._publisher import ZenohWriter
-from aionode.transport.zenoh._stop import REPEAT_NS
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator

@@ -14,14 +14,16 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # type of sessions
 
-from aionode._concurrency import checkpoint
-from aionode.context import Context
-from aionode.transport.zenoh import _session, _sockets, _transport
-from aionode.transport.zenoh._defects import lingering
-from aionode.transport.zenoh._defects.blocked_sends import UNREAD_MS
-from aionode.transport.zenoh._defects.closing import unanswered
-from aionode.transport.zenoh._session import close_session, open_router
-from aionode.transport.zenoh._sockets import connections, duplicates
+from aionode._process.concurrency import checkpoint
+from aionode.engine.context import Context
+from aionode.engine.transport.zenoh import _transport
+from aionode.engine.transport.zenoh._defects import lingering
+from aionode.engine.transport.zenoh._defects.blocked_sends import UNREAD_MS
+from aionode.engine.transport.zenoh._defects.closing import unanswered
+from aionode.engine.transport.zenoh.connections import sockets as _sockets
+from aionode.engine.transport.zenoh.connections.sockets import connections, duplicates
+from aionode.engine.transport.zenoh.session import session as _session
+from aionode.engine.transport.zenoh.session.session import close_session, open_router
 from tests.support.living import living
 from tests.support.peers import quiet_node, two_contexts
 from tests.support.waiting import until

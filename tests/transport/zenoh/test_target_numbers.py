@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.transport.zenoh._target_numbers import TargetNumbers
+from aionode.engine.transport.zenoh._target_numbers import TargetNumbers
 
 GID = b"g" * 16
 

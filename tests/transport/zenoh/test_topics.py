@@ -15,7 +15,13 @@ from typing import Any
 import pytest
 import zenoh  # noqa: TID251  # plays the other participants, without aionode
 
-from aionode.context import Context
+from aionode.engine.context import Context
+from aionode.engine.transport.loop_waker import ThreadsafeQueue
+from aionode.engine.transport.zenoh import _session_state as session_state
+from aionode.engine.wire import _attachment as attachment
+from aionode.engine.wire import cdr
+from aionode.engine.wire._key_expression import buffer_key, data_key
+from aionode.engine.wire.typehash import type_hash
 from aionode.errors import QueueFullError
 from aionode.graph import EndpointInfo, EndpointKind
 from aionode.interfaces import get_message
@@ -25,12 +31,6 @@ from aionode.message import from_builtins
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import ManualClock
-from aionode.transport._loop_waker import ThreadsafeQueue
-from aionode.transport.zenoh import _session_state as session_state
-from aionode.wire import _attachment as attachment
-from aionode.wire import cdr
-from aionode.wire._key_expression import buffer_key, data_key
-from aionode.wire.typehash import type_hash
 from tests.support.arrivals import writers_of
 from tests.support.peers import (
     DOMAIN_ID,

@@ -13,6 +13,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from aionode.errors import DecodeError, MessageError
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.example_interfaces.msg import WString
@@ -36,8 +38,6 @@ from aionode.message import (
     uint16,
     wstring,
 )
-from aionode.wire import cdr
-from aionode.wire.cdr._fallback_decoder import decode_slowly
 from tests.support.strategies import messages
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
+from aionode.engine.wire import cdr
 from aionode.errors import MessageError
 from aionode.interfaces.geometry_msgs.msg import Pose2D, Vector3
 from aionode.interfaces.sensor_msgs.msg import LaserScan
 from aionode.message import Message, fields
-from aionode.wire import cdr
 
 TYPES: dict[type[Message], type[Any]] = {}
 

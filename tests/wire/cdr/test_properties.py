@@ -9,13 +9,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr import _encoder as encoder
+from aionode.engine.wire.cdr._decoder import generate_decoder
+from aionode.engine.wire.cdr._encoder import JOIN, generate_encoder, views
+from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from aionode.errors import DecodeError
 from aionode.message import Message, check
-from aionode.wire import cdr
-from aionode.wire.cdr import _encoder as encoder
-from aionode.wire.cdr._decoder import generate_decoder
-from aionode.wire.cdr._encoder import JOIN, generate_encoder, views
-from aionode.wire.cdr._fallback_decoder import decode_slowly
 from tests.support.strategies import message_classes, messages
 
 CLASSES = message_classes()

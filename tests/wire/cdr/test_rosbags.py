@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from rosbags.interfaces import Nodetype
 from rosbags.typesys import Stores, get_typestore
 
+from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from aionode.message import DTYPES, FieldType, Message, fields, type_name
-from aionode.wire import cdr
-from aionode.wire.cdr._fallback_decoder import decode_slowly
 from tests.support.strategies import message_classes, messages
 from tests.wire.cdr.test_properties import few, many
 

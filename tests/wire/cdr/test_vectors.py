@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from aionode.wire import cdr
-from aionode.wire.cdr._fallback_decoder import decode_slowly
+from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from tests.support.samples import all_samples
 
 

@@ -1,0 +1,1 @@
+"""What belongs to the whole process: signals, standard streams, concurrency, its end."""

@@ -1,0 +1,151 @@
+"""SIGINT, SIGTERM and SIGHUP: the first ends the program in order, a later one at once."""
+
+from __future__ import annotations
+
+import _thread
+import contextlib
+import os
+import signal
+import threading
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode._process.streams import UnreadWatch, interrupt_main
+from aionode._process.sudden_end import LastMessages, print_error, start_thread
+from aionode.clock import perf_ns
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from types import FrameType
+
+__all__ = ["signals_to"]
+
+SAME_SEC: Final = 1.0
+"""Signals within this time after the first count as the first, of whichever kind they are.
+
+GNU ``timeout``, ``ros2 launch`` and other parents forward a signal that the whole process group has
+got already.
+"""
+
+
+@contextlib.contextmanager
+def signals_to(stop: Callable[[], object]) -> Iterator[None]:
+    """Call `stop` at the first SIGINT, SIGTERM or SIGHUP, and end the process at a later one.
+
+    Those within a second of the first count as the first. SIGHUP is taken only where it would end
+    the process: it is left alone if it is ignored, as under ``nohup``, or has a handler.
+
+    The handlers are Python's and not the event loop's, so that they run even while a callback
+    blocks the loop. Outside the main thread nothing is installed, as signals do not arrive there.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    handler = EndHandler(stop)
+    handler.install()
+    try:
+        yield
+    finally:
+        handler.close()
+
+
+def ending_signals() -> list[signal.Signals]:
+    """Return which signals end a program."""
+    numbers = [signal.SIGINT, signal.SIGTERM]
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
+        numbers.append(signal.SIGHUP)
+    return numbers
+
+
+class EndHandler:
+    """The handler of the signals that end a program.
+
+    Args:
+        stop: Called by the first of them.
+    """
+
+    def __init__(self, stop: Callable[[], object]) -> None:
+        self._stop = stop
+        self._pid = os.getpid()
+        self._before: dict[int, Any] = {}
+        self._first: int | None = None
+        self._first_ns = 0
+        self._woken: list[int] = []
+        # The loop may be blocked by a write to a full pipe whose reader is gone.
+        self._unread = UnreadWatch(self._wake)
+
+    def install(self) -> None:
+        """Handle the signals from now on."""
+        self._before = {number: signal.signal(number, self) for number in ending_signals()}
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Handle a signal."""
+        if os.getpid() != self._pid:  # a forked child, which `aionode.run` does not run
+            self._restore(number)
+            signal.raise_signal(number)
+        elif number in self._woken:
+            self._woken.remove(number)
+        elif self._first is None:
+            self._first, self._first_ns = number, perf_ns()
+            self._unread.start()
+            self._stop()
+        elif perf_ns() - self._first_ns >= SAME_SEC * 1e9:
+            SuddenEnd(number).begin(self, frame)
+
+    def _wake(self) -> None:
+        if self._first is not None:
+            self._woken.append(self._first)
+            interrupt_main(signal.Signals(self._first))
+
+    def _restore(self, number: int) -> None:
+        """Set the handler that was there before, unless the program has set its own meanwhile."""
+        current: object = signal.getsignal(number)
+        if current is self:
+            before = self._before[number]
+            # None stands for one that was not set by Python, which cannot set it again.
+            signal.signal(number, signal.SIG_DFL if before is None else before)
+
+    def close(self) -> None:
+        """Restore the handlers, and stop watching the standard streams."""
+        self._unread.stop()
+        for number in self._before:
+            self._restore(number)
+
+
+class SuddenEnd:
+    """Ends the process within 0.2 s: threads cannot be cancelled, and may run for any time.
+
+    The main thread sends the last messages. Another thread ends the process when the time is over,
+    whatever the main thread is doing then.
+
+    Args:
+        number: The signal that asks for it.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._number = signal.Signals(number)
+        self._messages = LastMessages(number)
+        self._leaving = _thread.allocate_lock()  # acquired by the thread that leaves, once
+
+    def begin(self, handler: EndHandler, frame: FrameType | None) -> None:
+        """Begin, called by `handler`, which is not needed any more."""
+        for number in signal.valid_signals():
+            if signal.getsignal(number) is handler:
+                signal.signal(number, signal.SIG_IGN)  # a third one has nothing to add
+        signal.signal(self._number, self._on_signal)
+        start_thread(self._leave_in_time)
+        self._on_signal(self._number, frame)
+
+    def _on_signal(self, _number: int, frame: FrameType | None) -> None:
+        if self._messages.send(frame):
+            self._leave()
+
+    def _leave_in_time(self) -> None:
+        self._messages.wait()
+        self._leave()
+
+    def _leave(self) -> None:
+        if self._leaving.acquire(blocking=False):  # the first of both threads
+            name = self._number.name
+            text = f"aionode: ended at once by a second signal ({name})\n"
+            print_error(self._messages.failure + text)
+            os._exit(128 + self._number)

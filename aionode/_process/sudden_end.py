@@ -1,0 +1,165 @@
+"""The last messages of a process that ends, or is suspended, without the ends of its nodes.
+
+Two kinds of functions are called, in this order: those of `STOPS` send the stop of each open lease,
+those of `SENDS` hand what was published to the operating system.
+
+It begins with a signal: the second one that asks for the end, or Ctrl-Z while a lease is open. Its
+handler runs in the main thread, between any two steps of what that thread does, and what it has
+interrupted does not go on meanwhile. So the handler looks first whether that is a publisher or
+transport: a socket may have a part of a frame, and the connection does not know it yet. Such a step
+is over soon, and the signal is sent once more after it. At any other moment the main thread may
+publish and send as in a callback, and holds no lock of those. When the interpreter exits, the stops
+alone are sent.
+"""
+
+from __future__ import annotations
+
+import _thread
+import atexit
+import contextlib
+import os
+import select
+import signal
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Final
+
+from aionode._process.streams import interrupt_main
+from aionode.clock import perf_ns
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+__all__ = ["SENDS", "STOPS", "LastMessages", "is_sending", "print_error", "start_thread"]
+
+LIMIT_NS: Final = 200_000_000
+"""Longest time that sending takes, in nanoseconds."""
+
+STEP_NS: Final = 50_000_000
+"""Longest time for a publisher or transport to finish a step that a signal has interrupted, in
+nanoseconds."""
+
+AGAIN_SEC: Final = 0.001
+"""After how long the signal is sent once more that has interrupted such a step."""
+
+STOPS: list[Callable[[], bool]] = []
+"""Send the stop of each open lease, and return whether there was one.
+
+They are called in the main thread, perhaps more than once. They wait neither for the event loop,
+which stands still, nor for other threads, which have the rest of the time.
+"""
+
+SENDS: list[Callable[[int], bool]] = []
+"""Hand what was published to the operating system, until a time of `perf_ns` at most.
+
+They are called in the main thread, whose event loop stands still, and return whether other threads,
+such as Zenoh's, need the rest of the time.
+"""
+
+LIBRARY: Final = sys.stdlib_module_names | {"aionode", "uvloop"}
+SENDING: Final = ("aionode.endpoints", "aionode.transport")
+
+
+def is_sending(frame: FrameType | None) -> bool:
+    """Return whether `frame`, which a signal interrupted, is within a publisher or transport.
+
+    Their callers are of no interest: a callback that blocks the loop was called by a transport too,
+    and interrupted in the user's code.
+    """
+    while frame is not None:
+        module = frame.f_globals.get("__name__", "aionode")  # generated code has no name
+        if module.startswith(SENDING):
+            return True
+        if module.partition(".")[0] not in LIBRARY:
+            return False
+        frame = frame.f_back
+    return False
+
+
+class LastMessages:
+    """The last messages, sent within 0.2 s by the handler of one signal.
+
+    Args:
+        number: The signal.
+
+    Attributes:
+        ends_ns: When the time is over, by `perf_ns`.
+        failure: What has failed, as text for users.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._number = signal.Signals(number)
+        self._began_ns = perf_ns()
+        self._has_begun = False
+        self.ends_ns = self._began_ns + LIMIT_NS
+        self.failure = ""
+
+    def send(self, frame: FrameType | None) -> bool:
+        """Send them, and give other threads the rest of the time.
+
+        Args:
+            frame: What the signal has interrupted.
+
+        Returns:
+            Whether this call has done so: not if another one does, nor if `frame` is within a
+            publisher or transport. Then the signal comes again.
+        """
+        if self._has_begun:
+            return False
+        if is_sending(frame) and perf_ns() - self._began_ns < STEP_NS:
+            start_thread(self._come_again)
+            return False
+        self._has_begun = True
+        needs_time = [self._call(stop) for stop in STOPS]
+        needs_time += [self._call(send, self.ends_ns) for send in SENDS]
+        if any(needs_time):
+            self.wait()
+        return True
+
+    def _call(self, function: Callable[..., bool], *args: int) -> bool:
+        try:
+            return function(*args)
+        except Exception:  # noqa: BLE001  # printed: nobody could catch it, and the others come first
+            self.failure += traceback.format_exc()
+            return True
+
+    def _come_again(self) -> None:
+        threading.Event().wait(AGAIN_SEC)
+        interrupt_main(self._number)
+
+    def wait(self) -> None:
+        """Wait until the time is over."""
+        while (left_ns := self.ends_ns - perf_ns()) > 0:
+            threading.Event().wait(left_ns / 1e9)
+
+
+def start_thread(work: Callable[[], object]) -> None:
+    """Start a thread from a signal handler, unless the system has no more.
+
+    `threading.Thread.start` takes locks that the interrupted thread may hold.
+    """
+    with contextlib.suppress(RuntimeError):
+        _thread.start_new_thread(work, ())
+
+
+def print_error(text: str) -> None:
+    """Write to stderr, unless nobody reads it: the process must go on to its end."""
+    if sys.__stderr__ is None:  # it was closed at the start, and descriptor 2 is something else now
+        return
+    with contextlib.suppress(OSError, ValueError):
+        descriptor = sys.__stderr__.fileno()
+        if text and select.select([], [descriptor], [], 0)[1]:
+            os.write(descriptor, text.encode())
+
+
+@atexit.register
+def stop_at_exit() -> None:
+    """Send the stop of leases that are still open: nothing has ended their blocks.
+
+    So it is after a second or third Ctrl-C in a program that `aionode.run` does not run.
+    """
+    sent = [stop() for stop in STOPS]
+    if any(sent):
+        threading.Event().wait(LIMIT_NS / 1e9)

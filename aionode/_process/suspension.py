@@ -1,0 +1,55 @@
+"""Ctrl-Z at a program with open leases: their stops are sent before it is suspended."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from typing import TYPE_CHECKING
+
+from aionode._process.sudden_end import LastMessages, print_error
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+__all__ = ["SuspensionHandler", "suspension"]
+
+
+class SuspensionHandler:
+    """The handler of SIGTSTP while leases are open; without one the program has none of ours.
+
+    It is there only where SIGTSTP would suspend the process, and only while an event loop of the
+    main thread has a lease: Python calls handlers, and sets them, in that thread.
+    """
+
+    def __init__(self) -> None:
+        self._messages: LastMessages | None = None
+
+    def install(self) -> None:
+        """Handle SIGTSTP from now on: a lease is open. Again is the same as once."""
+        if is_main_thread() and signal.getsignal(signal.SIGTSTP) is signal.SIG_DFL:
+            signal.signal(signal.SIGTSTP, self)
+
+    def remove(self) -> None:
+        """Leave SIGTSTP alone: no lease is open."""
+        if is_main_thread() and signal.getsignal(signal.SIGTSTP) is self:
+            signal.signal(signal.SIGTSTP, signal.SIG_DFL)
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Send the stops and what was published, and suspend the process."""
+        if self._messages is None:
+            self._messages = LastMessages(number)
+        if self._messages.send(frame):
+            failure, self._messages = self._messages.failure, None
+            print_error(failure)
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)  # it returns when the process goes on
+            signal.signal(number, self)
+
+
+def is_main_thread() -> bool:
+    """Return whether signals arrive in this thread, on a system that suspends processes."""
+    return hasattr(signal, "SIGTSTP") and threading.current_thread() is threading.main_thread()
+
+
+suspension = SuspensionHandler()
+"""That of this process."""

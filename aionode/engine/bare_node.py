@@ -1,0 +1,384 @@
+"""Nodes and endpoints without callbacks, queues and tasks, for other APIs over aionode.
+
+A `BareNode` is a node in the graph and nothing else: no parameters, services, log or clock. Its
+endpoints hand what arrives to functions of yours, and send what you give them. Together with
+`aionode.message.serialized`, which leaves messages in their encoded form, they carry the messages
+of programs that have message classes, threads and queues of their own.
+
+Everything here belongs to the thread of the context's event loop, in which the context has been
+opened with ``async with``: make, use and destroy it there. Only the functions and objects that you
+give are called back, in that thread as well; they never wait. Where a loop is lent to other
+threads, as aionode's own for programs of rclpy, the borrower may send, too: messages, requests and
+responses, with `BarePublisher.publish`, `BarePublisher.publish_elsewhere`, `BareClient.send`,
+`BareCall.cancel` and the methods of `Request`.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from aionode import qos
+from aionode.engine.transport.base import SampleInfo
+from aionode.engine.transport.local import LocalWriter
+from aionode.errors import EntityDestroyedError, QueueFullError
+from aionode.graph import EndpointKind
+from aionode.qos import KEEP_ALL_DEPTH
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from aionode.engine.context import Context
+    from aionode.engine.transport.base import (
+        Call,
+        Reader,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
+    from aionode.errors import ServiceError
+    from aionode.graph import EndpointInfo
+    from aionode.qos import QoSProfile
+
+__all__ = ["BareCall", "BareClient", "BareEndpoint", "BareNode", "BarePublisher"]
+
+
+class BareEndpoint:
+    """One endpoint of a bare node: announced from the beginning until `destroy`.
+
+    Attributes:
+        endpoint: What the graph knows of it, with its resolved QoS.
+    """
+
+    def __init__(
+        self, node: BareNode, endpoint: EndpointInfo, registrations: Sequence[Registration]
+    ) -> None:
+        self.endpoint = endpoint
+        self._node = node
+        self._registrations = registrations
+
+    def matched(self) -> list[EndpointInfo]:
+        """Return the endpoints of the opposite kind that this one communicates with now."""
+        endpoint = self.endpoint
+        others = self._node.context.graph.endpoints(endpoint.kind.opposite, name=endpoint.name)
+        return [other for other in others if endpoint.matches(other)]
+
+    def destroy(self) -> None:
+        """Withdraw the endpoint; calling it again has no effect."""
+        if self._node._forget(self):
+            self._node.context.graph.remove_endpoint(self.endpoint)
+            for registration in self._registrations:
+                registration.close()
+
+
+class BarePublisher(BareEndpoint):
+    """A publisher of a bare node.
+
+    Attributes:
+        published: How many messages it has sent.
+    """
+
+    def __init__(self, node: BareNode, endpoint: EndpointInfo, writers: Sequence[Writer]) -> None:
+        super().__init__(node, endpoint, writers)
+        self.published = 0
+        self._writers = writers
+        self._here = [writer for writer in writers if isinstance(writer, LocalWriter)]
+        self._elsewhere = [writer for writer in writers if not isinstance(writer, LocalWriter)]
+
+    def publish(self, msg: Any, source_ns: int) -> None:
+        """Send a message to every matched subscription.
+
+        Args:
+            msg: An object of the class that the publisher was made with.
+            source_ns: When it was published, in nanoseconds since 1970.
+
+        Raises:
+            MessageError: a value does not fit its field; nothing was sent.
+            QueueFullError: a reliable KEEP_ALL subscription of this context is full; nothing was
+                sent. `drain` waits for room.
+        """
+        sample_info = self.publish_here(msg, source_ns)
+        if sample_info is not None:
+            self.publish_elsewhere(msg, sample_info)
+
+    def publish_here(self, msg: Any, source_ns: int) -> SampleInfo | None:
+        """Send a message to the subscriptions of this context only, whose readers get it at once.
+
+        Any thread may call it, one at a time, and not while a subscription is made in the
+        context; the readers have to expect that thread.
+
+        Args:
+            msg: An object of the class that the publisher was made with.
+            source_ns: When it was published, in nanoseconds since 1970.
+
+        Returns:
+            What `publish_elsewhere` takes; None if no other context has to get the message.
+
+        Raises:
+            QueueFullError: as `publish`.
+        """
+        for writer in self._here:
+            if writer.bounded and not writer.has_room():
+                raise QueueFullError(self.endpoint.name, KEEP_ALL_DEPTH)
+        self.published += 1
+        sample_info = SampleInfo(self.endpoint.gid, self.published, source_ns)
+        for writer in self._here:
+            if writer.active:
+                writer.write(msg, self.published, source_ns)
+        for other in self._elsewhere:
+            if other.active:
+                return sample_info
+        return None
+
+    def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
+        """Send a message to other contexts, after `publish_here`; in the thread of the loop.
+
+        Messages have to come in their order. A link takes the message at once, unless its socket
+        is full or the subscription's window used up: then it waits for the loop.
+        """
+        for writer in self._elsewhere:
+            if writer.active:
+                writer.write(msg, sample_info.sequence, sample_info.source_ns)
+
+    def assert_liveliness(self) -> None:
+        """Tell the matched subscriptions that the publisher is alive, without a message."""
+        for writer in self._writers:
+            writer.assert_liveliness()
+
+    async def drain(self) -> None:
+        """Wait until every reliable KEEP_ALL subscription has room and nothing is left to send."""
+        for writer in self._writers:
+            await writer.drain()
+
+
+class BareClient(BareEndpoint):
+    """A client of a bare node.
+
+    Attributes:
+        calls: How many requests it has sent; the number of the last one.
+    """
+
+    def __init__(
+        self, node: BareNode, endpoint: EndpointInfo, requesters: Sequence[Requester]
+    ) -> None:
+        super().__init__(node, endpoint, requesters)
+        self.calls = 0
+        self._requesters = requesters
+
+    @property
+    def servers(self) -> int:
+        """The number of servers that are matched now."""
+        return sum(requester.servers for requester in self._requesters)
+
+    def send(
+        self,
+        request: Any,
+        source_ns: int,
+        on_reply: Callable[[Any], None],
+        on_error: Callable[[ServiceError | None], None],
+    ) -> BareCall:
+        """Send a request to every matched server; exactly one of the functions is called, once.
+
+        Args:
+            request: An object of the request class that the client was made with.
+            source_ns: When it was sent, in nanoseconds since 1970.
+            on_reply: Called with the first response, which may be before this returns.
+            on_error: Called with the error that a server sent instead, or with None if no matched
+                server is left that could answer. Without any server neither function is called.
+
+        Raises:
+            MessageError: a value does not fit its field; nothing was sent.
+        """
+        self.calls += 1
+        sample_info = SampleInfo(self.endpoint.gid, self.calls, source_ns)
+        call = BareCall(on_reply, on_error)
+        try:
+            for requester in self._requesters:
+                if requester.servers:
+                    call.open += 1
+                    call.calls.append(requester.send(request, sample_info, call))
+        except BaseException:
+            call.cancel()
+            raise
+        return call
+
+
+class BareCall:
+    """A request under way; `cancel` forgets it. For transports it is the `ReplyTo`.
+
+    Attributes:
+        calls: The request in each transport.
+        open: How many of them may still be answered.
+    """
+
+    def __init__(
+        self,
+        on_reply: Callable[[Any], None],
+        on_error: Callable[[ServiceError | None], None],
+    ) -> None:
+        self.calls: list[Call] = []
+        self.open = 0
+        self._on_reply = on_reply
+        self._on_error = on_error
+        self._finished = False
+
+    def cancel(self) -> None:
+        """Forget the request: no function is called, and a server need not begin with it."""
+        self._finished = True
+        for call in self.calls:
+            call.cancel()
+
+    def reply(self, response: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # part of ReplyTo
+        """Take a response."""
+        if not self._finished:
+            self._finished = True
+            self._on_reply(response)
+
+    def fail(self, error: ServiceError) -> None:
+        """Take a server's error."""
+        if not self._finished:
+            self._finished = True
+            self._on_error(error)
+
+    def end(self) -> None:
+        """Count a transport that has no more answers."""
+        self.open -= 1
+        if self.open == 0 and not self._finished:
+            self._finished = True
+            self._on_error(None)
+
+
+class BareNode:
+    """A node in the graph, and the owner of bare endpoints.
+
+    Names are used as they are given: valid, complete and remapped.
+
+    Args:
+        context: The context that it joins.
+        name: Its name without namespace.
+        namespace: Its namespace, which begins with a slash.
+        enclave: Its security enclave.
+
+    Attributes:
+        context: The context.
+        info: What the graph knows of it.
+
+    Raises:
+        EntityDestroyedError: the context was shut down (a RuntimeError).
+    """
+
+    def __init__(
+        self, context: Context, name: str, namespace: str = "/", enclave: str = "/"
+    ) -> None:
+        self.context = context
+        self.info = context._describe_node(name, namespace, enclave)
+        self._endpoints: dict[BareEndpoint, None] = {}
+        self._destroyed = False
+        context._add_node(self)
+        self._registrations = self.context._register(
+            lambda transport: transport.create_node(self.info)
+        )
+        context.graph.add_node(self.info)
+
+    def create_publisher(self, msg_type: Any, topic: str, profile: QoSProfile) -> BarePublisher:
+        """Return a publisher of `msg_type`, a message class or what `serialized` made of one.
+
+        Raises:
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        endpoint = self._describe(EndpointKind.PUBLISHER, topic, msg_type, profile)
+        writers = self.context._register(
+            lambda transport: transport.create_writer(endpoint, msg_type)
+        )
+        return self._add(BarePublisher(self, endpoint, writers))
+
+    def create_subscription(
+        self, msg_type: Any, topic: str, profile: QoSProfile, reader: Reader
+    ) -> BareEndpoint:
+        """Return a subscription whose messages go to `reader`, whose `endpoint` is set first.
+
+        Messages that a transient local publisher has kept may be delivered before this returns.
+
+        Raises:
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        endpoint = reader.endpoint = self._describe(
+            EndpointKind.SUBSCRIPTION, topic, msg_type, profile
+        )
+        registrations = self.context._register(
+            lambda transport: transport.create_reader(endpoint, msg_type, reader)
+        )
+        return self._add(BareEndpoint(self, endpoint, registrations))
+
+    def create_server(
+        self, srv_type: Any, service: str, profile: QoSProfile, serve: Serve
+    ) -> BareEndpoint:
+        """Return a server whose requests go to `serve`, which answers each `Request` once.
+
+        Raises:
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        endpoint = self._describe(EndpointKind.SERVER, service, srv_type, profile)
+        registrations = self.context._register(
+            lambda transport: transport.create_server(endpoint, srv_type, serve)
+        )
+        return self._add(BareEndpoint(self, endpoint, registrations))
+
+    def create_client(self, srv_type: Any, service: str, profile: QoSProfile) -> BareClient:
+        """Return a client.
+
+        Raises:
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        endpoint = self._describe(EndpointKind.CLIENT, service, srv_type, profile)
+        requesters = self.context._register(
+            lambda transport: transport.create_requester(endpoint, srv_type)
+        )
+        return self._add(BareClient(self, endpoint, requesters))
+
+    def destroy_node(self) -> None:
+        """Destroy the endpoints, newest first, and leave the graph; again has no effect."""
+        if self._destroyed:
+            return
+        self._destroyed = True
+        for endpoint in reversed(list(self._endpoints)):
+            endpoint.destroy()
+        for registration in self._registrations:
+            registration.close()
+        self.context.graph.remove_node(self.info)
+        self.context._remove_node(self)
+
+    def _abandon(self) -> None:
+        """Mark the node destroyed without closing anything; in a forked child."""
+        self._destroyed = True
+        self._endpoints.clear()
+
+    def _describe(
+        self, kind: EndpointKind, name: str, ros_type: Any, profile: QoSProfile
+    ) -> EndpointInfo:
+        if self._destroyed:
+            raise EntityDestroyedError(
+                f"node {self.info.fully_qualified_name}", f"create {kind.value}"
+            )
+        others = [
+            endpoint.qos for endpoint in self.context.graph.endpoints(kind.opposite, name=name)
+        ]
+        if kind is EndpointKind.PUBLISHER:
+            profile = qos.best_available_for_publisher(profile, others)
+        elif kind is EndpointKind.SUBSCRIPTION:
+            profile = qos.best_available_for_subscription(profile, others)
+        return self.context._describe_endpoint(kind, self.info, name, ros_type, profile.resolved())
+
+    def _add(self, endpoint: EndpointT) -> EndpointT:
+        self._endpoints[endpoint] = None
+        self.context.graph.add_endpoint(endpoint.endpoint)
+        return endpoint
+
+    def _forget(self, endpoint: BareEndpoint) -> bool:
+        """Forget an endpoint; return whether it was there."""
+        known = endpoint in self._endpoints
+        self._endpoints.pop(endpoint, None)
+        return known
+
+
+EndpointT = TypeVar("EndpointT", bound=BareEndpoint)

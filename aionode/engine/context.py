@@ -1,0 +1,573 @@
+"""The context that nodes share: one participant in the ROS graph, with its transports.
+
+A peer that ends leaves the graph in `engine/transport/zenoh/discovery/graph_watcher.py`, and its links in
+`engine/transport/link/_manager.py`, which dials again as well. How often Zenoh dials, and when it gives a
+silent peer up: `engine/transport/zenoh/session/settings.py`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import ctypes
+import dataclasses
+import math
+import os
+import random
+import threading
+import uuid
+import weakref
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
+
+from aionode._distribution import NO_TYPE_HASH, choose_distribution
+from aionode._process.concurrency import spin_before_blocking, to_the_end
+from aionode._process.sudden_end import SENDS
+from aionode.arguments import Arguments, Usage
+from aionode.clock import MachineTime, perf_ns
+from aionode.engine.loop_affinity import LoopAffinity
+from aionode.engine.reports.duplicates import DuplicateReport
+from aionode.engine.reports.mismatches import MismatchReport
+from aionode.engine.transport.base import Registration, Transport
+from aionode.engine.transport.local import LocalTransport
+from aionode.engine.transport.network import network_from, new_participant, unheard_middleware
+from aionode.engine.wire._liveliness import endpoint_token, gid_of
+from aionode.engine.wire.typehash import type_hash
+from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
+from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.logging import get_logger
+from aionode.message import type_name
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from pathlib import Path
+    from types import TracebackType
+
+    from aionode.clock import TimeBase
+    from aionode.qos import QoSProfile
+
+__all__ = ["Context"]
+
+RegisteredT = TypeVar("RegisteredT", bound=Registration)
+
+TRANSPORT_VARIABLE = "AIONODE_TRANSPORT"
+
+LINK_VARIABLE = "AIONODE_LINK"
+LINK_SETTINGS = {"on": True, "off": False, "": True}
+
+
+def transport_of(environ: Mapping[str, str]) -> str:
+    """Return which transport the environment asks for; zenoh if it does not.
+
+    Raises:
+        ConfigurationError: it is none of those that there are.
+    """
+    word = environ.get(TRANSPORT_VARIABLE, "") or "zenoh"
+    if word not in {"zenoh", "rcl", "local"}:
+        raise ConfigurationError(TRANSPORT_VARIABLE, word, "use zenoh, rcl or local")
+    return word
+
+
+def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
+    """Return whether to reach processes of this host over the link transport.
+
+    Raises:
+        ConfigurationError: the environment variable is neither on nor off.
+    """
+    if asked is None:
+        word = environ.get(LINK_VARIABLE, "")
+        if word not in LINK_SETTINGS:
+            raise ConfigurationError(LINK_VARIABLE, word, "use on or off")
+        asked = LINK_SETTINGS[word]
+    if not asked:
+        return False
+    from aionode.engine.transport.link import available
+
+    return available()
+
+
+class ContextNode(Protocol):
+    """The methods of a node that its context calls. A protocol, as `Node` imports the context."""
+
+    def destroy_node(self) -> None:
+        """End the node."""
+
+    def _abandon(self) -> None:
+        """Mark the node destroyed without closing anything; in a forked child."""
+
+
+class Context:
+    """The transports, graph, domain and time that the nodes of one participant share.
+
+    Nodes created without a context share `Context.default()`. A context opens with its first
+    running node and closes after the last; ``async with Context() as context`` keeps it open for
+    the whole block, and destroys all its nodes at the end.
+
+    Args:
+        domain_id: The ROS domain, 0 or more; by default ``ROS_DOMAIN_ID``, or 0.
+        transport: ``"zenoh"`` reaches other processes, and ROS 2 on rmw_zenoh; ``"rcl"`` reaches
+            ROS 2 over the middleware of the ROS 2 that is installed here, such as DDS; ``"local"``
+            reaches only the nodes of this context. One or several `Transport` objects are used as
+            they are. By default ``AIONODE_TRANSPORT``, or ``"zenoh"``.
+        clock: Where the time comes from: the machine, or an `aionode.testing.ManualClock`.
+        discovery_range: Where to look for other processes: ``"LOCALHOST"``, ``"SUBNET"`` or
+            ``"OFF"``; by default ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
+        static_peers: Hosts to connect to; by default ``ROS_STATIC_PEERS``.
+        config: Path of a Zenoh configuration file, in place of ``ZENOH_SESSION_CONFIG_URI``, or
+            individual settings by their key path.
+        link: Whether to reach other processes of this user on this host over a Unix socket served
+            by the event loop, where the platform supports it; by default ``AIONODE_LINK`` (``on``
+            or ``off``), or on.
+        spin_us: For how many microseconds the event loop asks for events again and again before it
+            lets its thread sleep. That saves waking up, and takes a whole core while messages come
+            in shorter intervals. Only for asyncio's own event loop, and one context of each loop.
+        ros_distro: The distribution of the ROS 2 nodes that it talks to, such as ``"humble"``; by
+            default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
+            hear each other, so a context talks to one or the other.
+        queue_bytes: How many bytes of messages may wait in each queue from and to other processes:
+            of a subscription whose loop or callback is busy, of a service, and of a publisher whose
+            readers are slow. What is more is dropped and counted, or refused by KEEP_ALL and
+            services. By default ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too
+            large.
+        graph_bytes: How many bytes of what other processes announce are kept, nodes and endpoints
+            above all, which count about 2.2 kB each. One process may have an eighth of that. What
+            is more is left out, and a warning says so. By default ``AIONODE_GRAPH_BYTES``, or 64
+            MiB, about 30,000 endpoints.
+        seed: For tests without network: the ids of the context, of its endpoints and of its goals
+            are drawn with this seed, and so are the same in every run. Callbacks that block the
+            loop are not reported, as this depends on the machine. By default ids are unique.
+
+    Attributes:
+        ros_distro: The distribution of ROS 2 that it belongs to.
+        network: Domain, discovery and peers, from the arguments and the environment.
+        graph: The nodes and endpoints known now.
+        time_base: Where the time comes from.
+        participant: Id of this context in the graph, in hexadecimal.
+        seed: The seed of its ids; None if they are unique.
+
+    Raises:
+        ConfigurationError: an argument, or the environment variable used instead, is invalid (a
+            ValueError).
+        TypeError: `spin_us` is not a number.
+        ValueError: `transport` is an unknown name, `spin_us` negative, or `seed` given with
+            a network.
+    """
+
+    _default: ClassVar[Context | None] = None
+    _command_line: ClassVar[Usage] = Usage(Arguments())
+    # For forked children: every context of this process, and whether one of them, or of the
+    # parent, has ever opened a connection, which a fork breaks.
+    _all: ClassVar[weakref.WeakSet[Context]] = weakref.WeakSet()
+    _has_connected: ClassVar[bool] = False
+    _parent_has_connected: ClassVar[bool] = False
+
+    def __init__(
+        self,
+        *,
+        domain_id: int | None = None,
+        transport: str | Transport | Sequence[Transport] | None = None,
+        clock: TimeBase | None = None,
+        discovery_range: str | None = None,
+        static_peers: Sequence[str] | None = None,
+        config: str | Path | Mapping[str, Any] | None = None,
+        link: bool | None = None,
+        spin_us: float = 0,
+        ros_distro: str | None = None,
+        queue_bytes: int | None = None,
+        graph_bytes: int | None = None,
+        seed: int | None = None,
+    ) -> None:
+        if isinstance(spin_us, bool) or not isinstance(spin_us, int | float):
+            raise TypeError(f"Context: spin_us={brief(spin_us)} is not a number of microseconds")
+        if not 0 <= spin_us < math.inf:
+            raise ValueError(f"Context: spin_us={spin_us} is not 0 or more microseconds")
+        self._spin_ns = int(spin_us * 1e3)
+        self._stop_spinning: Callable[[], None] | None = None
+        self.ros_distro = choose_distribution(os.environ, ros_distro)
+        self.seed = seed
+        self._random = None if seed is None else random.Random(seed)  # noqa: S311  # ids, not secrets
+        self.participant = (
+            new_participant() if self._random is None else f"f{self._random.getrandbits(124):031x}"
+        )
+        self.graph = Graph(self.participant)
+        MismatchReport(self.graph, self.participant)
+        DuplicateReport(self.graph, self.participant)
+        self.time_base: TimeBase = clock if clock is not None else MachineTime()
+        self.network = network_from(
+            os.environ,
+            domain_id=domain_id,
+            discovery_range=discovery_range,
+            static_peers=static_peers,
+            config=config,
+            queue_bytes=queue_bytes,
+            graph_bytes=graph_bytes,
+        )
+        if transport is None:
+            transport = transport_of(os.environ)
+        self._is_on_zenoh = transport == "zenoh"
+        self._transports = self._make_transports(transport, link)
+        if seed is not None and transport in {"zenoh", "rcl"}:
+            raise ValueError(
+                f"Context: seed={seed} gives it ids that other contexts may have, which a network "
+                'does not allow; use transport="local", or leave out the seed'
+            )
+        self._usage: Usage | None = None  # of arguments that were set for this context alone
+        self._nodes: dict[ContextNode, None] = {}  # from construction until destroyed
+        self._next_id = 0  # of a node or endpoint
+        self._users = 0  # running nodes and `async with` blocks; the transports close at 0
+        self._shut_down = False  # set by `shutdown`, and never reset
+        self._open = False  # whether the transports are open
+        self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
+        self._affinity = LoopAffinity()  # the same while it is in use, for calls of other threads
+        self._loop_guard = threading.Lock()  # held to check and set `_loop` and `_users`
+        self._transition = asyncio.Lock()  # held while the transports open or close
+        self._closed = asyncio.Event()  # set when the last user has released the context
+        self._inherited = False  # whether it belongs to the parent of this forked process
+        Context._all.add(self)
+
+    def __repr__(self) -> str:
+        state = "shut down" if self._shut_down else "open" if self._users else "closed"
+        return f"<Context domain={self.network.domain_id} {state} nodes={len(self._nodes)}>"
+
+    def _make_transports(
+        self, transport: str | Transport | Sequence[Transport], link: bool | None
+    ) -> tuple[Transport, ...]:
+        if isinstance(transport, Transport):
+            return (transport,)
+        if not isinstance(transport, str):
+            return tuple(transport)
+        if transport == "local":
+            return (LocalTransport(),)
+        if transport == "zenoh":
+            # Imported on demand: it is large, and a local context does not need it.
+            from aionode.engine.transport.zenoh import ZenohTransport
+            from aionode.engine.transport.zenoh.bridge import BridgeTransport
+
+            zenoh = ZenohTransport(self.participant, self.network, self.time_base)
+            bridges = BridgeTransport(zenoh.session_state, self.time_base)
+            if not wants_link(link, os.environ):
+                return (LocalTransport(), zenoh, bridges)
+            from aionode.engine.transport.link import LinkTransport
+
+            linked = LinkTransport(
+                self.participant,
+                self.network.domain_id,
+                zenoh,
+                zenoh.peer_directory,
+                self.time_base,
+            )
+            return (LocalTransport(), linked, bridges)
+        if transport == "rcl":
+            from aionode.engine.transport.rcl import RclTransport
+
+            return (LocalTransport(), RclTransport(self.participant, self.network))
+        raise ValueError(
+            f'Context: transport={brief(transport)} is unknown; use "zenoh", "rcl" or "local"'
+        )
+
+    # Lifetime
+
+    @property
+    def domain_id(self) -> int:
+        """The ROS domain."""
+        return self.network.domain_id
+
+    @classmethod
+    def default(cls) -> Context:
+        """Return the context of nodes created without one; it is created on first use.
+
+        A forked process gets its own.
+        """
+        if cls._default is None or not cls._default.ok() or cls._default._inherited:
+            cls._default = cls()
+        return cls._default
+
+    @classmethod
+    @contextlib.contextmanager
+    def as_default(cls, context: Context) -> Iterator[None]:
+        """Make `context` the default for nodes created in the ``with`` block."""
+        before, cls._default = cls._default, context
+        try:
+            yield
+        finally:
+            cls._default = before
+
+    @classmethod
+    @contextlib.contextmanager
+    def _obeying(cls, arguments: Arguments) -> Iterator[None]:
+        """Apply `arguments` to the nodes of every context for the ``with`` block."""
+        before, cls._command_line = cls._command_line, Usage(arguments)
+        try:
+            yield
+        finally:
+            cls._command_line = before
+
+    @property
+    def arguments(self) -> Arguments:
+        """The ROS arguments that apply to nodes created from now on."""
+        return self._current_usage.arguments
+
+    @arguments.setter
+    def arguments(self, arguments: Arguments) -> None:
+        self._usage = Usage(arguments)
+
+    def new_uuid(self) -> bytes:
+        """Return the 16 bytes of a random UUID, drawn with the seed if there is one."""
+        if self._random is None:
+            return uuid.uuid4().bytes
+        return uuid.UUID(int=self._random.getrandbits(128), version=4).bytes
+
+    def ok(self) -> bool:
+        """Whether the context can be used, that is `shutdown` was not called."""
+        return not self._shut_down
+
+    async def __aenter__(self) -> Self:
+        """Open the context: connect its transports, and wait for the first discovery.
+
+        Raises:
+            EntityDestroyedError: the context was shut down (a RuntimeError).
+            RuntimeError: the context is open in another event loop, or cannot spin in this one.
+            ForkedProcessError: it is the parent's, or the parent was connected (a RuntimeError).
+            TransportError: a transport cannot connect.
+        """
+        self._refuse_if_shut_down()
+        await self._acquire()
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Destroy the nodes, wait until they have ended, and close the transports."""
+        self.shutdown()
+        await to_the_end(self._release(), exc)
+        if self._users:
+            await self._closed.wait()
+
+    def shutdown(self) -> None:
+        """Destroy all nodes, and refuse new ones. Calling it again has no effect.
+
+        Running nodes end soon after; the transports close when the last of them has ended.
+        """
+        self._shut_down = True
+        for node in list(self._nodes):
+            node.destroy_node()
+        if not self._users:
+            self.graph.close()
+
+    async def _acquire(self) -> None:
+        """Keep the context open until `_release`; the first user opens the transports.
+
+        Raises:
+            RuntimeError: the context is open in another event loop.
+            ForkedProcessError: it is the parent's, or the parent was connected (a RuntimeError).
+        """
+        self._refuse_if_inherited()
+        with self._loop_guard:  # event loops may run in different threads
+            self._bind_to_loop()
+            self._users += 1  # before opening, so that another loop sees it in use
+            self._affinity.attach()
+        try:
+            async with self._transition:
+                if not self._open and not self._shut_down:
+                    await self._open_transports()
+                    self._open = True
+                    self._closed.clear()
+        except BaseException:
+            self._users -= 1
+            if not self._users:
+                self._affinity.detach()
+            raise
+
+    def _bind_to_loop(self) -> None:
+        """Use the running loop from now on; a context works in one loop at a time."""
+        loop = asyncio.get_running_loop()
+        if self._loop is loop:
+            return
+        if self._loop is not None and not self._loop.is_closed() and self._users:
+            raise RuntimeError(
+                f"{self!r}: already open in another event loop; all nodes of a context must run in "
+                "one loop, so create one context for each loop"
+            )
+        self._loop = loop
+        self._transition = asyncio.Lock()
+        self._closed = asyncio.Event()
+        self._users = 0
+        self._open = False
+
+    async def _open_transports(self) -> None:
+        opened: list[Transport] = []
+        if any(not isinstance(transport, LocalTransport) for transport in self._transports):
+            if Context._parent_has_connected:
+                raise ForkedProcessError(repr(self))
+            Context._has_connected = True
+        if self._spin_ns:
+            loop = asyncio.get_running_loop()
+            self._stop_spinning = spin_before_blocking(loop, self._spin_ns, perf_ns, repr(self))
+        try:
+            for transport in self._transports:
+                opened.append(transport)
+                await transport.open(self.graph)
+            self._hint_at_rcl()
+        except BaseException:
+            for transport in reversed(opened):
+                await to_the_end(transport.close())
+            self._end_spinning()
+            raise
+
+    def _hint_at_rcl(self) -> None:
+        """Log what reaches the other ROS 2 nodes of this environment, if no node is heard."""
+        if not self._is_on_zenoh:
+            return
+        hint = unheard_middleware(os.environ)
+        if hint and all(node.participant == self.participant for node in self.graph.nodes()):
+            get_logger("aionode.context").warning(hint)
+
+    def _end_spinning(self) -> None:
+        stop, self._stop_spinning = self._stop_spinning, None
+        if stop is not None:
+            stop()
+
+    async def _release(self) -> None:
+        """Undo one `_acquire`; the last user closes the transports.
+
+        Must not be cancelled half-way: call it through `to_the_end`.
+        """
+        if self._inherited:
+            return
+        self._users -= 1
+        async with self._transition:
+            if self._users == 0 and self._open:  # unless it was acquired again meanwhile
+                self._open = False
+                await self._close_transports()
+        if self._users == 0:
+            self._affinity.detach()
+            self._closed.set()
+            if self._shut_down:
+                self.graph.close()
+
+    async def _close_transports(self) -> None:
+        self._end_spinning()
+        for transport in reversed(self._transports):
+            await transport.close()
+        for participant in {node.participant for node in self.graph.nodes()} - {self.participant}:
+            self.graph.remove_participant(participant)
+
+    @classmethod
+    def _send_rest(cls, ends_ns: int) -> bool:
+        """Hand what was published to the operating system, until `ends_ns` at most.
+
+        Event loops of other threads go on meanwhile, and do so themselves.
+
+        Returns:
+            Whether there is a network, whose threads need a moment more.
+        """
+        is_connected = False
+        for context in list(cls._all):
+            if not context._open or context._inherited:
+                continue
+            for transport in context._transports:
+                if context._affinity.thread == threading.get_ident():
+                    transport.send_rest(ends_ns)
+                is_connected |= not isinstance(transport, LocalTransport)
+        return is_connected
+
+    def _refuse_if_shut_down(self) -> None:
+        if self._shut_down:
+            raise EntityDestroyedError("context")
+
+    # In forked processes
+
+    def _refuse_if_inherited(self) -> None:
+        if self._inherited:
+            raise ForkedProcessError(repr(self))
+
+    def _abandon(self) -> None:
+        """Leave this context to the parent process, from which this one was forked.
+
+        Nothing in it may be closed or garbage-collected, as both would affect what the parent uses.
+        """
+        self._inherited = True
+        self._affinity.detach()
+        for node in self._nodes:
+            node._abandon()
+        for transport in self._transports:
+            transport.abandon()
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # never collected, not even at exit
+
+    @classmethod
+    def _after_fork(cls) -> None:
+        """Leave all contexts to the parent. Called in a forked child before anything else runs."""
+        for context in list(cls._all):
+            context._abandon()
+        cls._parent_has_connected = cls._has_connected
+
+    # For nodes
+
+    def _add_node(self, node: ContextNode) -> None:
+        """Add `node`, which `shutdown` destroys.
+
+        Raises:
+            EntityDestroyedError: the context was shut down.
+            ForkedProcessError: it belongs to the parent of this forked process.
+        """
+        self._refuse_if_shut_down()
+        self._refuse_if_inherited()
+        self._nodes[node] = None
+
+    def _remove_node(self, node: ContextNode) -> None:
+        """Forget `node`."""
+        self._nodes.pop(node, None)
+
+    @property
+    def _current_usage(self) -> Usage:
+        """Tells which of the current arguments the nodes have used."""
+        return self._command_line if self._usage is None else self._usage
+
+    @property
+    def transports(self) -> tuple[Transport, ...]:
+        """The transports, in the order in which they open; the local one is first."""
+        return self._transports
+
+    def _new_id(self) -> int:
+        """Return a number that no other node or endpoint of this context has."""
+        self._next_id += 1
+        return self._next_id - 1
+
+    def _register(self, register: Callable[[Transport], RegisteredT]) -> list[RegisteredT]:
+        """Register something with every transport, or with none if one refuses."""
+        registrations: list[RegisteredT] = []
+        try:
+            registrations.extend(map(register, self.transports))
+        except BaseException:
+            for registration in registrations:
+                registration.close()
+            raise
+        return registrations
+
+    def _describe_node(self, name: str, namespace: str, enclave: str) -> NodeInfo:
+        """Return the graph entry of a new node."""
+        return NodeInfo(self.participant, self._new_id(), name, namespace, enclave)
+
+    def _describe_endpoint(
+        self, kind: EndpointKind, node: NodeInfo, name: str, ros_type: Any, qos: QoSProfile
+    ) -> EndpointInfo:
+        """Return the graph entry of a new endpoint."""
+        endpoint = EndpointInfo(
+            kind=kind,
+            node=node,
+            endpoint_id=self._new_id(),
+            name=name,
+            type_name=type_name(ros_type),
+            type_hash=NO_TYPE_HASH if self.ros_distro == "humble" else type_hash(ros_type),
+            qos=qos,
+            gid=b"",
+        )
+        gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
+        return dataclasses.replace(endpoint, gid=gid)
+
+
+SENDS.append(Context._send_rest)
+if hasattr(os, "register_at_fork"):  # not on Windows
+    os.register_at_fork(after_in_child=Context._after_fork)

@@ -1,0 +1,1 @@
+"""Reports about the graph: nodes of one name, and endpoints that do not match."""

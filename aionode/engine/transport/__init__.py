@@ -1,0 +1,1 @@
+"""Ways for messages to travel: `base` is the contract, each other module one implementation."""

@@ -1,0 +1,308 @@
+"""Publishers, which send each message over links, over Zenoh, or both."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from aionode.engine.transport.base import Writer
+from aionode.engine.transport.link import _protocol as protocol
+from aionode.engine.transport.link._protocol import (
+    MESSAGE_HEADER,
+    MESSAGE_MARK,
+    BufferRef,
+    Gone,
+    Opened,
+)
+from aionode.engine.transport.link._send_queue import DATA, LinkSendQueue, RemoteSubscription
+from aionode.engine.transport.link._shared_memory import SHARED_FROM
+from aionode.engine.transport.link._stop import LinkStop
+from aionode.engine.wire import cdr
+from aionode.engine.wire.cdr._layout import has_views
+from aionode.graph import EndpointKind
+from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    from aionode.engine.transport.base import StopSender
+    from aionode.engine.transport.link._connection import Connection
+    from aionode.engine.transport.link._protocol import Credit, Open
+    from aionode.engine.transport.link._registry import LinkRegistry
+    from aionode.engine.wire.cdr import Data
+    from aionode.graph import EndpointInfo
+
+__all__ = ["LinkWriter"]
+
+
+class LinkWriter(Writer):
+    """A publisher, which decides the route of each message.
+
+    Args:
+        registry: The links of this context.
+        endpoint: The publisher.
+        msg_type: The type of its messages.
+        zenoh: Its registration with Zenoh.
+    """
+
+    def __init__(
+        self, registry: LinkRegistry, endpoint: EndpointInfo, msg_type: type[Any], zenoh: Writer
+    ) -> None:
+        self.endpoint = endpoint
+        self.bounded = keeps_all(endpoint.qos)
+        self._registry = registry
+        self._gid = endpoint.gid
+        self._zenoh = zenoh
+        self._msg_type = msg_type
+        self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
+        # One for each process that has asked for the messages; removed when its last subscription
+        # leaves, when the link ends, or when the publisher is destroyed.
+        self._send_queues: dict[Connection, LinkSendQueue] = {}
+        # The number of the last message, as far as it was encoded for anything.
+        self._sequence = 0
+        # The same, for `write`: one of them may prove to be broken meanwhile, and is removed.
+        self._targets: tuple[LinkSendQueue, ...] = ()
+        # Encodes messages that go to every process in one piece; None if there is no link, or
+        # if `_write_otherwise` has to see to them.
+        self._encode: Callable[[Any], bytes] | None = None
+        # Whether Zenoh has to carry messages too: a matched subscription has not switched.
+        self._needs_zenoh = True
+        # The registry's `changes` when that was computed; -1 to compute it again.
+        self._asked_at = -1
+        # Whether a send queue has `wants`, and how many messages it has not got because of that.
+        self._is_filtered = False
+        self._filtered = 0
+        # Messages dropped in send queues that were removed.
+        self._dropped = 0
+
+    @property
+    def active(self) -> bool:  # type: ignore[override]  # asked for each message, and so computed
+        """Whether a message written now would be used."""
+        return bool(self._targets) or self._zenoh.active
+
+    @property
+    def dropped(self) -> int:
+        """The number of messages dropped because a link was slow, or Zenoh."""
+        linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
+        return self._dropped + linked + self._zenoh.dropped
+
+    @property
+    def filtered(self) -> int:
+        """The number of messages not sent over a link, or over Zenoh, as none is wanted there."""
+        return self._filtered + self._zenoh.filtered
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``link``, ``zenoh``, or both while another subscription still needs Zenoh."""
+        if not any(reader.gid in send_queue.readers for send_queue in self._send_queues.values()):
+            return self._zenoh.route_of(reader)
+        return "link and zenoh" if self.update() else "link"
+
+    @property
+    def linked(self) -> int:
+        """The number of subscriptions that receive over a link only."""
+        return sum(
+            reader.switched
+            for send_queue in self._send_queues.values()
+            for reader in send_queue.readers.values()
+        )
+
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Send `msg` over each route that a subscription needs."""
+        encode = self._encode
+        if encode is not None:
+            payload = encode(msg)
+            size = len(payload)
+            if size < SHARED_FROM:
+                # `protocol.pack` inlined: one call less for each message.
+                data = MESSAGE_HEADER.pack(size, MESSAGE_MARK, sequence, source_ns, self._gid)
+                data += payload
+                for send_queue in self._targets:
+                    send_queue.send(sequence, data)
+            else:
+                self._write_parts([payload], sequence, source_ns, self._targets)
+            self._sequence = sequence
+        elif self._targets:
+            self._write_otherwise(msg, sequence, source_ns)
+            self._sequence = sequence
+        if self._needs_zenoh and self.update():
+            if self._zenoh.active:
+                self._zenoh.write(msg, sequence, source_ns)
+            self._sequence = sequence
+
+    def _write_otherwise(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Send a message over links that holds views, or that some processes do not want."""
+        targets = self._targets
+        if self._is_filtered:
+            targets = tuple(
+                target for target in targets if target.wants is None or target.wants(msg)
+            )
+            self._filtered += len(self._targets) - len(targets)
+        if not targets:
+            return
+        if has_views(self._msg_type):
+            parts = cdr.parts_encoder(self._msg_type)(msg)
+        else:
+            parts = [cdr.encoder(self._msg_type)(msg)]
+        self._write_parts(parts, sequence, source_ns, targets)
+
+    def update_filters(self) -> None:
+        """Find out which processes want all messages, after a change of subscriptions."""
+        filters = self._registry.content_filters
+        for send_queue in self._send_queues.values():
+            readers = dict.fromkeys(send_queue.readers, send_queue.connection.participant)
+            send_queue.wants = filters.wanted_by(self.endpoint.name, readers, self._msg_type)
+        self._targets_changed()
+
+    def _targets_changed(self) -> None:
+        """Find out how to send from the next message on."""
+        targets = self._targets = tuple(self._send_queues.values())
+        self._is_filtered = any(send_queue.wants is not None for send_queue in targets)
+        self._encode = None
+        if targets and not self._is_filtered and not has_views(self._msg_type):
+            self._encode = cdr.encoder(self._msg_type)
+
+    def _write_parts(
+        self,
+        parts: Sequence[Data],
+        sequence: int,
+        source_ns: int,
+        targets: tuple[LinkSendQueue, ...],
+    ) -> None:
+        """Send what may be large: if it is, in one shared buffer for all links."""
+        pool = self._registry.pool
+        size = sum(map(len, parts))
+        buffer = pool.filled(parts, size) if size >= SHARED_FROM else None
+        payload = b"".join(parts) if buffer is None else BufferRef(buffer.number, size).pack()
+        in_shm = buffer is not None
+        data = protocol.pack(DATA, sequence, source_ns, self._gid, payload, in_shm=in_shm)
+        for send_queue in targets:
+            send_queue.send(sequence, data, buffer)
+        if buffer is not None:
+            pool.release(buffer)
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
+        """Return what sends the stop of a lease."""
+        payload = cdr.encoder(self._msg_type)(stop)
+        return LinkStop(self, payload, self._zenoh.prepare_stop(stop, is_last))
+
+    def assert_liveliness(self) -> None:
+        """Tell the subscriptions of other contexts: over Zenoh, which reaches all of them."""
+        self._zenoh.assert_liveliness()
+
+    def has_room(self) -> bool:
+        """Whether one more message could be sent without dropping any."""
+        return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (
+            not (self._needs_zenoh and self.update()) or self._zenoh.has_room()
+        )
+
+    async def drain(self) -> None:
+        """Wait until everything was handed to the operating system, or to Zenoh."""
+        while slow := [
+            send_queue for send_queue in self._send_queues.values() if not send_queue.is_done()
+        ]:
+            await slow[0].connection.progress()
+        await self._zenoh.drain()
+
+    def close(self) -> None:
+        """Withdraw the publisher."""
+        self._registry.remove(self._gid)
+        self._zenoh.close()
+        gone = Gone(self._gid).pack()
+        for send_queue in self._send_queues.values():
+            send_queue.end(gone)
+            self._registry.keep(self._gid, send_queue)
+        self._send_queues.clear()
+        self._targets_changed()
+
+    # Control frames of subscriptions at the other end of a link
+
+    def open(self, connection: Connection, asked: Open) -> None:
+        """Send to a subscription from the next message on."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is None:
+            send_queue = LinkSendQueue(
+                self._gid,
+                self.endpoint.name,
+                connection,
+                depth_of(self.endpoint.qos),
+                keep_all=self.bounded,
+            )
+            self._send_queues[connection] = send_queue
+        send_queue.add(
+            asked.subscription,
+            RemoteSubscription(
+                asked.window
+                if self.bounded
+                else 0,  # KEEP_LAST drops its oldest instead of waiting
+                0,
+                self._sequence,
+                confirms=asked.confirms and self._reliable,
+            ),
+        )
+        self.update_filters()
+        connection.send(Opened(self._gid, asked.subscription, self._sequence))
+        self.reconsider()
+
+    def switched(self, connection: Connection, reader: bytes) -> None:
+        """Stop sending to `reader` over Zenoh."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is not None and reader in send_queue.readers:
+            send_queue.readers[reader].switched = True
+            self.reconsider()
+
+    def credit(self, connection: Connection, credit: Credit) -> None:
+        """Take the credit of a subscription."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is not None:
+            send_queue.credit(credit)
+
+    def leave(self, connection: Connection, reader: bytes) -> None:
+        """Stop sending to `reader`."""
+        send_queue = self._send_queues.get(connection)
+        if send_queue is None:
+            return
+        send_queue.remove(reader)
+        self.update_filters()
+        if not send_queue.readers:
+            self._forget(connection)
+        self.reconsider()
+
+    def broken(self, connection: Connection) -> Iterator[bytes]:
+        """Stop using `connection`, which is closed; yield the frames that may not have arrived."""
+        send_queue = self._forget(connection)
+        self.reconsider()
+        return iter(()) if send_queue is None else send_queue.unacked()
+
+    def _forget(self, connection: Connection) -> LinkSendQueue | None:
+        send_queue = self._send_queues.pop(connection, None)
+        if send_queue is not None:
+            self._dropped += send_queue.dropped
+            self._targets_changed()
+        return send_queue
+
+    def reconsider(self) -> None:
+        """Have the next message find out whether a subscription needs Zenoh.
+
+        Not now: with many subscriptions to one topic, each of them would look at all.
+        """
+        self._needs_zenoh = True
+        self._asked_at = -1
+
+    def update(self) -> bool:
+        """Return whether a subscription needs Zenoh: it has not switched, or is not announced."""
+        registry = self._registry
+        if not self._send_queues:
+            self._needs_zenoh = True
+        elif self._asked_at != registry.changes:
+            self._asked_at = registry.changes
+            switched = {
+                gid
+                for send_queue in self._send_queues.values()
+                for gid, reader in send_queue.readers.items()
+                if reader.switched
+            }
+            self._needs_zenoh = any(
+                other.gid not in switched
+                for other in registry.remote(EndpointKind.SUBSCRIPTION, self.endpoint.name)
+                if self.endpoint.matches(other)
+            ) or registry.may_be_heard(self.endpoint, self.reconsider)
+        return self._needs_zenoh

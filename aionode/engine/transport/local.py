@@ -1,0 +1,410 @@
+"""Within one context: messages travel as objects, and no bytes are made.
+
+Readers share one snapshot of each message, taken when it is published. The matching rules are those
+of DDS; endpoints that do not match do not hear each other.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from aionode.engine.transport.base import (
+    Registration,
+    Request,
+    Requester,
+    SampleInfo,
+    StopSender,
+    Transport,
+    Writer,
+)
+from aionode.errors import ServiceError
+from aionode.message import snapshotter
+from aionode.qos import DurabilityPolicy, depth_of, keeps_all
+
+if TYPE_CHECKING:
+    from aionode.engine.transport.base import Call, Reader, ReplyTo, Serve
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+
+__all__ = ["LocalTransport"]
+
+MemberT = TypeVar("MemberT", "LocalWriter", "LocalReader")
+
+Deliver = Callable[[Any, bytes, int, int], None]
+"""Takes a message, its publisher's gid, its number and its time, as `Reader.deliver` does."""
+
+
+class LocalTransport(Transport):
+    """The transport of a context to itself."""
+
+    def __init__(self) -> None:
+        # By name, in the order in which they were created.
+        self._writers: dict[str, dict[LocalWriter, None]] = {}
+        self._readers: dict[str, dict[LocalReader, None]] = {}
+        self._servers: dict[str, list[LocalServer]] = {}
+
+    async def open(self, graph: Graph) -> None:
+        """There is nothing to connect."""
+
+    async def close(self) -> None:
+        """There is nothing to disconnect."""
+
+    def create_node(self, node: NodeInfo) -> Registration:  # noqa: ARG002  # no other process
+        """Nodes of this context are known to its graph already."""
+        return _Nothing()
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Connect a publisher with the subscriptions of its topic."""
+        writer = LocalWriter(endpoint, msg_type, self._writers)
+        self._writers.setdefault(endpoint.name, {})[writer] = None
+        for reader in self._readers.get(endpoint.name, ()):
+            writer.meet(reader)
+        return writer
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> Registration:
+        """Connect a subscription with the publishers of its topic; late ones get the history."""
+        local_reader = LocalReader(endpoint, msg_type, reader, self._readers, self._writers)
+        self._readers.setdefault(endpoint.name, {})[local_reader] = None
+        for writer in self._writers.get(endpoint.name, ()):
+            writer.meet(local_reader)
+        return local_reader
+
+    def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
+        """Connect a server with the clients of its service."""
+        server = LocalServer(endpoint, srv_type, serve, self._servers)
+        self._servers.setdefault(endpoint.name, []).append(server)
+        return server
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: Any) -> Requester:
+        """Connect a client with the servers of its service."""
+        return LocalRequester(endpoint, srv_type, self._servers)
+
+
+def _in_class(msg: Any, msg_type: type[Any]) -> Any:
+    """Return `msg` as an instance of `msg_type`.
+
+    There may be two classes for one definition, such as a generated one and one written by hand.
+    """
+    if type(msg) is msg_type:
+        return msg
+    from aionode.engine.wire import cdr  # nodes of one definition need no codec
+
+    return cdr.decode(msg_type, cdr.encode(msg))
+
+
+class _Nothing(Registration):
+    def close(self) -> None:
+        pass
+
+
+# Topics
+
+
+def _leave(side: dict[str, dict[MemberT, None]], member: MemberT) -> None:
+    """Remove an endpoint from those of its name; twice is the same as once."""
+    members = side.get(member.endpoint.name)
+    if members is not None:
+        members.pop(member, None)
+        if not members:
+            del side[member.endpoint.name]
+
+
+class LocalReader(Registration):
+    """A subscription as its publishers in the same context see it.
+
+    Its content filter is applied where a message is delivered, which is still within `publish`.
+    """
+
+    def __init__(
+        self,
+        endpoint: EndpointInfo,
+        msg_type: type[Any],
+        reader: Reader,
+        readers: dict[str, dict[LocalReader, None]],
+        writers: dict[str, dict[LocalWriter, None]],
+    ) -> None:
+        self.endpoint = endpoint
+        self.msg_type = msg_type
+        self.reader = reader
+        self._readers = readers
+        self._writers = writers
+        self.bounded = keeps_all(endpoint.qos)
+
+    def delivery_from(self, msg_type: type[Any]) -> Deliver:
+        """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
+        deliver = self.reader.deliver
+        if self.reader.raw:
+            from aionode.engine.wire import cdr  # nodes without raw readers need no codec
+
+            encode: Callable[[Any], Any] = cdr.encoder(msg_type)
+            if self.reader.raw == "parts" and cdr.has_views(msg_type):
+                encode = cdr.parts_encoder(msg_type)
+            return lambda msg, *rest: deliver(encode(msg), *rest)
+        if self.msg_type is not msg_type:
+            return lambda msg, *rest: deliver(_in_class(msg, self.msg_type), *rest)
+        return deliver
+
+    def close(self) -> None:
+        """Leave every publisher."""
+        _leave(self._readers, self)
+        for writer in self._writers.get(self.endpoint.name, ()):
+            writer.part(self)
+
+
+class LocalWriter(Writer):
+    """A publisher as its subscriptions in the same context see it."""
+
+    def __init__(
+        self,
+        endpoint: EndpointInfo,
+        msg_type: type[Any],
+        writers: dict[str, dict[LocalWriter, None]],
+    ) -> None:
+        self.endpoint = endpoint
+        self._msg_type = msg_type
+        self._writers = writers
+        self._snapshot = snapshotter(msg_type)
+        self._gid = endpoint.gid
+        self._matched: dict[LocalReader, Deliver] = {}
+        self._deliveries: tuple[Deliver, ...] = ()
+        # The history for late readers: each message, its number, and its time.
+        self._history: deque[tuple[Any, int, int]] | None = None
+        qos = endpoint.qos
+        if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            self._history = deque(maxlen=depth_of(qos))
+        self.active = self._history is not None
+        self.bounded = False
+
+    def meet(self, reader: LocalReader) -> None:
+        """Match with `reader` if both fit, and give it what it missed."""
+        if not self.endpoint.matches(reader.endpoint):
+            return
+        deliver = reader.delivery_from(self._msg_type)
+        wanted = reader.endpoint.qos
+        if self._history and wanted.durability is DurabilityPolicy.TRANSIENT_LOCAL:
+            for msg, sequence, source_ns in list(self._history)[-depth_of(wanted) :]:
+                deliver(msg, self._gid, sequence, source_ns)
+        self._matched[reader] = deliver
+        # Not `_update`, which looks at all: many may meet many.
+        self._deliveries += (deliver,)
+        self.active = True
+        self.bounded = self.bounded or reader.bounded
+
+    def part(self, reader: LocalReader) -> None:
+        """Forget `reader`, whether it was matched or not."""
+        if self._matched.pop(reader, None) is not None:
+            self._update()
+
+    def _update(self) -> None:
+        self._deliveries = tuple(self._matched.values())
+        self.active = bool(self._deliveries) or self._history is not None
+        self.bounded = self.bounded and any(reader.bounded for reader in self._matched)
+
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Give one snapshot of `msg` to all."""
+        snapshot = self._snapshot(msg)
+        if self._history is not None:
+            self._history.append((snapshot, sequence, source_ns))
+        for deliver in self._deliveries:
+            deliver(snapshot, self._gid, sequence, source_ns)
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # it reaches all
+        """Return what sends the stop of a lease."""
+        return LocalStop(self, stop)
+
+    def write_stop(self, stop: Any, sequence: int, source_ns: int) -> None:
+        """Give the stop of a lease to all; a full KEEP_ALL reader gets it as soon as it has room.
+
+        To others it is the newest message, which no full queue drops.
+        """
+        if self._history is not None:
+            self._history.append((stop, sequence, source_ns))
+        for reader, deliver in list(self._matched.items()):
+            if reader.bounded and not reader.reader.has_room():
+                reader.reader.when_room(partial(deliver, stop, self._gid, sequence, source_ns))
+            else:
+                deliver(stop, self._gid, sequence, source_ns)
+
+    def has_room(self) -> bool:
+        """Whether every reliable KEEP_ALL reader can take one more message."""
+        return all(reader.reader.has_room() for reader in self._matched if reader.bounded)
+
+    def assert_liveliness(self) -> None:
+        """Tell every reader."""
+        for reader in self._matched:
+            reader.reader.note_alive(self.endpoint.gid)
+
+    async def drain(self) -> None:
+        """Wait until `has_room`."""
+        while not self.has_room():
+            for reader in list(self._matched):
+                if reader.bounded:
+                    await reader.reader.wait_for_room()
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``local`` for the subscriptions of this context."""
+        return "local" if any(matched.endpoint == reader for matched in self._matched) else None
+
+    def close(self) -> None:
+        """Leave every subscription."""
+        _leave(self._writers, self)
+        self._matched.clear()
+        self._history = None
+        self._update()
+
+
+class LocalStop(StopSender):
+    """Sends the stop of a lease to the subscriptions of this context, which only the loop can."""
+
+    def __init__(self, writer: LocalWriter, stop: Any) -> None:
+        self._writer = writer
+        self._stop = stop
+
+    def send(self, sequence: int, source_ns: int) -> None:
+        """Send it."""
+        self._writer.write_stop(self._stop, sequence, source_ns)
+
+
+# Services
+
+
+class LocalServer(Registration):
+    """A server as its clients in the same context see it."""
+
+    def __init__(
+        self,
+        endpoint: EndpointInfo,
+        srv_type: Any,
+        serve: Serve,
+        servers: dict[str, list[LocalServer]],
+    ) -> None:
+        self.endpoint = endpoint
+        self.srv_type = srv_type
+        self.serve = serve
+        self._servers = servers
+        self.unanswered: dict[LocalRequest, None] = {}  # in order, to give them up in order
+
+    def close(self) -> None:
+        """Leave every client, and give up what was not answered."""
+        beside = self._servers.get(self.endpoint.name, [])
+        if self in beside:
+            beside.remove(self)
+            if not beside:
+                del self._servers[self.endpoint.name]
+        for request in list(self.unanswered):
+            request.drop()
+
+
+class LocalRequest(Request):
+    """One request to one server."""
+
+    def __init__(
+        self, message: Any, sample_info: SampleInfo, server: LocalServer, call: LocalCall
+    ) -> None:
+        self.message = message
+        self.sample_info = sample_info
+        self._server = server
+        self._call = call
+        self._snapshot = snapshotter(server.srv_type.Response)
+        server.unanswered[self] = None
+
+    def _finish(self) -> bool:
+        """Mark the request as answered; return whether this is the first time."""
+        if self not in self._server.unanswered:
+            return False
+        del self._server.unanswered[self]
+        return True
+
+    def reply(self, response: Any) -> None:
+        """Give a snapshot of the response to the client."""
+        snapshot = self._snapshot(response)
+        if self._finish():
+            snapshot = _in_class(snapshot, self._call.srv_type.Response)
+            self._call.reply(
+                snapshot, SampleInfo(self._server.endpoint.gid, self.sample_info.sequence, 0)
+            )
+
+    def fail(self, error_type: str, error_text: str) -> None:
+        """Give an error to the client."""
+        if self._finish():
+            self._call.fail(ServiceError(self._server.endpoint.name, error_text, error_type))
+
+    def drop(self) -> None:
+        """Tell the client that this server will not answer."""
+        if self._finish():
+            self._call.end()
+
+
+class LocalCall:
+    """One call under way, to one or more servers."""
+
+    def __init__(self, reply_to: ReplyTo, srv_type: Any) -> None:
+        self._reply_to: ReplyTo | None = reply_to
+        self.srv_type = srv_type
+        self.requests: list[LocalRequest] = []
+        self.open = 0
+
+    def reply(self, response: Any, sample_info: SampleInfo) -> None:
+        """Pass on a server's response."""
+        if self._reply_to is not None:
+            self._reply_to.reply(response, sample_info)
+
+    def fail(self, error: ServiceError) -> None:
+        """Pass on a server's error."""
+        if self._reply_to is not None:
+            self._reply_to.fail(error)
+
+    def end(self) -> None:
+        """Handle a server that will not answer; the last one ends the call."""
+        self.open -= 1
+        if self.open == 0 and self._reply_to is not None:
+            self._reply_to.end()
+
+    def cancel(self) -> None:
+        """Forget the call."""
+        self._reply_to = None
+        for request in self.requests:
+            request.cancelled = True
+
+
+class LocalRequester(Requester):
+    """A client as its servers in the same context see it."""
+
+    def __init__(
+        self, endpoint: EndpointInfo, srv_type: Any, servers: dict[str, list[LocalServer]]
+    ) -> None:
+        self._endpoint = endpoint
+        self._srv_type = srv_type
+        self._servers = servers
+        self._snapshot = snapshotter(srv_type.Request)
+
+    def _matched(self) -> list[LocalServer]:
+        servers = self._servers.get(self._endpoint.name)
+        if servers is None:
+            return []
+        return [server for server in servers if self._endpoint.matches(server.endpoint)]
+
+    @property
+    def servers(self) -> int:
+        """The number of servers of this context that are matched."""
+        return len(self._matched())
+
+    def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
+        """Give a snapshot of `request` to every server."""
+        snapshot = self._snapshot(request)
+        call = LocalCall(reply_to, self._srv_type)
+        servers = self._matched()
+        call.open = len(servers)
+        for server in servers:
+            message = _in_class(snapshot, server.srv_type.Request)
+            local_request = LocalRequest(message, sample_info, server, call)
+            call.requests.append(local_request)
+            server.serve(local_request)
+        return call
+
+    def close(self) -> None:
+        """Clients leave nothing behind."""

@@ -1,0 +1,362 @@
+"""Publishers and subscriptions on rcl."""
+
+from __future__ import annotations
+
+from collections import deque
+from ctypes import byref, c_size_t, string_at
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.engine.transport.base import StopSender, Writer
+from aionode.engine.transport.rcl._bindings import UNNUMBERED, ByteArray, MessageInfo, load, view
+from aionode.engine.transport.rcl._state import RclDeclaration
+from aionode.engine.transport.rcl._types import rosidl_class
+from aionode.engine.transport.rcl._wake import Wake
+from aionode.engine.transport.send_thread import SendQueue, SendThread
+from aionode.engine.wire import cdr
+from aionode.errors import DecodeError
+from aionode.graph import EndpointKind
+from aionode.qos import DurabilityPolicy, depth_of, keeps_all
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.engine.transport.base import Reader
+    from aionode.engine.transport.rcl._bindings import Rcl
+    from aionode.engine.transport.rcl._state import RclState
+    from aionode.graph import EndpointInfo
+
+__all__ = ["RclReader", "RclWriter"]
+
+BULK_BYTES: Final = 60_000
+"""From this size on a message is sent by a thread; after the first one, a subscription takes all of
+its messages without the GIL.
+"""
+
+REMEMBERED_PUBLISHERS: Final = 1024
+"""Publishers whose messages are counted."""
+
+GIVE_UP_TRIES: Final = 20
+"""Tries of a publisher that is being destroyed to send one more message (0.1 s each)."""
+
+
+class RclWriter(RclDeclaration, Writer):
+    """A publisher for the subscriptions of others.
+
+    The loop sends small messages itself, which never waits with KEEP_LAST. Large ones are sent by
+    the context's thread; with KEEP_ALL, where DDS waits 0.1 s for readers and then refuses, all are
+    sent by a thread of this publisher, which tries again.
+    """
+
+    def __init__(self, state: RclState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
+        super().__init__(state, endpoint)
+        self._encode: Callable[[Any], bytes] = cdr.encoder(msg_type)
+        self._transient = endpoint.qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
+        self.bounded = keeps_all(endpoint.qos)
+        self._handle: Any = None
+        self._pointer = 0
+        self._publish: Callable[..., int] | None = None
+        # Published before the context was open, for late readers.
+        self._early: deque[bytes] = deque(maxlen=depth_of(endpoint.qos))
+        self._blocking = SendThread("aionode-rcl-blocking", state.waker) if self.bounded else None
+        self._queue: SendQueue = (self._blocking or state.bulk).send_queue(
+            depth_of(endpoint.qos), keep_all=self.bounded
+        )
+        self._queued = self.bounded  # whether messages go through the queue
+        self._readers: set[EndpointInfo] = set()
+        self._matched = c_size_t()
+        self._unwatch: Callable[[], None] | None = None
+        self._closing = False
+        self._refused = 0
+        state.add(self)
+
+    def declare(self, rcl: Rcl) -> None:
+        """Make the publisher, and send what was published before."""
+        ros_class = rosidl_class(self.endpoint.type_name, self.endpoint.type_hash)
+        self._closing = False
+        self._handle = self.make(rcl.module.Publisher, ros_class)
+        self._pointer = self._handle.pointer
+        self._publish = rcl.publish
+        gid = rcl.publisher_gid(self._pointer)
+        self.state.note_own(gid)
+        self.identify(gid)
+        if self.state.graph is not None:
+            self._unwatch = self.state.graph.watch(
+                EndpointKind.SUBSCRIPTION, self.endpoint.name, self._note_reader
+            )
+        while self._early:
+            self._put(self._early.popleft())
+
+    def _note_reader(self, reader: EndpointInfo, present: bool) -> None:
+        if present and reader.node.over_rcl and self.endpoint.matches(reader):
+            self._readers.add(reader)
+        else:
+            self._readers.discard(reader)
+
+    @property
+    def active(self) -> bool:  # type: ignore[override]  # it is asked for
+        """Whether a reader is known: to the graph, or, which may be earlier, to the middleware."""
+        return self._transient or bool(self._readers) or self._is_matched()
+
+    def _is_matched(self) -> bool:
+        """Return whether the middleware knows of more readers than those of this context."""
+        rcl, matched = self.state.rcl, self._matched
+        if rcl is None or self._handle is None:
+            return False
+        if rcl.count_subscriptions(self._pointer, byref(matched)):
+            rcl.forget_error()
+            return False
+        return matched.value > 0 and matched.value > self.state.count_own_readers(self.endpoint)
+
+    def undeclare(self) -> None:
+        """Destroy the publisher, after the messages that wait for a thread."""
+        handle, self._handle = self._handle, None
+        self._publish = None
+        self._closing = True
+        if self._unwatch is not None:
+            self._unwatch()
+            self._unwatch = None
+        self._readers.clear()
+        if handle is None:
+            return
+        if not len(self._queue):
+            handle.destroy_when_not_in_use()
+        else:
+            (self._blocking or self.state.bulk).submit(handle.destroy_when_not_in_use)
+        if self._blocking is not None:
+            self._blocking.close()
+
+    # Messages
+
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS numbers them
+        """Send `msg`."""
+        payload = self._encode(msg)
+        publish = self._publish
+        if publish is None:
+            if self._transient:
+                self._early.append(payload)
+        elif len(payload) >= BULK_BYTES or (self._queued and self._is_queueing()):
+            self._put(payload)
+        elif publish(self._pointer, byref(view(payload)), None):
+            self._note_refused()
+
+    def _put(self, payload: bytes) -> None:
+        """Have a thread send a message that may take long, or that comes after such ones."""
+        send = partial(self._send_without_gil, self._handle, self._pointer, payload)
+        self._queue.put(send, len(payload))
+        self._queued = True
+
+    def _is_queueing(self) -> bool:
+        """Return whether the next message has to wait for those before it."""
+        self._queued = self.bounded or len(self._queue) > 0
+        return self._queued
+
+    def _send_without_gil(self, handle: Any, pointer: int, payload: bytes) -> None:  # noqa: ARG002
+        """Send a message in a thread; `handle` keeps the publisher alive meanwhile."""
+        rcl, array = load(), view(payload)
+        tries = 0
+        while rcl.publish_without_gil(pointer, byref(array), None):
+            if not self.bounded or (self._closing and tries >= GIVE_UP_TRIES):
+                self._note_refused()
+                return
+            rcl.forget_error()
+            tries += self._closing
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # DDS sends lost ones again
+        """Return what sends the stop of a lease."""
+        return RclStop(self, self._encode(stop))
+
+    def write_stop(self, payload: bytes) -> None:
+        """Send the stop of a lease, behind a large message that a thread sends just now."""
+        self._queue.abandon()
+        if self._publish is None:
+            if self._transient:
+                self._early.append(payload)
+        elif len(self._queue) or len(payload) >= BULK_BYTES:
+            self._put(payload)
+        else:
+            self.put_stop(payload)
+
+    def put_stop(self, payload: bytes) -> None:
+        """Send the stop of a lease now, from any thread."""
+        rcl, pointer = self.state.rcl, self._pointer
+        if rcl is None or self._handle is None:
+            return
+        if rcl.publish_without_gil(pointer, byref(view(payload)), None):
+            self._note_refused()
+
+    def _note_refused(self) -> None:
+        self._refused += 1
+        self.state.note_refused(self.endpoint.name)
+
+    def has_room(self) -> bool:
+        """Whether one more message can wait for its turn."""
+        return not self.bounded or self._queue.has_room()
+
+    async def flush(self) -> None:
+        """Wait until everything was handed to the middleware."""
+        await self._queue.drain()
+
+    async def drain(self) -> None:
+        """Wait until everything was handed to the middleware."""
+        await self._queue.drain()
+
+    def assert_liveliness(self) -> None:
+        """Tell the readers, as DDS does it."""
+        if self._handle is not None and self.state.rcl is not None:
+            self.state.rcl.assert_liveliness(self._pointer)
+
+    @property
+    def dropped(self) -> int:
+        """The number of messages dropped on their way because it was slow."""
+        return self._queue.dropped + self._refused
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return ``rcl`` for the subscriptions of others."""
+        return "rcl" if reader in self._readers else None
+
+
+class RclStop(StopSender):
+    """Sends the stop of a lease over rcl, whose publishers any thread may use."""
+
+    def __init__(self, writer: RclWriter, payload: bytes) -> None:
+        self._writer = writer
+        self._payload = payload
+        self._past = 0  # its number, once it was sent past the loop
+
+    def send(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS has its own
+        """Send it, unless that was done past the loop."""
+        if sequence != self._past and self._writer.active:
+            self._writer.write_stop(self._payload)
+
+    def send_past_loop(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # the same
+        """Send it."""
+        self._past = sequence
+        self._writer.put_stop(self._payload)
+
+
+class RclReader(RclDeclaration):
+    """A subscription for the publishers of others.
+
+    It cannot leave out this context's own publishers, whom `LocalTransport` serves, so it drops
+    their messages.
+    """
+
+    def __init__(
+        self, state: RclState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> None:
+        super().__init__(state, endpoint)
+        self._reader = reader
+        self._decode: Callable[[bytes], Any] = bytes if reader.raw else cdr.decoder(msg_type)
+        self._keep_all = keeps_all(endpoint.qos)
+        self._handle: Any = None
+        self._pointer = 0
+        self._wake: Wake | None = None
+        self._array = ByteArray()  # where the middleware writes messages
+        self._to_array = byref(self._array)
+        self._info = MessageInfo()
+        self._to_info = byref(self._info)
+        self._take_it: Callable[..., int] | None = None
+        self._other = b""  # gid of the publisher of the last message, which is no own one
+        self._waits_for_room = False
+        self._counts: dict[bytes, int] = {}  # where the middleware does not number messages
+        state.add(self)
+
+    def declare(self, rcl: Rcl) -> None:
+        """Make the subscription."""
+        ros_class = rosidl_class(self.endpoint.type_name, self.endpoint.type_hash)
+        loop = self.state.loop
+        if loop is None:
+            return
+        self._handle = self.make(rcl.module.Subscription, ros_class)
+        self._pointer = self._handle.pointer
+        self._array = rcl.new_array()
+        self._to_array = byref(self._array)
+        self._take_it = rcl.take
+        gid = self._find_gid(rcl)
+        if gid is not None:
+            self.identify(gid)
+        self._wake = Wake(loop, rcl, rcl.set_subscription_callback, self._pointer, self._take)
+
+    def _find_gid(self, rcl: Rcl) -> bytes | None:
+        """Return the gid of this subscription: the one of its node that is not known yet."""
+        node, graph = self.state.node(self.endpoint.node), self.state.graph
+        if graph is None:
+            return None
+        name = self.endpoint.name
+        with node:
+            infos = rcl.module.rclpy_get_subscriptions_info_by_topic(node, name, False)
+        known = {info.gid for info in graph.endpoints(EndpointKind.SUBSCRIPTION, name=name)}
+        known |= self.state.own_gids
+        for info in infos:
+            gid = bytes(info["endpoint_gid"])
+            names = (info["node_name"], info["node_namespace"])
+            own = (self.endpoint.node.name, self.endpoint.node.namespace)
+            if names == own and gid not in known:
+                self.state.note_own(gid)
+                return gid
+        return None
+
+    def undeclare(self) -> None:
+        """Destroy the subscription."""
+        wake, self._wake = self._wake, None
+        handle, self._handle = self._handle, None
+        array, self._array = self._array, ByteArray()
+        self._take_it = None
+        if wake is not None:
+            wake.close()
+        if handle is not None:
+            handle.destroy_when_not_in_use()
+            if self.state.rcl is not None:
+                self.state.rcl.free_array(array)
+
+    def _take(self, inline_deadline_ns: int) -> bool:
+        """Take one message; return whether there was one that could be taken."""
+        rcl, take = self.state.rcl, self._take_it
+        if rcl is None or take is None:
+            return False
+        if self._keep_all and not self._reader.has_room():
+            self._wait_for_room()
+            return False
+        if take(self._pointer, self._to_array, self._to_info, None):
+            rcl.forget_error()
+            return False
+        gid = bytes(self._info.gid)
+        if gid != self._other:
+            if self.state.is_own(gid):
+                return True
+            self._other = gid
+        self._deliver(rcl, gid, inline_deadline_ns)
+        return True
+
+    def _deliver(self, rcl: Rcl, gid: bytes, inline_deadline_ns: int) -> None:
+        """Hand on the message that was taken."""
+        info, array = self._info, self._array
+        size = array.length
+        if size >= BULK_BYTES:
+            self._take_it = rcl.take_without_gil
+        payload = string_at(array.buffer, size)
+        sequence = info.sequence
+        if sequence == UNNUMBERED:
+            counts = self._counts
+            if gid not in counts and len(counts) >= REMEMBERED_PUBLISHERS:
+                del counts[next(iter(counts))]
+            sequence = counts[gid] = counts.get(gid, 0) + 1
+        try:
+            msg = self._decode(payload)
+        except DecodeError as error:
+            self.state.note_malformed(self.endpoint.name, str(error))
+            self._reader.reject(error)
+        else:
+            self._reader.deliver(msg, gid, sequence, info.source_ns, inline_deadline_ns)
+
+    def _wait_for_room(self) -> None:
+        """Leave messages in the middleware, which holds their publishers back."""
+        if not self._waits_for_room:
+            self._waits_for_room = True
+            self._reader.when_room(self._go_on)
+
+    def _go_on(self) -> None:
+        self._waits_for_room = False
+        if self._wake is not None:
+            self._wake.again()

@@ -1,0 +1,304 @@
+"""Threads for sends that may block, so that the event loop never does."""
+
+from __future__ import annotations
+
+import asyncio
+import atexit
+import threading
+import weakref
+from collections import deque
+from collections.abc import Callable
+from queue import SimpleQueue
+from typing import TYPE_CHECKING, Final
+
+from aionode.clock import perf_ns
+from aionode.engine.transport.loop_waker import ThreadsafeQueue
+from aionode.engine.transport.network import QUEUE_BYTES
+
+if TYPE_CHECKING:
+    from aionode.engine.transport.loop_waker import LoopWaker
+
+__all__ = ["SendQueue", "SendThread", "start_thread"]
+
+
+Job = Callable[[], None]
+
+EXIT_S: Final = 1.0
+"""Time for which the process waits at exit for threads that are sending, in seconds."""
+
+INSIDE_S: Final = 2.0
+"""Time for which it waits for other threads, in seconds. Closing a session may take a second on a
+busy machine, and beside a frozen peer far longer than anybody would wait."""
+
+started: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
+"""The threads that `start_thread` has started, for `end_all`."""
+
+
+def start_thread(thread: threading.Thread) -> bool:
+    """Start a thread, for which the process waits at exit.
+
+    Returns:
+        False if the interpreter is shutting down: from Python 3.12 on none can be started then,
+        although the loop of a thread of its own still runs.
+    """
+    try:
+        thread.start()
+    except RuntimeError:
+        return False
+    started.add(thread)
+    return True
+
+
+class Worker:
+    """One thread and its jobs.
+
+    Attributes:
+        stopped: Whether waiting jobs are dropped.
+        thread: A daemon, so Python does not wait for it at exit; `end_all` does for a while.
+    """
+
+    def __init__(self, name: str) -> None:
+        self.stopped = False
+        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
+        # Written by the loop only and by the thread only; the loop compares them.
+        self._put = 0
+        self._done = 0
+        self.thread = threading.Thread(target=self._run, name=name, daemon=True)
+        workers.add(self)
+        self._started = start_thread(self.thread)
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job waits or runs."""
+        return self._put != self._done
+
+    def submit(self, job: Job) -> None:
+        """Run `job` after those before it; in the calling thread if none could be started."""
+        if not self._started:
+            job()
+            return
+        self._put += 1
+        self._jobs.put(job)
+
+    def submit_past_loop(self, job: Job) -> None:
+        """As `submit`, from any thread; `busy` does not tell of this job."""
+
+        def run() -> None:
+            job()
+            self._done -= 1  # only the loop counts what is put, and only this thread what is done
+
+        self._jobs.put(run)
+
+    def end(self) -> None:
+        """Let the thread end after its jobs."""
+        self._jobs.put(None)
+
+    def _run(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            if not self.stopped:
+                job()
+            self._done += 1
+
+
+workers: weakref.WeakSet[Worker] = weakref.WeakSet()
+
+
+@atexit.register
+def end_all() -> None:
+    """End all threads: one inside Zenoh while the interpreter exits would abort the process."""
+    running = [worker for worker in workers if worker.thread.is_alive()]
+    for worker in running:
+        worker.stopped = True
+        worker.end()
+    for worker in running:
+        worker.thread.join(EXIT_S / len(running))
+    # Python does not wait for those that a daemon has started, such as the thread of rclpy.
+    ends_ns = perf_ns() + int(INSIDE_S * 1e9)
+    for thread in list(started):
+        thread.join(max(0, ends_ns - perf_ns()) / 1e9)
+
+
+class SendThread:
+    """One thread that runs jobs in order. It is started by the first job.
+
+    Args:
+        name: Name of the thread.
+        waker: Wakes the loop when a job is done that a coroutine waits for.
+    """
+
+    def __init__(self, name: str, waker: LoopWaker) -> None:
+        self._name = name
+        self._worker: Worker | None = None
+        self._waker = waker
+
+    @property
+    def busy(self) -> bool:
+        """Whether a job waits or runs."""
+        return self._worker is not None and self._worker.busy
+
+    def submit(self, job: Job) -> None:
+        """Run `job` after those before it. It must not raise."""
+        if self._worker is None:
+            self._worker = Worker(self._name)
+        self._worker.submit(job)
+
+    def send_queue(
+        self,
+        limit: int,
+        limit_bytes: int = QUEUE_BYTES,
+        *,
+        keep_all: bool,
+        lost: Callable[[int], None] | None = None,
+    ) -> SendQueue:
+        """Return a bounded queue that this thread empties."""
+        return SendQueue(self, self._waker, limit, limit_bytes, keep_all=keep_all, lost=lost)
+
+    def submit_past_loop(self, job: Job) -> None:
+        """Run `job` after those before it, of which there has to be one; from any thread."""
+        worker = self._worker
+        if worker is not None:
+            worker.submit_past_loop(job)
+
+    def close(self) -> None:
+        """Let the thread end after the jobs that it has; returns at once."""
+        worker, self._worker = self._worker, None
+        if worker is not None:
+            worker.end()
+
+    def abandon(self) -> None:
+        """Let the thread end after the job that it is in; returns at once."""
+        if self._worker is not None:
+            self._worker.stopped = True
+        self.close()
+
+    async def flush(self) -> None:
+        """Wait until the jobs so far are done and the thread has ended; the next starts another.
+
+        Cancelling stops the wait only: the thread still ends after its jobs.
+        """
+        worker = self._worker
+        if worker is None:
+            return
+        ended = asyncio.Event()
+        queue: ThreadsafeQueue[None] = ThreadsafeQueue(self._waker, lambda _: ended.set())
+        worker.submit(lambda: queue.put(None))
+        self.close()
+        await ended.wait()
+
+
+class SendQueue:
+    """A bounded queue of sends, in order.
+
+    Args:
+        send_thread: The thread that sends.
+        waker: Wakes the loop when everything was sent.
+        limit: How many sends wait at most.
+        limit_bytes: How many bytes those that wait have at most; the newest waits whatever it has.
+        keep_all: Whether a full queue has no room, or else drops its oldest.
+        lost: Called with how many were dropped.
+
+    Attributes:
+        dropped: How many sends were dropped.
+        limit: How many sends wait at most; it may be changed.
+        sent: How many have left the queue.
+    """
+
+    def __init__(
+        self,
+        send_thread: SendThread,
+        waker: LoopWaker,
+        limit: int,
+        limit_bytes: int,
+        *,
+        keep_all: bool,
+        lost: Callable[[int], None] | None = None,
+    ) -> None:
+        self.dropped = 0
+        self._send_thread = send_thread
+        self.limit = limit
+        self._keep_all = keep_all
+        self._lost = lost
+        self._limit_bytes = limit_bytes
+        self._waiting: deque[tuple[int, Callable[[], None]]] = deque()
+        # Written by the loop only and by the thread only; the loop compares them.
+        self._put = self._put_bytes = 0
+        self.sent = self._sent_bytes = 0
+        self._drained: list[asyncio.Future[None]] = []
+        self._queue: ThreadsafeQueue[None] = ThreadsafeQueue(waker, self._wake, limit=1)
+
+    def __len__(self) -> int:
+        return self._put - self.sent
+
+    @property
+    def _waiting_bytes(self) -> int:
+        return self._put_bytes - self._sent_bytes
+
+    def put(self, send: Callable[[], None], size_bytes: int = 0) -> None:
+        """Have `send` called in the thread; a full queue drops its oldest unless it keeps all."""
+        waiting = self._waiting
+        dropped = 0
+        while not self._keep_all and (
+            len(waiting) >= self.limit or self._waiting_bytes + size_bytes > self._limit_bytes
+        ):
+            try:
+                oldest_bytes, _ = waiting.popleft()
+            except IndexError:  # the thread was faster, or sends the only one
+                break
+            self._put_bytes -= oldest_bytes
+            dropped += 1
+        self._put_bytes += size_bytes
+        waiting.append((size_bytes, send))
+        if dropped:  # it takes the job of one of those; the jobs of the others find less to do
+            self._note_dropped(dropped)
+        else:
+            self._put += 1
+            self._send_thread.submit(self._send)
+
+    def _note_dropped(self, count: int) -> None:
+        self.dropped += count
+        if self._lost is not None:
+            self._lost(count)
+
+    def has_room(self) -> bool:
+        """Whether one more can be put without dropping any."""
+        return len(self) < self.limit and (
+            not self._waiting or self._waiting_bytes < self._limit_bytes
+        )
+
+    async def drain(self) -> None:
+        """Wait until everything was sent. Cancelling is safe."""
+        while len(self):
+            waiter = asyncio.get_running_loop().create_future()
+            self._drained.append(waiter)
+            if len(self):  # the thread looks at the list after it counts, so one of both sees it
+                await waiter
+            else:
+                self._wake(None)
+
+    def abandon(self) -> None:
+        """Drop waiting sends, and count them."""
+        count = len(self._waiting)
+        self._waiting.clear()
+        self._put_bytes = self._sent_bytes
+        if count:
+            self._note_dropped(count)
+
+    def _send(self) -> None:
+        try:
+            size_bytes, send = self._waiting.popleft()
+        except IndexError:  # it was dropped or abandoned
+            size_bytes, send = 0, None
+        try:
+            if send is not None:
+                send()
+        finally:
+            self._sent_bytes += size_bytes
+            self.sent += 1
+            if self._drained and not len(self):
+                self._queue.put(None)
+
+    def _wake(self, _: None) -> None:
+        waiters, self._drained = self._drained, []
+        for waiter in waiters:
+            if not waiter.done():
+                waiter.set_result(None)

@@ -1,0 +1,79 @@
+"""The common part of mends that act when a connection was lost or made."""
+
+from __future__ import annotations
+
+import asyncio
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, ClassVar, Final
+
+import zenoh
+
+from aionode.engine.transport.zenoh._defects._switch import is_mended
+from aionode.engine.transport.zenoh.connections.config import gossip_endpoints
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.engine.transport.network import Network
+    from aionode.engine.transport.zenoh._session_state import SessionState
+    from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
+
+__all__ = ["ATTEMPTS", "POSTPONED_S", "ConnectionMend"]
+
+POSTPONED_S: Final = 3.0
+"""Time for which connections that go on being made or lost may postpone the mend, in seconds."""
+
+ATTEMPTS: Final = 4
+"""Number of cuts for one participant; some participants are visible, but not reachable."""
+
+
+class ConnectionMend(ABC):
+    """Mends a defect after connections were lost or made, while a session is open.
+
+    It does nothing where the session dials no endpoint again and again: a connection that is cut
+    would not be made anew. All of it belongs to the event loop, unless a method says otherwise.
+
+    Args:
+        state: The session state of the context.
+        network: The settings of the context, with the endpoints that it dials.
+
+    Attributes:
+        defect: The name of the defect, by which the mend is switched off.
+    """
+
+    defect: ClassVar[str]
+
+    def __init__(self, state: SessionState, network: Network) -> None:
+        self._state = state
+        self._network = network
+        self._session: zenoh.Session | None = None
+        self._timer: asyncio.TimerHandle | None = None
+        state.connections.on_change.append(self._hear)
+
+    def start(self, session: zenoh.Session) -> None:
+        """Act on the connections of a session from now on."""
+        if gossip_endpoints(self._network) and is_mended(self.defect):
+            self._session = session
+
+    def stop(self) -> None:
+        """Act no more; work that a thread has begun ends by itself."""
+        self._session = None
+        self._cancel()
+
+    def _hear(self, change: ConnectionChange) -> None:
+        if self._session is not None and change.kind != zenoh.WhatAmI.CLIENT:  # that dials itself
+            self._take_change(change, asyncio.get_running_loop().time())
+
+    @abstractmethod
+    def _take_change(self, change: ConnectionChange, now_s: float) -> None:
+        """Act on a connection to a router or peer."""
+
+    def _call_in(self, delay_s: float, call: Callable[[], None]) -> None:
+        """Call a function in a while, in place of the one that waits."""
+        self._cancel()
+        self._timer = asyncio.get_running_loop().call_later(delay_s, call)
+
+    def _cancel(self) -> None:
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None

@@ -1,0 +1,121 @@
+"""`Session.close` waits for peers that take nothing, and for peers that do not answer.
+
+Zenoh:
+    In `close`, Zenoh waits until a peer that has stopped reading reads on, or the connection is
+    lost; also until a peer has answered that it has just dialled, or that has just dialled. That
+    is ten seconds, or as long as `open_timeout` and `accept_timeout` say.
+Known as:
+    https://github.com/eclipse-zenoh/zenoh/issues/2675
+Seen in:
+    1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
+Mend:
+    Such connections are cut: those that are seen before `close` by `cut_stuck`, and those that are
+    made meanwhile by `cut_unanswered`. On Linux only: elsewhere `close` takes as long as Zenoh
+    waits, in a thread.
+"""
+
+from __future__ import annotations
+
+import socket
+import struct
+import sys
+import threading
+from typing import TYPE_CHECKING, Final
+
+from aionode._process.socket_queue import queued_bytes
+from aionode.engine.transport.zenoh._defects import _switch
+from aionode.engine.transport.zenoh.connections.sockets import (
+    ACKED,
+    RECEIVED,
+    Descriptor,
+    connections,
+    cut,
+    duplicates,
+    info_of,
+    number_in,
+    polled_by_zenoh,
+)
+
+if TYPE_CHECKING:
+    import zenoh
+
+__all__ = ["cut_stuck", "cut_unanswered"]
+
+INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
+"""The families of connections between hosts."""
+
+STUCK_S: Final = 0.1
+"""Time in which a peer reads not one byte, while some wait, after which it is not waited for, in
+seconds."""
+
+RESET: Final = struct.pack("ii", 1, 0)
+"""SO_LINGER for a connection that is cut: bytes that the peer has not taken are dropped."""
+
+ESTABLISHED: Final = 1
+"""The first byte of ``struct tcp_info`` while both ends are connected."""
+
+FIRST_BYTES: Final = 2048
+"""Zenoh sends 34 bytes before it waits for an answer, and TLS less than this."""
+
+ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
+"""SO_LINGER as Zenoh sets it."""
+
+
+def is_mended() -> bool:
+    """Return whether sockets can be found here, and the mend is switched on."""
+    return sys.platform.startswith("linux") and _switch.is_mended("closing")
+
+
+def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:
+    """Return how many bytes wait in each socket of a session; not those with none."""
+    own = connections(session)
+    waiting = {descriptor: queued_bytes(copy) for descriptor, copy in duplicates(own)}
+    return {descriptor: size for descriptor, size in waiting.items() if size}
+
+
+def unanswered() -> set[Descriptor]:
+    """Return the sockets of connections that Zenoh is making with peers that do not answer.
+
+    Of all sessions of the process: the system does not tell them apart.
+    """
+    return {descriptor for descriptor, copy in duplicates(polled_by_zenoh()) if is_unanswered(copy)}
+
+
+def is_unanswered(copy: socket.socket) -> bool:
+    """Return whether a socket has the options of Zenoh, is connected, and has received nothing."""
+    if copy.type != socket.SOCK_STREAM or copy.family not in INTERNET:
+        return False
+    if copy.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) != ZENOH_LINGER:
+        return False
+    info = info_of(copy)
+    sent = number_in(info, ACKED) + queued_bytes(copy)
+    return info[0] == ESTABLISHED and not number_in(info, RECEIVED) and sent <= FIRST_BYTES
+
+
+def cut_unanswered(done: threading.Event) -> None:
+    """Cut connections that are being made with peers that do not answer, until `done` is set.
+
+    A session that is being closed waits for each of them, for ten seconds, and dials those that it
+    has lost again meanwhile. Runs in a thread.
+    """
+    silent: set[Descriptor] = set()
+    while is_mended() and not done.wait(STUCK_S):
+        before, silent = silent, unanswered()
+        cut(before & silent, RESET)
+
+
+def cut_stuck(session: zenoh.Session) -> None:
+    """Cut connections that a session about to be closed would wait for.
+
+    Those whose peers do not read, and those that are being made with peers that do not answer. Runs
+    in a thread.
+    """
+    if not is_mended():
+        return
+    before, silent = waiting_bytes(session), unanswered()
+    if not before and not silent:
+        return
+    threading.Event().wait(STUCK_S)
+    after = waiting_bytes(session)
+    stuck = {descriptor for descriptor, size in before.items() if after.get(descriptor, 0) >= size}
+    cut(stuck | (silent & unanswered()), RESET)

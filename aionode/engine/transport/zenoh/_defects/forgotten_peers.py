@@ -1,0 +1,318 @@
+"""A peer that gossip has named once is dialled once: a lost connection to it is not made anew.
+
+Zenoh:
+    Zenoh keeps dialling the endpoints of its configuration, but a peer that gossip has named only
+    when gossip names it again. A router or a peer gossips when it is connected anew, and only then:
+    3 ms after a process that was frozen has lost that connection, and perhaps before it has noticed
+    the loss of others. Those are named too early, and never again.
+Known as:
+    Not reported.
+Seen in:
+    1.8.0, 1.9.0, 1.10.2
+Mend:
+    After the loss of a connection, the tokens that this session sees are compared with those that
+    its gossip source (a router, or the peer at a configured endpoint) sees: a probe asks for them.
+    If that source sees a participant that this session does not, or to which it has lost the
+    connection, or does not see this session, the connection to the source is cut, and Zenoh makes
+    it anew at once: the source names all others again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import socket
+import threading
+from contextlib import closing, suppress
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import zenoh
+
+from aionode.engine.transport.send_thread import start_thread
+from aionode.engine.transport.zenoh._defects._connection_mend import (
+    ATTEMPTS,
+    POSTPONED_S,
+    ConnectionMend,
+)
+from aionode.engine.transport.zenoh._defects.incomplete_answers import ANSWER_S, tokens
+from aionode.engine.transport.zenoh.connections.config import gossip_endpoints, open_probe
+from aionode.engine.transport.zenoh.connections.sockets import (
+    connections,
+    cut,
+    pair_of,
+    split_locator,
+)
+from aionode.engine.wire._liveliness import PREFIX as ROS_PREFIX
+from aionode.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from collections.abc import Set as AbstractSet
+
+    from aionode.engine.transport.network import Network
+    from aionode.engine.transport.zenoh._session_state import SessionState
+    from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
+    from aionode.engine.transport.zenoh.connections.sockets import Address
+    from aionode.engine.transport.zenoh.discovery.graph_watcher import Watcher
+
+__all__ = ["Recovery", "nodes_at_gossip_source"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+FIRST_S: Final = 0.5
+"""Delay of the first comparison after a connection was lost or made, in seconds; Zenoh needs
+milliseconds."""
+
+AGAIN_S: Final = 3.0
+"""The interval of further comparisons, in seconds: a process that was frozen returns without a
+sign."""
+
+WATCH_S: Final = 120.0
+"""Time for which comparisons are repeated after the last loss of a connection, in seconds."""
+
+SURE_S: Final = 0.3
+"""Time for which a participant must be missing, in seconds; a starting one is for milliseconds."""
+
+NODES_S: Final = 3.0
+"""The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
+
+CHECKS: Final = 3
+"""Number of comparisons of the graph after connections have come or gone."""
+
+
+class GossipSource(NamedTuple):
+    """A connection to a gossip source.
+
+    Attributes:
+        zid: The id of its session.
+        endpoint: Where it is dialled.
+    """
+
+    zid: str
+    endpoint: str
+
+
+class Recovery(ConnectionMend):
+    """Finds processes that are alive, but not connected any more.
+
+    Args:
+        state: The session state of the context.
+        network: The settings of the context, with the endpoints that it dials.
+        watcher: The graph, which is compared a few times after connections were made or lost.
+    """
+
+    defect = "forgotten_peers"
+
+    def __init__(self, state: SessionState, network: Network, watcher: Watcher) -> None:
+        super().__init__(state, network)
+        self._watcher = watcher
+        self._checks = 0
+        self._comparisons = state.queue(self._take_comparison)
+        self._is_comparing = False
+        self._until_s = 0.0
+        self._changing_since_s = 0.0  # when the first change was seen after the last comparison
+        # Those that were missing in the last comparison; used by its thread only.
+        self._suspected: set[str] = set()
+        # Number of cuts for each missing participant. The thread of a comparison reads this, and
+        # the loop replaces it when that thread has ended.
+        self._attempts: dict[str, int] = {}
+
+    def stop(self) -> None:
+        """Act no more; a comparison that is under way ends by itself."""
+        super().stop()
+        self._comparisons.clear()
+        self._is_comparing = False
+        self._until_s = 0.0
+        self._attempts = {}  # not cleared: a thread may read the old one
+
+    def _take_change(self, change: ConnectionChange, now_s: float) -> None:
+        if not change.is_made:
+            self._until_s = now_s + WATCH_S
+        elif now_s >= self._until_s:
+            return  # nothing was lost
+        self._checks = CHECKS
+        if self._timer is None:
+            self._changing_since_s = now_s
+        if now_s - self._changing_since_s < POSTPONED_S:
+            self._compare_in(FIRST_S)
+
+    def _compare_in(self, delay_s: float) -> None:
+        """Compare in a while; processes that saw the same end do not all do so at once."""
+        spread = 1 + int(self._state.participant[-4:], 16) / 0x10000
+        self._call_in(delay_s * spread, self._compare)
+
+    def _compare(self) -> None:
+        self._timer = None
+        session = self._session
+        if session is None or self._state.announced.left_out:
+            return  # what was left out would pass for lost
+        if self._is_comparing:
+            self._compare_in(FIRST_S)
+            return
+        known = self._watcher.node_tokens() | self._state.acknowledgements.tokens()
+        self._is_comparing = start_thread(
+            threading.Thread(
+                target=self._compare_in_thread,
+                # Of those that are lost, a router may forward what they send, but not always what
+                # this session sends.
+                args=(session, self._state.connections.lost.copy(), known),
+                name="aionode-zenoh",
+            )
+        )
+
+    def _compare_in_thread(self, session: zenoh.Session, lost: set[str], known: set[str]) -> None:
+        missing: set[str] | None = None
+        with suppress(zenoh.ZError, ConfigurationError, TimeoutError):
+            connection = gossip_source(session, self._network)
+            if connection is not None:
+                missing = self._reconnect(session, connection, lost, known)
+        self._comparisons.put(missing)
+
+    def _reconnect(
+        self, session: zenoh.Session, connection: GossipSource, lost: set[str], known: set[str]
+    ) -> set[str]:
+        """Cut what has to be made anew, and return the participants for which that was done."""
+        apart, is_sure = self._missing(session, connection, lost, known)
+        # Where many start at once, connecting takes seconds, and a cut makes it take longer: one
+        # that was never connected has to be missing in two comparisons in a row.
+        missing = apart & (lost | self._suspected)
+        if is_sure:
+            missing |= apart & {self._state.participant}
+        self._suspected = apart
+        if missing:
+            threading.Event().wait(SURE_S)
+            missing &= self._missing(session, connection, lost, known)[0]
+        missing = {zid for zid in missing if self._attempts.get(zid, 0) < ATTEMPTS}
+        if missing:
+            cut(connections(session, missing | {connection.zid}))
+        return missing
+
+    def _missing(
+        self, session: zenoh.Session, connection: GossipSource, lost: set[str], known: set[str]
+    ) -> tuple[set[str], bool]:
+        """Return the participants that are not connected as they should be.
+
+        Those that only the gossip source sees, lost ones that it sees and that are not connected
+        here, and this one if the gossip source does not see it. Besides, whether the last is sure:
+        the gossip source sees all others that are connected with both.
+
+        Raises:
+            TimeoutError: an answer is not complete.
+        """
+        keys = participants(self._state)
+        connected = {str(transport.zid) for transport in session.info.transports()}
+        common = {token for token in known if participant_of(token) in connected - lost}
+        # An answer may lack nothing but the tokens of this context: it is asked for them, too.
+        own = {token for token in known if participant_of(token) == self._state.participant}
+        there = seen_at(self._network, connection, *keys, expected=common | own)
+        here = tokens(session, *keys, expected=known)
+        if not known <= here:
+            raise TimeoutError(f"{len(known - here)} tokens that are known were not named")
+        # A session sees all tokens of its own: one that is named only there was just undeclared, or
+        # the answer here lacks it.
+        unseen = {participant_of(token) for token in there - here} - {self._state.participant}
+        unconnected = {participant_of(token) for token in there} & (lost - connected)
+        missing = unseen | unconnected | {participant_of(token) for token in own - there}
+        return missing, common <= there
+
+    def _take_comparison(self, missing: set[str] | None) -> None:
+        """Take what a comparison has shown to be missing; None if it could not be made."""
+        self._is_comparing = False
+        if self._session is None:
+            return
+        if missing is not None:
+            self._attempts = {zid: self._attempts.get(zid, 0) + 1 for zid in missing} | {
+                zid: count for zid, count in self._attempts.items() if count >= ATTEMPTS
+            }
+        if missing:
+            logger.info(
+                "lost touch with running processes %s; cutting connections, so that Zenoh makes "
+                "them anew",
+                ", ".join(sorted(missing)[:5]),
+            )
+        if self._checks:
+            self._checks -= 1
+            self._watcher.check()
+        now_s = asyncio.get_running_loop().time()
+        if self._timer is None and now_s < self._until_s:
+            self._compare_in(FIRST_S if missing else AGAIN_S)
+
+
+def seen_at(
+    network: Network,
+    connection: GossipSource,
+    *keys: str,
+    expected: AbstractSet[str] = frozenset(),
+    timeout_s: float = ANSWER_S,
+) -> set[str]:
+    """Return the tokens that match `keys` and are visible at the other end of a connection.
+
+    Args:
+        network: The settings of the context.
+        connection: The connection.
+        *keys: What is asked for.
+        expected: As for `tokens`.
+        timeout_s: How long each answer may take.
+
+    Raises:
+        TimeoutError: an answer was not complete in time.
+    """
+    with closing(open_probe(network, connection.endpoint)) as probe:
+        return tokens(probe, *keys, expected=expected, timeout_s=timeout_s)
+
+
+def nodes_at_gossip_source(
+    session: zenoh.Session, network: Network, known: AbstractSet[str]
+) -> set[str] | None:
+    """Return the tokens of all nodes that a gossip source sees, if there is one.
+
+    None if it does not answer, or not completely.
+
+    Args:
+        session: The session, which is connected with a gossip source or not.
+        network: The settings of the context.
+        known: The tokens of nodes that are known; without them an answer may not be complete.
+    """
+    try:
+        connection = gossip_source(session, network)
+        if connection is None:
+            return set()
+        nodes = f"{ROS_PREFIX}/{network.domain_id}/*/*/*/NN/**"
+        return seen_at(network, connection, nodes, expected=known, timeout_s=NODES_S)
+    except (zenoh.ZError, ConfigurationError, TimeoutError):
+        return None
+
+
+def participants(state: SessionState) -> tuple[str, ...]:
+    """Return the keys of the tokens of nodes and contexts in a domain."""
+    return f"{ROS_PREFIX}/{state.domain_id}/*/*/*/NN/**", state.acknowledgements.token_of("*")
+
+
+def participant_of(token: str) -> str:
+    """Return the participant of a token of a node or context."""
+    return token.split("/", 3)[2]
+
+
+def gossip_source(session: zenoh.Session, network: Network) -> GossipSource | None:
+    """Return a connection to a gossip source, a router if there is one."""
+    routers = {str(zid) for zid in session.info.routers_zid()}
+    sources = []
+    dialled = {
+        address: endpoint
+        for endpoint in gossip_endpoints(network)
+        for address in addresses_of(endpoint)
+    }
+    for link in session.info.links():
+        pair = pair_of(link)
+        if pair is not None and pair.remote in dialled:
+            sources.append(GossipSource(str(link.zid), dialled[pair.remote]))
+    return min(sources, key=lambda connection: connection.zid not in routers, default=None)
+
+
+def addresses_of(endpoint: str) -> Iterator[Address]:
+    """Yield the addresses of an endpoint, which may name its host."""
+    where = split_locator(endpoint)
+    if where is not None:
+        with suppress(OSError):
+            for family, *_, address in socket.getaddrinfo(*where, type=socket.SOCK_STREAM):
+                yield socket.inet_pton(family, str(address[0]).partition("%")[0]), int(address[1])

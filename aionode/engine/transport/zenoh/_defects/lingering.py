@@ -1,0 +1,112 @@
+"""Zenoh's thread that closes a connection waits up to ten seconds for a peer that takes nothing.
+
+Zenoh:
+    Zenoh sets SO_LINGER to ten seconds on each TCP socket. `close` of a socket whose peer has not
+    taken everything waits for so long, and with it the thread of Zenoh that closes the connection,
+    which may be the only one that sends or connects for this process.
+Known as:
+    Not reported.
+Seen in:
+    1.8.0, 1.9.0, 1.10.2
+Mend:
+    `SocketOptions` switches SO_LINGER off soon after a connection was made: nothing is lost, as the
+    system goes on sending. It sets the time limit of `blocked_sends` in the same call. On Linux
+    only.
+"""
+
+from __future__ import annotations
+
+import socket
+import sys
+import threading
+from contextlib import suppress
+from typing import TYPE_CHECKING, ClassVar, Final
+
+import zenoh
+
+from aionode.engine.transport.network import is_near
+from aionode.engine.transport.send_thread import start_thread
+from aionode.engine.transport.zenoh._defects._switch import is_mended
+from aionode.engine.transport.zenoh._defects.blocked_sends import unread_ms
+from aionode.engine.transport.zenoh.connections.handlers import direct
+from aionode.engine.transport.zenoh.connections.sockets import NO_LINGER, duplicates, find, pair_of
+
+if TYPE_CHECKING:
+    from aionode.engine.transport.zenoh.connections.sockets import Pair
+
+__all__ = ["SocketOptions"]
+
+UNREACHABLE_MS: Final = 5_000
+"""Time without any acknowledgement of sent bytes after which a connection to another machine is
+lost, in milliseconds."""
+
+SETTLE_S: Final = 0.5
+"""Delay of the search for sockets after a new connection, in seconds; several are made at once."""
+
+
+class SocketOptions:
+    """Sets the options of each connection of a session, soon after it was made.
+
+    Closing one never waits for its peer. One whose peer reads nothing for `unread_ms` is lost
+    before the lease ends, as Zenoh could not end it while a thread waits for that peer. One to
+    another machine is lost when nothing has arrived there for `UNREACHABLE_MS`: otherwise, TCP
+    sends again after 0.2, 0.4, 0.8 … s, and when a network was gone for 30 s, and is back, it is
+    silent for up to 30 s more. A new connection finds the network at once.
+
+    It works until the session is closed. The connections of a burst are looked for at once.
+
+    Args:
+        session: The session.
+    """
+
+    # Of all sessions: those of one process are often connected with each other at the same time.
+    # Zenoh's threads, that of the timer and the loop hold it to use `_new`, `_timer` and `_closed`;
+    # nothing that may wait is done meanwhile.
+    _lock: ClassVar = threading.Lock()
+    # The connections whose options are not set yet, and what Zenoh has named their peers.
+    _new: ClassVar[dict[Pair, str]] = {}
+
+    def __init__(self, session: zenoh.Session) -> None:
+        self._timer: threading.Timer | None = None
+        self._closed = not sys.platform.startswith("linux")
+        # It exists as long as this does, which its callback holds until the session is closed.
+        self._listener = session.info.declare_link_events_listener(
+            direct(self._on_event), history=True
+        )
+
+    def close(self) -> None:
+        """Stop watching."""
+        with self._lock:
+            self._closed = True
+            if self._timer is not None:
+                self._timer.cancel()
+        self._listener.undeclare()
+
+    def _on_event(self, event: zenoh.LinkEvent) -> None:
+        """Handle a connection that was made or lost; in a thread of Zenoh."""
+        if event.kind != zenoh.SampleKind.PUT:
+            return
+        with self._lock:
+            if self._closed:
+                return
+            if pair := pair_of(event.link):
+                self._new[pair] = str(event.link.dst)
+            if self._timer is None:
+                self._timer = threading.Timer(SETTLE_S, self._set)
+                self._timer.name = "aionode-zenoh"
+                self._timer.daemon = True
+                start_thread(self._timer)
+
+    def _set(self) -> None:
+        """Set the options of all new connections; in the thread of the timer."""
+        with self._lock:
+            self._timer = None
+            new = self._new.copy()
+            self._new.clear()
+        peers = {descriptor: new[pair] for pair, descriptor in find(new).items()}
+        for descriptor, copy in duplicates(peers):
+            limit_ms = unread_ms() if is_near(peers[descriptor]) else UNREACHABLE_MS
+            with suppress(OSError):  # it is lost already
+                if is_mended("lingering"):
+                    copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, NO_LINGER)
+                copy.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, limit_ms)

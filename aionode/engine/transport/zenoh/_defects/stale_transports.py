@@ -1,0 +1,136 @@
+"""A peer that reconnects to a process which has not noticed the loss is told nothing any more.
+
+Zenoh:
+    A process that was frozen may accept a new connection while it still reads what came over the
+    old one. Zenoh takes the new one for another link of the same transport, and declares nothing on
+    it: the peer never sees a token or a subscription of that process again.
+Known as:
+    https://github.com/eclipse-zenoh/zenoh/issues/2806
+Seen in:
+    1.8.0, 1.9.0, 1.10.2
+Mend:
+    A participant of aionode always has a token. If the tokens of one whose connection was made anew
+    do not come, `StaleTransports` cuts its connections, so that Zenoh makes them anew.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections import Counter
+from contextlib import suppress
+from typing import TYPE_CHECKING, Final
+
+import zenoh
+
+from aionode.engine.transport.send_thread import start_thread
+from aionode.engine.transport.zenoh._defects._connection_mend import (
+    ATTEMPTS,
+    POSTPONED_S,
+    ConnectionMend,
+)
+from aionode.engine.transport.zenoh.connections.connections import REMEMBERED
+from aionode.engine.transport.zenoh.connections.sockets import connections, cut
+
+if TYPE_CHECKING:
+    from aionode.engine.transport.network import Network
+    from aionode.engine.transport.zenoh._session_state import SessionState
+    from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
+
+__all__ = ["StaleTransports"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+DECLARED_S: Final = 1.0
+"""Time for the tokens of a participant that has returned, in seconds; they take some
+milliseconds."""
+
+PEERS_PER_SECOND: Final = 20
+"""Number of connected peers for each of which tokens may take a second: all may have returned."""
+
+FEW: Final = 3
+"""Number of participants without tokens from which on they may be slow, and have more time."""
+
+
+class StaleTransports(ConnectionMend):
+    """Connects participants anew that have returned, but declare nothing.
+
+    Args:
+        state: The session state of the context.
+        network: The settings of the context, with the endpoints that it dials.
+    """
+
+    defect = "stale_transports"
+
+    def __init__(self, state: SessionState, network: Network) -> None:
+        super().__init__(state, network)
+        self._changed_s = 0.0  # when a connection was made or lost last
+        # Participants whose connection was made anew, until it is known that they have declared.
+        self._returned: set[str] = set()
+        # Number of cuts of the connection to each participant that declared nothing.
+        self._cuts: Counter[str] = Counter()
+
+    def stop(self) -> None:
+        """Act no more."""
+        super().stop()
+        self._cuts.clear()
+        self._returned.clear()
+
+    def _take_change(self, change: ConnectionChange, now_s: float) -> None:
+        self._changed_s = now_s
+        if not change.is_made:
+            self._returned.discard(change.zid)
+        elif change.is_return:
+            self._returned.add(change.zid)
+            self._check_in(self._declared_s())
+
+    def _declared_s(self) -> float:
+        """Return how long the tokens of a participant that has returned may take."""
+        return DECLARED_S * max(len(self._state.connections.kinds) / PEERS_PER_SECOND, 1)
+
+    def _check_in(self, delay_s: float) -> None:
+        if self._timer is None:
+            self._call_in(delay_s, self._check_returned)
+
+    def _check_returned(self) -> None:
+        """Cut the connections to participants that have returned, but have not declared anything.
+
+        All at once: each cut is itself a change, after which the others would have to wait again.
+        """
+        self._timer = None
+        session, acknowledgements = self._session, self._state.acknowledgements
+        if session is None:
+            return
+        self._returned &= acknowledgements.participants - acknowledgements.present
+        # Where many connect at once, tokens take longer, and a cut makes all take longer still.
+        declared_s = self._declared_s()
+        wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
+        if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
+            self._check_in(declared_s / 2)
+            return
+        silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
+        # Until they declare: if Zenoh takes their new connections for links of the old ones once
+        # more, no event tells of it.
+        self._returned = silent
+        if silent:
+            if len(self._cuts) >= REMEMBERED:
+                self._cuts.clear()
+            self._cuts.update(silent)
+            self._check_in(declared_s)
+            logger.info(
+                "processes %s are connected but declare nothing; cutting their connections, so "
+                "that Zenoh makes them anew",
+                ", ".join(sorted(silent)[:5]),
+            )
+            start_thread(
+                threading.Thread(
+                    target=cut_participants, args=(session, silent.copy()), name="aionode-zenoh"
+                )
+            )
+
+
+def cut_participants(session: zenoh.Session, zids: set[str]) -> None:
+    """Cut the connections to some participants; in a thread."""
+    with suppress(zenoh.ZError):  # the session was closed meanwhile
+        cut(connections(session, zids))

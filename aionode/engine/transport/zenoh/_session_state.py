@@ -1,0 +1,468 @@
+"""The state that all entities of one context share: session, declarations, threads and queues."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from abc import abstractmethod
+from collections import Counter
+from collections.abc import Callable
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
+
+import zenoh
+
+from aionode.clock import MachineTime, perf_ns
+from aionode.engine.transport.base import Registration
+from aionode.engine.transport.content_filters import ContentFilters
+from aionode.engine.transport.loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
+from aionode.engine.transport.network import GRAPH_BYTES, QUEUE_BYTES
+from aionode.engine.transport.send_thread import SendThread
+from aionode.engine.transport.zenoh.connections.connections import Connections
+from aionode.engine.transport.zenoh.connections.handlers import translated
+from aionode.engine.transport.zenoh.connections.sockets import send_progress
+from aionode.engine.transport.zenoh.delivery.acknowledgements import Acknowledgements
+from aionode.engine.transport.zenoh.delivery.assertions import Assertions
+from aionode.engine.transport.zenoh.delivery.cancellations import Cancellations
+from aionode.engine.transport.zenoh.delivery.control_messages import ControlMessages
+from aionode.engine.transport.zenoh.delivery.peer_senders import PeerSenders
+from aionode.engine.transport.zenoh.delivery.request_room import RequestRoom
+from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
+from aionode.engine.transport.zenoh.session.settings import FLUSH_S
+from aionode.engine.wire._key_expression import data_key
+from aionode.engine.wire._liveliness import endpoint_token, gid_of
+from aionode.errors import escaped
+from aionode.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from collections.abc import Set as AbstractSet
+
+    from aionode.clock import TimeBase
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+
+__all__ = ["Declaration", "EndpointNames", "SessionState", "size_of"]
+
+T = TypeVar("T")
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+BURST_BYTES: Final = 256 * 1024
+BURST_NS: Final = 10_000_000
+"""So much in so many nanoseconds reaches every peer that is alive: a quarter of the queue."""
+
+CALM_S: Final = 5.0
+"""Time for which threads go on putting instead of the loop after a crowd has gone, in seconds."""
+
+BULK_FLUSH_S: Final = 0.15
+"""Time for which `flush` waits for large messages, which may be dropped, and for single contexts,
+in seconds."""
+
+
+class ReaderListener(Protocol):
+    """Called when subscriptions of other contexts have changed."""
+
+    # By position, as every publisher is called for every one of them.
+    def __call__(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
+        """Take one that has appeared or vanished; None if all may have changed.
+
+        Without either, the readers are the same, and their filters have changed.
+        """
+
+
+class LingeringWriter(Protocol):
+    """A destroyed publisher with messages that are not acknowledged."""
+
+    def finish(self) -> None:
+        """Undeclare it now, and count the messages that were not delivered."""
+
+
+class EndpointNames(NamedTuple):
+    """By which names one of our endpoints is known to others.
+
+    Attributes:
+        key: The key of its messages or requests.
+        token: Its liveliness token; an empty one hides it from other contexts.
+        gid: What it is called in attachments.
+    """
+
+    key: str
+    token: str
+    gid: bytes
+
+
+class SessionState:
+    """The connection of one context, open or not.
+
+    Args:
+        participant: Id of the context, and of its session.
+        domain_id: The ROS domain.
+        time_base: The time of the context; by default that of the machine.
+        waker: Wakes the event loop; by default one of its own.
+
+    Attributes:
+        participant: Id of the context, and of its session.
+        domain_id: The ROS domain.
+        session: The session while it is open, else None.
+        graph: The graph of the context while the session is open, else None.
+        waker: Wakes the event loop from Zenoh's threads.
+        connections: The sessions that it is connected with.
+        bulk: The thread that sends large messages.
+        send_threads: All threads that send messages, `bulk` included.
+        control_messages: Puts acknowledgements, assertions and cancellations.
+        peer_senders: Send requests and replies.
+        burst: Limits what the loop puts at once for readers that do not acknowledge.
+        acknowledgements: The acknowledgements between contexts of aionode.
+        lingering: Destroyed publishers with messages that are not acknowledged; an ordered set.
+        malformed: How many malformed samples came on each key.
+        lies: How often something was said in the name of another, by topic or context.
+        own_gids: The gids of this context's publishers, lingering ones included.
+        cancellations: The requests that clients have given up.
+        assertions: The liveliness that publishers assert.
+        time_base: The time of the context.
+        now_ns: Returns the time of the context, in nanoseconds since 1970.
+        content_filters: What subscriptions of other contexts want.
+        queue_bytes: How many bytes of messages may wait in one queue.
+        request_room: Limits the requests that are here.
+        announced: Limits what is kept of what others announce.
+        has_unannounced_peers: Whether there may be subscriptions that nothing announces.
+        on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
+            whether it exists, or without arguments when all may have changed; ordered sets.
+    """
+
+    def __init__(
+        self,
+        participant: str,
+        domain_id: int,
+        time_base: TimeBase | None = None,
+        waker: LoopWaker | None = None,
+        queue_bytes: int = QUEUE_BYTES,
+        graph_bytes: int = GRAPH_BYTES,
+    ) -> None:
+        self.queue_bytes = queue_bytes
+        self.request_room = RequestRoom(queue_bytes)
+        self.participant = participant
+        self.domain_id = domain_id
+        # Threads that send read it, and only the loop sets it: each of them takes it once, and
+        # expects that Zenoh refuses, as the session may be closed by then.
+        self.session: zenoh.Session | None = None
+        self.graph: Graph | None = None
+        self.waker = LoopWaker() if waker is None else waker
+        self.connections = Connections(self.waker)
+        self.announced = AnnouncedLimit(graph_bytes, self.connections.kinds)
+        self.bulk = SendThread("aionode-bulk", self.waker)
+        self.send_threads = {self.bulk}
+        self.control_messages = ControlMessages(self.bulk, queue_bytes)
+        self._calm: asyncio.TimerHandle | None = None  # ends a crowd
+        self.announced.on_crowded.append(self.note_crowd)
+        self.peer_senders = PeerSenders(self.waker, self._send_progress)
+        self.burst = Burst()
+        self.acknowledgements = Acknowledgements(
+            *(participant, domain_id, self.waker, self.note_malformed, self._acknowledges),
+            self.announced,
+            self.control_messages,
+        )
+        self.lingering: dict[LingeringWriter, None] = {}
+        self.malformed: Counter[str] = Counter()
+        self.lies: Counter[str] = Counter()
+        self.own_gids: set[bytes] = set()
+        self.cancellations = Cancellations(
+            participant, domain_id, self.waker, self.note_malformed, self.control_messages
+        )
+        self.assertions = Assertions(self.waker, self.note_malformed, self.control_messages)
+        self.time_base = MachineTime() if time_base is None else time_base
+        self.now_ns = self.time_base.system_ns
+        self.on_reader: dict[str, dict[ReaderListener, None]] = {}
+        self.content_filters = ContentFilters()
+        self.content_filters.on_change.append(self._filters_changed)
+        self.has_unannounced_peers = True  # until the other sessions are known
+        self._lingered: asyncio.Future[None] | None = None
+        self._declarations: dict[Declaration, None] = {}
+        self._graph_is_known = False
+
+    # The names of endpoints, and the endpoints that they reach: here as in rmw_zenoh.
+
+    def names_of(self, endpoint: EndpointInfo, backends: str = "") -> EndpointNames:
+        """Return the names of one of our endpoints.
+
+        Without a type hash it matches every definition of the type; ROS has no token for that.
+        """
+        key = data_key(self.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
+        visible = bool(endpoint.type_hash)
+        token = endpoint_token(self.domain_id, endpoint, backends) if visible else ""
+        return EndpointNames(key, token, gid_of(token))
+
+    def reaches(self, node: NodeInfo) -> bool:
+        """Return whether messages go to the endpoints of `node` through this."""
+        return node.participant != self.participant and not node.bridged
+
+    def declare_token(self, session: zenoh.Session, token: str) -> Any:
+        """Declare a token, and return what undeclares it."""
+        return session.liveliness().declare_token(token)
+
+    def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
+        """Return a queue from Zenoh's threads to `handle`, which is called on the event loop."""
+        return ThreadsafeQueue(self.waker, handle, limit)
+
+    def arrivals(
+        self,
+        handle: Callable[[zenoh.Sample], None],
+        limit: int,
+        on_dropped: Callable[[int], None],
+    ) -> MessageArrivals[zenoh.Sample]:
+        """Return such a queue for messages, bounded in bytes as well."""
+        return MessageArrivals(self.waker, handle, limit, self.queue_bytes, size_of, on_dropped)
+
+    def add(self, declaration: Declaration) -> None:
+        """Declare `declaration` now, or as soon as the session is open."""
+        self._declarations[declaration] = None
+        if self.session is not None and (self._graph_is_known or not declaration.needs_graph):
+            declaration.declare(self.session)
+
+    def own_tokens(self) -> set[str]:
+        """Return the tokens of what is declared in the session."""
+        return {known.token for known in self._declarations if known.is_declared and known.token}
+
+    def remove(self, declaration: Declaration) -> None:
+        """Forget `declaration`."""
+        self._declarations.pop(declaration, None)
+
+    def connect(self, session: zenoh.Session, graph: Graph) -> None:
+        """Declare everything in `session` that does not need to know its peers."""
+        self.session = session
+        self.graph = graph
+        self.request_room = RequestRoom(self.queue_bytes)  # what was here before has ended
+        self._start_submessages(session)
+        for declaration in list(self._declarations):
+            if not declaration.needs_graph:
+                declaration.declare(session)
+
+    def _start_submessages(self, session: zenoh.Session) -> None:
+        """Begin to talk to the other contexts of aionode."""
+        self.control_messages.start(session)
+        self.acknowledgements.start(session)
+        self.cancellations.start(session)
+        self.assertions.start(session)
+
+    def graph_is_known(self) -> None:
+        """Declare what needs the graph: by now, it has the endpoints of all connected peers."""
+        self._graph_is_known = True
+        for declaration in list(self._declarations):
+            if declaration.needs_graph and self.session is not None:
+                declaration.declare(self.session)
+
+    def _send_progress(self, participant: str) -> tuple[bool, int] | None:
+        """Return the progress of the sends to a participant; called in a thread."""
+        session = self.session
+        if session is None:
+            return None
+        try:
+            return send_progress(session, participant)
+        except zenoh.ZError:  # the session was closed meanwhile
+            return None
+
+    async def flush(self) -> None:
+        """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
+
+        Lingering publishers end the wait early when their readers make no progress.
+        """
+        for declaration in list(self._declarations):
+            declaration.linger()
+        with suppress(TimeoutError):
+            async with asyncio.timeout(FLUSH_S):
+                while self.lingering:
+                    self._lingered = asyncio.get_running_loop().create_future()
+                    await self._lingered
+                for send_thread in list(self.send_threads):
+                    if send_thread is not self.bulk:
+                        await send_thread.flush()
+        with suppress(TimeoutError):
+            async with asyncio.timeout(BULK_FLUSH_S):
+                for send_thread in (self.bulk, *self.peer_senders.send_threads()):
+                    await send_thread.flush()
+
+    def has_lingered(self, writer: LingeringWriter) -> None:
+        """Remove a publisher that does not linger any more."""
+        self.lingering.pop(writer, None)
+        if self._lingered is not None and not self._lingered.done():
+            self._lingered.set_result(None)
+
+    def disconnect(self) -> zenoh.Session | None:
+        """Undeclare everything, the newest first; return the session, which the caller closes."""
+        session, self.session = self.session, None
+        self._graph_is_known = False
+        if session is not None:
+            for declaration in reversed(self._declarations):
+                declaration.undeclare()
+            for publisher in list(self.lingering):
+                publisher.finish()
+        self.peer_senders.clear()
+        self.control_messages.stop()
+        self.cancellations.stop()
+        self.assertions.stop()
+        self.acknowledgements.stop()
+        self.graph = None
+        self.note_crowd()
+        return session
+
+    def tell_writers(self, endpoint: EndpointInfo, *, present: bool) -> None:
+        """Tell the publishers of its topic about an endpoint of another context."""
+        if endpoint.kind is EndpointKind.SUBSCRIPTION:
+            for update in list(self.on_reader.get(endpoint.name, ())):
+                update(endpoint, present)
+
+    def _readers_changed(self) -> None:
+        """Tell all publishers that more is known about the readers of other contexts."""
+        for updates in list(self.on_reader.values()):
+            for update in list(updates):
+                update()
+
+    def _filters_changed(self, topics: AbstractSet[str]) -> None:
+        """Tell the publishers of some topics that the filters of their readers have changed."""
+        for topic in topics:
+            for update in list(self.on_reader.get(topic, ())):
+                update(None, False)
+
+    def _acknowledges(self, participant: str) -> None:
+        """Tell the publishers of its readers that a context acknowledges."""
+        if self.graph is None:
+            return
+        for node in self.graph.nodes():
+            if node.participant == participant:
+                for reader in self.graph.endpoints(EndpointKind.SUBSCRIPTION, node=node):
+                    self.tell_writers(reader, present=True)
+
+    def note_unannounced_peers(self, *, there_are: bool) -> None:
+        """Record whether there may be subscriptions that nothing announces, for filters."""
+        if there_are != self.has_unannounced_peers:
+            self.has_unannounced_peers = there_are
+            if self.content_filters:
+                self._readers_changed()
+
+    def note_crowd(self) -> None:
+        """Leave what may wait for Zenoh to threads while others have announced so much.
+
+        And for a while after that: it tells of the first that it drops long before the last.
+        """
+        if self._calm is not None:
+            self._calm.cancel()
+            self._calm = None
+        if self.announced.is_crowded or self.session is None:
+            self._set_crowded(self.announced.is_crowded)
+        else:
+            loop = asyncio.get_running_loop()
+            self._calm = loop.call_later(CALM_S, self._set_crowded, False)
+
+    def _set_crowded(self, is_crowded: bool) -> None:
+        self.control_messages.is_crowded = self.peer_senders.is_crowded = is_crowded
+        for declaration in list(self._declarations):
+            declaration.note_crowd()
+
+    def note_malformed(self, key: str, problem: str) -> None:
+        """Count a malformed sample; the first on each key is logged."""
+        self.malformed[key] += 1
+        if self.malformed[key] == 1:
+            logger.warning(
+                "%s: something in an unknown form came from the network: %s; it was left out, and "
+                "more of it is only counted. Does the sender have another definition of the type?",
+                key,
+                escaped(problem),
+            )
+
+    def note_lie(self, subject: str, problem: str) -> None:
+        """Count what was said in the name of another; the first about each subject is logged."""
+        self.lies[subject] += 1
+        if self.lies[subject] == 1:
+            logger.warning(
+                "%s: someone speaks in the name of another: %s; more of it is only counted. Rules "
+                "of a router say who may speak for what: docs/howto/security.md",
+                subject,
+                problem,
+            )
+
+
+def size_of(arriving: zenoh.Sample | zenoh.Query) -> int:
+    """Return how many bytes the payload of a message or request has."""
+    payload = arriving.payload
+    return 0 if payload is None else len(payload)
+
+
+class Burst:
+    """Limits what the loop puts into Zenoh at once to what fits into its queue."""
+
+    def __init__(self) -> None:
+        self._left = BURST_BYTES
+        self._since_ns = 0
+
+    def spend(self, size_bytes: int) -> bool:
+        """Return whether so much more may be put now, and count it if so."""
+        self._left -= size_bytes + 128
+        if self._left < 0:
+            now_ns = perf_ns()
+            if now_ns - self._since_ns < BURST_NS:
+                return False
+            self._since_ns = now_ns
+            self._left = BURST_BYTES - size_bytes
+        return True
+
+
+class Declaration(Registration):
+    """A registration that is declared in the session while that is open.
+
+    Args:
+        state: The state of the session.
+        token: Its liveliness token; an empty one hides it from other contexts.
+        gid: What it is called in attachments; by default what its token says.
+
+    Attributes:
+        needs_graph: Whether it is declared only when the endpoints of connected peers are known.
+        is_declared: Whether it is declared now.
+    """
+
+    needs_graph = False
+
+    def __init__(self, state: SessionState, token: str, gid: bytes = b"") -> None:
+        self.state = state
+        self.token = token
+        self.gid = gid or gid_of(token)
+        self.is_declared = False
+        self._declared_token: Any = None
+
+    def __hash__(self) -> int:
+        return id(self)
+
+    def declare(self, session: zenoh.Session) -> None:
+        """Declare its data, and then the token, which makes it visible to all other contexts."""
+        with translated(self.token):
+            self.declare_data(session)
+            self.is_declared = True
+            if self.token:
+                self._declared_token = self.state.declare_token(session, self.token)
+
+    def undeclare(self) -> None:
+        """Undeclare it, in the opposite order."""
+        token, self._declared_token = self._declared_token, None
+        declared, self.is_declared = self.is_declared, False
+        with translated(self.token):
+            if token is not None:
+                token.undeclare()
+            if declared:
+                self.undeclare_data()
+
+    def linger(self) -> None:
+        """Begin to linger, if messages are not acknowledged: the context is about to close."""
+
+    def note_crowd(self) -> None:
+        """Take note of whether others have announced so much that Zenoh may stand still."""
+
+    @abstractmethod
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Declare its publisher, subscriber, queryable or querier, if it has one."""
+
+    @abstractmethod
+    def undeclare_data(self) -> None:
+        """Undeclare what `declare_data` has declared."""
+
+    def close(self) -> None:
+        """Undeclare it for good. Closing it again has no effect."""
+        self.state.remove(self)
+        self.undeclare()

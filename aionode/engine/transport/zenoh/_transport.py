@@ -1,0 +1,323 @@
+"""The contract of transports, on Zenoh."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from functools import partial
+from itertools import filterfalse
+from typing import TYPE_CHECKING, Any
+
+from aionode.clock import perf_ns
+from aionode.engine.transport.base import Transport
+from aionode.engine.transport.zenoh._defects.closing import cut_stuck
+from aionode.engine.transport.zenoh._defects.forgotten_peers import Recovery, nodes_at_gossip_source
+from aionode.engine.transport.zenoh._defects.lingering import SocketOptions
+from aionode.engine.transport.zenoh._defects.scarcity import refuse_scarcity
+from aionode.engine.transport.zenoh._defects.stale_transports import StaleTransports
+from aionode.engine.transport.zenoh._session_state import SessionState
+from aionode.engine.transport.zenoh.connections.sockets import arrived_bytes, pair_of
+from aionode.engine.transport.zenoh.discovery.graph_watcher import NodeDeclaration, Watcher
+from aionode.engine.transport.zenoh.discovery.peer_directory import ZenohPeerDirectory
+from aionode.engine.transport.zenoh.discovery.router_matching import RouterMatching
+from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.endpoints.services import ZenohRequester, ZenohServer
+from aionode.engine.transport.zenoh.endpoints.subscription import ZenohReader
+from aionode.engine.transport.zenoh.session.connect_slots import connecting
+from aionode.engine.transport.zenoh.session.local_router import LocalRouter
+from aionode.engine.transport.zenoh.session.local_sessions import listed, processes
+from aionode.engine.transport.zenoh.session.session import (
+    close_session,
+    open_session,
+    run_in_own_thread,
+)
+
+if TYPE_CHECKING:
+    import socket
+    from collections import Counter
+    from collections.abc import Set as AbstractSet
+
+    import zenoh
+
+    from aionode.clock import TimeBase
+    from aionode.engine.transport.base import (
+        LinkStatus,
+        Reader,
+        ReaderRegistration,
+        Registration,
+        Requester,
+        Serve,
+        Writer,
+    )
+    from aionode.engine.transport.network import Network
+    from aionode.graph import EndpointInfo, Graph, NodeInfo
+
+__all__ = ["ZenohTransport"]
+
+KNOWN_S = 0.3
+"""Time for which `open` waits for the graph of connected peers, in seconds; it takes a
+millisecond."""
+
+ASK_AGAIN_S = 0.2
+"""The interval at which expected nodes and arriving bytes are looked at, in seconds."""
+
+TOKEN_BYTES = 100
+"""About the least that announces an endpoint; signs that a peer is alive are a few bytes."""
+
+NAMED_NS = 10_000_000_000
+"""Time for which a peer that others name is waited for while more tokens arrive, in nanoseconds."""
+
+
+class ZenohTransport(Transport):
+    """Reaches other processes and machines, and ROS 2 nodes that run rmw_zenoh_cpp.
+
+    Args:
+        participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
+        network: Domain, discovery and peers.
+        time_base: The time of the context; by default that of the machine.
+
+    Attributes:
+        peer_directory: The other contexts, for links beside this transport.
+        session_state: Its connection, for the transport of bridges beside this one.
+    """
+
+    def __init__(
+        self, participant: str, network: Network, time_base: TimeBase | None = None
+    ) -> None:
+        self.network = network
+        self.session_state = SessionState(
+            participant,
+            network.domain_id,
+            time_base,
+            queue_bytes=network.queue_bytes,
+            graph_bytes=network.graph_bytes,
+        )
+        self._state = self.session_state
+        self._watcher = Watcher(self._state)
+        self._router_matching = RouterMatching(self._state, network)
+        self.peer_directory = ZenohPeerDirectory(self._state, self._router_matching)
+        # Done when the tokens of all connected peers are in the graph.
+        self._answered: asyncio.Future[bool] | None = None
+        self._expected = 0  # how many peers accept connections, and so should be connected
+        self._dialled: AbstractSet[int] = frozenset()  # the ports of this machine's other sessions
+        self._recovery = Recovery(self._state, network, self._watcher)
+        self._stale_transports = StaleTransports(self._state, network)
+        self._local_router = LocalRouter(self._state, network)
+        self._socket_options: SocketOptions | None = None
+        self._presence: socket.socket | None = None  # in the list of this machine's sessions
+
+    def __repr__(self) -> str:
+        state = "closed" if self._state.session is None else "open"
+        return (
+            f"<ZenohTransport {self._state.participant} domain={self.network.domain_id} {state} "
+            f"garbage={self.malformed.total()}>"
+        )
+
+    @property
+    def malformed(self) -> Counter[str]:
+        """Number of samples in no known form that came from the network, for each key."""
+        return self._state.malformed
+
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """The domains of nodes that can be reached, but do not hear this one."""
+        return self._watcher.other_domains
+
+    async def link_status(self) -> LinkStatus:
+        """Ask all contexts which links they offer and have."""
+        return await self.peer_directory.link_status()
+
+    async def open(self, graph: Graph) -> None:
+        """Connect; return when the running peers are known, as far as that can be determined."""
+        refuse_scarcity()
+        async with connecting(self.network):
+            await self._open(graph)
+
+    async def _open(self, graph: Graph) -> None:
+        try:
+            await self._local_router.open()
+            session, expected, self._presence, self._dialled = await open_session(
+                self.network, self._state.participant
+            )
+        except BaseException:
+            await asyncio.shield(self._local_router.close())
+            raise
+        self._state.waker.open(asyncio.get_running_loop())
+        # Before waiting for others, so that peers that connect meanwhile see everything. After a
+        # failure from here on, `close` closes the session.
+        self._state.connect(session, graph)
+        self._state.connections.start(session)
+        self._socket_options = SocketOptions(session)
+        self._watcher.start(session)
+        self.peer_directory.start(session)
+        self._recovery.start(session)
+        self._stale_transports.start(session)
+        await self._state.connections.wait_until_connected(expected)
+        # Configured peers may be absent, so they are not expected.
+        self._expected = expected - bool(self.network.near_peers or self.network.config_file)
+        answered = self._ask(session)
+        with suppress(TimeoutError):
+            async with asyncio.timeout(KNOWN_S):
+                await asyncio.shield(answered)
+        self._watcher.note_domains()
+        self._state.graph_is_known()
+
+    async def all_known(self, quiet_s: float) -> bool:
+        """Wait until the tokens of all reachable peers are in the graph."""
+        session, graph = self._state.session, self._state.graph
+        if session is None or graph is None:
+            return False
+        if not self._is_connected():  # on a busy machine that takes longer than `open` waits
+            await self._state.connections.wait_longer(self._is_connected, quiet_s)
+            self._ask(session)
+        if not await self._has_answers(session, quiet_s):
+            return False
+        # Peers that a router, or another peer, has named may not be connected yet: nothing but what
+        # that sees tells of them.
+        missing = await self._missing_nodes(session, quiet_s)
+        if not missing:
+            return missing is not None and self._is_connected()
+        quiet_ns = int(quiet_s * 1e9)
+        ends_ns = perf_ns() + NAMED_NS
+        while missing:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(ASK_AGAIN_S):
+                    await graph.until(partial(known_all, self._watcher, missing))
+            left = await self._missing_nodes(session, quiet_s)
+            if left is None:
+                return False
+            left &= missing  # not what has come meanwhile
+            now_ns = perf_ns()
+            if left == missing and now_ns > min(self._watcher.newest_ns + quiet_ns, ends_ns):
+                return False
+            missing = left
+        self._ask(session)  # the tokens of these peers are complete after that
+        return await self._has_answers(session, quiet_s) and self._is_connected()
+
+    def _is_connected(self) -> bool:
+        """Return whether all peers that accept connections have been connected."""
+        return len(self._state.connections.kinds) >= self._expected and not self._unconnected()
+
+    def _unconnected(self) -> set[int]:
+        """Return the ports of those sessions of this machine that were dialled in vain.
+
+        None, if there are as many connections as sessions: some may have dialled this one.
+        """
+        session = self._state.session
+        there = (listed(self.network.meeting_ports[0]) or set()) & self._dialled
+        if session is None or len(self._state.connections.kinds) >= len(there):
+            return set()
+        pairs = map(pair_of, session.info.links())
+        return there - {pair.remote[1] for pair in pairs if pair is not None}
+
+    def silent_processes(self) -> list[str]:
+        """Return who does not answer, as far as the system tells: processes of this machine."""
+        group = self.network.meeting_ports[0]
+        unconnected, found = self._unconnected(), processes(group)
+        silent = []
+        for port in sorted(self._dialled & (listed(group) or set())):
+            process = found.get(port)
+            if process is None:
+                if port in unconnected:
+                    silent.append(f"a process that listens at port {port} does not answer")
+            elif process.is_stopped or port in unconnected:
+                pid, command, _ = process
+                why = f"is stopped (kill -CONT {pid})" if process.is_stopped else "does not answer"
+                silent.append(f"process {pid} ({command}) {why}")
+        return silent
+
+    async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
+        """Return the nodes that a gossip source sees and the graph has not; None without answer."""
+        ends_ns = perf_ns() + int(quiet_s * 1e9)
+        while True:
+            known = self._watcher.node_tokens()
+            ask = partial(nodes_at_gossip_source, session, self.network, known)
+            seen = await run_in_own_thread(ask)
+            if seen is not None:
+                return set(filterfalse(self._watcher.knows, seen))
+            if perf_ns() > ends_ns:
+                return None
+
+    async def _has_answers(self, session: zenoh.Session, quiet_s: float) -> bool:
+        """Return whether all connected peers have told their tokens; wait while some arrive.
+
+        On a busy machine Zenoh reads thousands of them for seconds, and then hands out all at once.
+        So it is waited as well while there is something to read.
+        """
+        answered = self._answered
+        before: dict[str, tuple[int, int]] = {}
+        while answered is not None:
+            with suppress(TimeoutError):
+                async with asyncio.timeout(min(quiet_s, ASK_AGAIN_S)):
+                    return await asyncio.shield(answered)
+            arrived = await run_in_own_thread(partial(arrived_bytes, session))
+            for peer, (received, unread) in arrived.items():
+                if received - before.get(peer, (0, 0))[0] + unread > TOKEN_BYTES:
+                    self._watcher.newest_ns = perf_ns()
+            before = arrived
+            if perf_ns() - self._watcher.newest_ns > quiet_s * 1e9:
+                return False
+        return True
+
+    def _ask(self, session: zenoh.Session) -> asyncio.Future[bool]:
+        """Ask all connected peers for their tokens; return what is done when all have answered."""
+        self._answered = answered = asyncio.get_running_loop().create_future()
+        self._watcher.ask(session, answered)
+        return answered
+
+    async def close(self) -> None:
+        """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
+        state = self._state
+        self._answered = None
+        self.abandon()  # nobody new dials this session
+        await state.flush()
+        if self._socket_options is not None:
+            self._socket_options.close()
+            self._socket_options = None
+        self._state.connections.stop()
+        self._recovery.stop()
+        self._stale_transports.stop()
+        self.peer_directory.stop()
+        self._watcher.stop()
+        session = state.disconnect()
+        if session is not None:
+            await run_in_own_thread(partial(cut_stuck, session))
+            await close_session(session)
+        await self._router_matching.close()
+        await self._local_router.close()
+        state.waker.close()
+
+    def abandon(self) -> None:
+        """Leave the place in the list of this machine's sessions."""
+        if self._presence is not None:
+            self._presence.close()
+            self._presence = None
+
+    def create_node(self, node: NodeInfo) -> Registration:
+        """Declare a node."""
+        return NodeDeclaration(self._state, node)
+
+    def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
+        """Declare a publisher."""
+        return ZenohWriter(self._state, endpoint, msg_type)
+
+    def create_reader(
+        self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
+    ) -> ReaderRegistration:
+        """Declare a subscription."""
+        return ZenohReader(self._state, endpoint, msg_type, reader)
+
+    def create_server(
+        self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
+    ) -> Registration:
+        """Declare a server."""
+        return ZenohServer(self._state, endpoint, srv_type, serve)
+
+    def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
+        """Declare a client."""
+        return ZenohRequester(self._state, endpoint, srv_type)
+
+
+def known_all(watcher: Watcher, keys: set[str]) -> bool:
+    """Return whether all of some tokens are in the graph."""
+    return all(map(watcher.knows, keys))

@@ -1,0 +1,136 @@
+"""Placeholders for our endpoints until the first bridge is seen, which cost nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from aionode.engine.transport.base import ReaderRegistration, Registration, Requester, Writer
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.content_filter import ContentFilterOptions
+    from aionode.engine.transport.base import Call, ReplyTo, SampleInfo, StopSender
+    from aionode.graph import EndpointInfo
+
+__all__ = ["Placeholder", "ReaderPlaceholder", "RequesterPlaceholder", "WriterPlaceholder"]
+
+EndpointT = TypeVar("EndpointT", bound=Registration)
+
+
+class Placeholder(Registration, Generic[EndpointT]):
+    """Stands for one endpoint, which is made when the first bridge is seen.
+
+    Args:
+        placeholders: Where to be until the endpoint is made or closed; an ordered set.
+        make: Makes the endpoint.
+
+    Attributes:
+        endpoint: The endpoint, once it is made.
+    """
+
+    def __init__(
+        self, placeholders: dict[Placeholder[Any], None], make: Callable[[], EndpointT]
+    ) -> None:
+        self.endpoint: EndpointT | None = None
+        self._placeholders = placeholders
+        self._make = make
+        placeholders[self] = None
+
+    def replace(self) -> None:
+        """Make the endpoint: there is a bridge."""
+        self.endpoint = self._make()
+
+    def close(self) -> None:
+        """Withdraw the endpoint, or make none."""
+        self._placeholders.pop(self, None)
+        if self.endpoint is not None:
+            self.endpoint.close()
+
+
+class WriterPlaceholder(Placeholder[Writer], Writer):
+    """Stands for a publisher, which is not asked for each message until it is made."""
+
+    is_placeholder = True
+
+    def __init__(
+        self, placeholders: dict[Placeholder[Any], None], make: Callable[[], Writer]
+    ) -> None:
+        super().__init__(placeholders, make)
+        self._on_replaced: list[Callable[[], None]] = []
+
+    def replace(self) -> None:
+        """Make the publisher, and have it used."""
+        super().replace()
+        self.is_placeholder = False
+        for call in self._on_replaced:
+            call()
+
+    def when_replaced(self, callback: Callable[[], None]) -> None:
+        """Call `callback` when there is a bridge."""
+        self._on_replaced.append(callback)
+
+    @property
+    def active(self) -> bool:  # type: ignore[override]  # that of the publisher changes
+        """Whether a message written now would be used."""
+        return self.endpoint is not None and self.endpoint.active
+
+    @property
+    def bounded(self) -> bool:  # type: ignore[override]  # as above
+        """Whether `has_room` may be false."""
+        return self.endpoint is not None and self.endpoint.bounded
+
+    def write(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Send `msg`."""
+        if self.endpoint is not None:
+            self.endpoint.write(msg, sequence, source_ns)
+
+    def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
+        """Return what sends the stop of a lease."""
+        if self.endpoint is None:
+            return super().prepare_stop(stop, is_last)
+        return self.endpoint.prepare_stop(stop, is_last)
+
+    def has_room(self) -> bool:
+        """Whether one more message can wait to be sent."""
+        return self.endpoint is None or self.endpoint.has_room()
+
+    async def drain(self) -> None:
+        """Wait until all messages were handed on."""
+        if self.endpoint is not None:
+            await self.endpoint.drain()
+
+    @property
+    def dropped(self) -> int:
+        """Number of messages that were dropped on their way."""
+        return 0 if self.endpoint is None else self.endpoint.dropped
+
+    def route_of(self, reader: EndpointInfo) -> str | None:
+        """Return how messages reach `reader`, if they do so through a bridge."""
+        return None if self.endpoint is None else self.endpoint.route_of(reader)
+
+
+class ReaderPlaceholder(Placeholder[ReaderRegistration], ReaderRegistration):
+    """Stands for a subscription."""
+
+    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
+        """Do nothing: DDS nodes behind a bridge learn of no filter."""
+
+
+class RequesterPlaceholder(Placeholder[Requester], Requester):
+    """Stands for a client."""
+
+    @property
+    def servers(self) -> int:
+        """Number of matched servers behind bridges."""
+        return 0 if self.endpoint is None else self.endpoint.servers
+
+    @property
+    def caveat(self) -> str:
+        """Why the matched servers may not answer."""
+        return "" if self.endpoint is None else self.endpoint.caveat
+
+    def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
+        """Send a request; there is a server, and so a bridge."""
+        assert self.endpoint is not None  # noqa: S101  # for the type checker
+        return self.endpoint.send(request, sample_info, reply_to)

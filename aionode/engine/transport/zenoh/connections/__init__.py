@@ -1,0 +1,1 @@
+"""What Zenoh and the system tell of connections: configurations, sockets, handlers."""

@@ -1,0 +1,162 @@
+"""The connections of a session: the routers, peers and clients at their other ends.
+
+Zenoh tells one listener of each connection that it makes or loses. The listener tells all parts of
+the context, on the event loop, in the order in which they were added.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.engine.transport.loop_waker import ThreadsafeQueue
+from aionode.engine.transport.zenoh.connections.handlers import direct, translated
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.engine.transport.loop_waker import LoopWaker
+
+__all__ = ["ConnectionChange", "Connections"]
+
+FIRST_LINK_S: Final = 1.0
+"""Time for which `open` waits for the first peer that accepts connections, in seconds; a frozen
+peer never answers."""
+
+NEXT_LINK_S: Final = 0.3
+"""Time for which `open` waits for each further peer, in seconds."""
+
+QUIET_S: Final = 0.015
+"""All peers are taken to be connected after so long without a new one."""
+
+MOMENT_NS: Final = 10_000_000_000
+"""Time after the loss of a connection in which what was declared over it may return."""
+
+REMEMBERED: Final = 10_000
+"""Number of lost sessions that are remembered: others may open and close any number."""
+
+
+class ConnectionChange(NamedTuple):
+    """A connection that was made or lost.
+
+    Attributes:
+        zid: The id of the session at its other end.
+        kind: The kind of that session: router, peer or client.
+        is_made: Whether it was made, else lost.
+        is_return: Whether it was made anew, after it was lost.
+    """
+
+    zid: str
+    kind: zenoh.WhatAmI
+    is_made: bool
+    is_return: bool = False
+
+
+class Connections:
+    """The connections of one session, which all parts of a context share.
+
+    Zenoh's threads only append to the queue: all attributes belong to the event loop.
+
+    Args:
+        waker: Wakes the event loop from Zenoh's threads.
+
+    Attributes:
+        kinds: The kind of each connected session, by its id.
+        lost: The routers and peers whose connection was lost and not made anew; a client dials by
+            itself.
+        on_change: Called with each change, after it is in `kinds` and `lost`.
+    """
+
+    def __init__(self, waker: LoopWaker) -> None:
+        self.kinds: dict[str, zenoh.WhatAmI] = {}
+        self.lost: set[str] = set()
+        self.on_change: list[Callable[[ConnectionChange], None]] = []
+        self._queue = ThreadsafeQueue(waker, self.take)
+        self._lost_ns: dict[str, int] = {}  # when the connection to each session was lost last
+        self._changed = asyncio.Event()
+        self._listener: zenoh.TransportEventsListener[None] | None = None
+
+    def start(self, session: zenoh.Session) -> None:
+        """Begin with the connections that a session has, and listen to changes."""
+        self._changed = asyncio.Event()  # an event belongs to the loop that first waits for it
+        with translated("connections"):
+            self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
+        # After the listener: a connection between both is told of twice, which does no harm.
+        for transport in session.info.transports():
+            self._add(ConnectionChange(str(transport.zid), transport.whatami, is_made=True))
+
+    def stop(self) -> None:
+        """Listen no more, and forget all connections."""
+        listener, self._listener = self._listener, None
+        if listener is not None:
+            listener.undeclare()
+        self._queue.clear()
+        self.kinds.clear()
+        self.lost.clear()
+        self._lost_ns.clear()
+
+    def has_lost(self, zid: str) -> bool:
+        """Return whether a connection is lost, or was lost in the last seconds and made anew.
+
+        What the other end had declared vanished with it, and may still have to return. Zenoh tells
+        of the loss later than of what vanishes with it.
+        """
+        return zid in self.lost or perf_ns() - self._lost_ns.get(zid, -MOMENT_NS) < MOMENT_NS
+
+    def take(self, event: zenoh.TransportEvent) -> None:
+        """Take what Zenoh tells of one connection; on the event loop."""
+        transport = event.transport
+        zid = str(transport.zid)
+        is_made = event.kind == zenoh.SampleKind.PUT
+        change = ConnectionChange(zid, transport.whatami, is_made, is_made and zid in self.lost)
+        self._add(change)
+        self._changed.set()
+        for call in self.on_change:
+            call(change)
+
+    def _add(self, change: ConnectionChange) -> None:
+        if change.is_made:
+            self.kinds[change.zid] = change.kind
+            self.lost.discard(change.zid)
+            return
+        self.kinds.pop(change.zid, None)
+        if len(self._lost_ns) >= REMEMBERED:
+            self._lost_ns.clear()
+        self._lost_ns[change.zid] = perf_ns()
+        if change.kind != zenoh.WhatAmI.CLIENT:
+            if len(self.lost) >= REMEMBERED:
+                self.lost.clear()
+            self.lost.add(change.zid)
+
+    async def wait_until_connected(self, expected: int) -> None:
+        """Wait until `expected` peers, and others that are dialled meanwhile, are connected.
+
+        Give up if they do not connect in time, after about a second.
+        """
+        if expected == 0:
+            return
+        try:
+            while (count := len(self.kinds)) < expected:
+                async with asyncio.timeout(NEXT_LINK_S if count else FIRST_LINK_S):
+                    await self._next()
+            async with asyncio.timeout(FIRST_LINK_S):
+                while True:
+                    async with asyncio.timeout(QUIET_S):
+                        await self._next()
+        except TimeoutError:
+            return
+
+    async def wait_longer(self, is_enough: Callable[[], bool], limit_s: float) -> None:
+        """Wait until connections are enough, `limit_s` at most."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(limit_s):
+                while not is_enough():
+                    await self._next()
+
+    async def _next(self) -> None:
+        self._changed.clear()
+        await self._changed.wait()

@@ -1,0 +1,1 @@
+"""What carries messages between contexts: limits, acknowledgements, histories, cancellations."""

@@ -1,0 +1,279 @@
+"""Acknowledgements between contexts of aionode over Zenoh: their keys, and their timer.
+
+Zenoh's own reliable delivery, congestion control BLOCK, stalls the whole process behind one frozen
+reader. Reliable publishers and subscriptions of aionode use acknowledgements instead, on keys below
+that of their topic, which ROS nodes neither subscribe nor publish to. A context that supports them
+declares a token; readers in other contexts depend on Zenoh (`_publisher`).
+
+A submessage counts only for endpoints of the topic on whose key it came: a process that may publish
+on one topic speaks for no other.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Final
+
+import zenoh
+
+from aionode.engine.transport.loop_waker import ThreadsafeQueue
+from aionode.engine.transport.reliability.submessage import (
+    VERSION,
+    Submessage,
+    SubmessageKind,
+    unpack,
+)
+from aionode.engine.transport.zenoh.connections.handlers import direct, translated
+from aionode.engine.transport.zenoh.delivery.control_messages import ControlSubscribers
+from aionode.engine.wire._key_expression import Side, side_key
+
+if TYPE_CHECKING:
+    from aionode.engine.transport.loop_waker import LoopWaker
+    from aionode.engine.transport.zenoh.delivery.control_messages import ControlMessages
+    from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
+
+__all__ = ["Acknowledgements", "submessage_key"]
+
+PREFIX: Final = "@aionode"
+
+TICK_S: Final = 0.05
+"""The interval of `tick` for publishers and subscriptions that wait for something."""
+
+PROBE_S: Final = 1.0
+"""The interval of `probe` for publishers that have to know whether their readers answer."""
+
+LIMIT: Final = 20_000
+"""Number of submessages that wait for the loop; those that are dropped are repeated."""
+
+
+GONE: Final = 1_000
+"""Contexts that have gone and are remembered: their endpoints have tokens of their own, which
+may still be there, and they may come back."""
+
+LONGEST_ID: Final = 32
+"""Number of characters that the id of a Zenoh session has at most."""
+
+
+Receive = Callable[[Submessage], None]
+"""Gives an endpoint a submessage."""
+
+
+class Repeater:
+    """Calls functions at an interval, each until it returns False.
+
+    Args:
+        interval_s: The interval.
+    """
+
+    def __init__(self, interval_s: float) -> None:
+        self._interval_s = interval_s
+        self._calls: dict[Callable[[], bool], None] = {}
+        self._timer: asyncio.TimerHandle | None = None
+
+    def add(self, call: Callable[[], bool]) -> None:
+        """Call `call` from now on."""
+        self._calls[call] = None
+        self._go_on()
+
+    def _go_on(self) -> None:
+        if self._calls and self._timer is None:
+            self._timer = asyncio.get_running_loop().call_later(self._interval_s, self._run)
+
+    def _run(self) -> None:
+        self._timer = None
+        for call in list(self._calls):
+            if not call():
+                self._calls.pop(call, None)
+        self._go_on()
+
+    def clear(self) -> None:
+        """Call nothing any more."""
+        self._calls.clear()
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+
+class Acknowledgements:
+    """The submessages that this context sends and receives.
+
+    Args:
+        participant: The id of this context.
+        domain_id: The ROS domain.
+        waker: Wakes the event loop from Zenoh's threads.
+        note_malformed: Called with the key of a malformed sample, and what it should be.
+        on_participant: Called when another context is known to acknowledge.
+        announced: Limits how many contexts are kept; the others count as ones that do not.
+        control_messages: Puts submessages.
+
+    Attributes:
+        participants: The other contexts that acknowledge, the last `GONE` that have gone included.
+        present: Those of them whose tokens are there.
+    """
+
+    def __init__(
+        self,
+        participant: str,
+        domain_id: int,
+        waker: LoopWaker,
+        note_malformed: Callable[[str, str], None],
+        on_participant: Callable[[str], None],
+        announced: AnnouncedLimit,
+        control_messages: ControlMessages,
+    ) -> None:
+        self.participants: set[str] = set()
+        self._gone: dict[str, None] = {}  # in order
+        self._announced = announced
+        self.present: set[str] = set()
+        # By gid below the key of their topic: a submessage counts for no endpoint of another.
+        self._writers: ControlSubscribers[Receive] = ControlSubscribers(
+            waker, self._receive_acknack, LIMIT
+        )
+        self._readers: ControlSubscribers[Receive] = ControlSubscribers(
+            waker, self._receive_submessage, LIMIT
+        )
+        self._participant = participant
+        self._note_malformed = note_malformed
+        self._on_participant = on_participant
+        self._control_messages = control_messages
+        self._prefix = f"{PREFIX}/{domain_id}/"
+        self._suffix = f"/reliable/{VERSION}"
+        self._is_open = False
+        self._declared: list[zenoh.Subscriber[None] | zenoh.LivelinessToken] = []
+        self._tokens: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._receive_token)
+        self._ticks = Repeater(TICK_S)
+        self._probes = Repeater(PROBE_S)
+
+    def start(self, session: zenoh.Session) -> None:
+        """Declare the token. To be called before any endpoint is declared."""
+        self._is_open = True
+        self._writers.start(session)
+        self._readers.start(session)
+        liveliness = session.liveliness()
+        own = self.token_of(self._participant)
+        with translated("acknowledgements"):
+            self._declared = [
+                liveliness.declare_subscriber(
+                    self.token_of("*"), direct(self._tokens.put), history=True
+                ),
+                liveliness.declare_token(own),
+            ]
+
+    def stop(self) -> None:
+        """Undeclare everything."""
+        self._is_open = False
+        self._writers.stop()
+        self._readers.stop()
+        declared, self._declared = self._declared, []
+        for declaration in reversed(declared):
+            declaration.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
+        self._tokens.clear()
+        self.participants.clear()
+        self.present.clear()
+        self._gone.clear()
+        self._ticks.clear()
+        self._probes.clear()
+
+    def tokens(self) -> set[str]:
+        """Return the tokens of this context and of those that are present."""
+        return {self.token_of(participant) for participant in (self._participant, *self.present)}
+
+    def token_of(self, participant: str) -> str:
+        """Return the token of a context that acknowledges."""
+        return self._prefix + participant + self._suffix
+
+    def add_writer(self, key: str, gid: bytes, receive: Receive) -> None:
+        """Give a publisher of a topic the ACKNACKs of its readers; twice is the same as once."""
+        self._writers.listen(
+            submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid, receive
+        )
+
+    def remove_writer(self, key: str, gid: bytes) -> None:
+        """Give a publisher no more ACKNACKs."""
+        self._writers.unlisten(submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid)
+
+    def add_reader(self, key: str, gid: bytes, receive: Receive) -> None:
+        """Give a subscription the submessages of its writers; twice is the same as once."""
+        self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, receive)
+
+    def remove_reader(self, key: str, gid: bytes) -> None:
+        """Give a subscription no more submessages."""
+        self._readers.unlisten(submessage_key(key, Side.PUBLISHERS, self._participant), gid)
+
+    def send(self, key: str, side: Side, participant: str, data: bytes) -> None:
+        """Send a submessage to a context; it may be lost. Any thread may call.
+
+        Args:
+            key: That of the topic.
+            side: Which side of the topic sends it.
+            participant: The context that gets it.
+            data: The submessage.
+        """
+        self._control_messages.put(submessage_key(key, side, participant), data)
+
+    def watch(self, tick: Callable[[], bool]) -> None:
+        """Call `tick` of an endpoint that waits for something, until it returns False."""
+        if self._is_open:
+            self._ticks.add(tick)
+
+    def probe(self, probe: Callable[[], bool]) -> None:
+        """Call `probe` of a publisher from now on, until it returns False."""
+        if self._is_open:
+            self._probes.add(probe)
+
+    def _receive_acknack(self, sample: zenoh.Sample, writers: dict[Hashable, Receive]) -> None:
+        submessage = self._unpack(sample)
+        if submessage is not None and submessage.kind is SubmessageKind.ACKNACK:
+            receive = writers.get(submessage.writer)
+            if receive is not None:
+                receive(submessage)
+
+    def _receive_submessage(self, sample: zenoh.Sample, readers: dict[Hashable, Receive]) -> None:
+        submessage = self._unpack(sample)
+        if submessage is not None and submessage.kind is not SubmessageKind.ACKNACK:
+            receive = readers.get(submessage.reader)
+            if receive is not None:
+                receive(submessage)
+
+    def _unpack(self, sample: zenoh.Sample) -> Submessage | None:
+        submessage = unpack(sample.payload.to_bytes())
+        if submessage is None:
+            self._note_malformed(str(sample.key_expr), "an acknowledgement")
+        return submessage
+
+    def _receive_token(self, sample: zenoh.Sample) -> None:
+        key = str(sample.key_expr)
+        participant = key.removeprefix(self._prefix).removesuffix(self._suffix)
+        if participant == self._participant or len(participant) > LONGEST_ID:
+            return
+        if sample.kind != zenoh.SampleKind.DELETE:
+            self._note_present(participant, key)
+        elif participant in self.present:
+            self.present.discard(participant)
+            self._announced.release(participant, key)
+            self._gone[participant] = None
+            if len(self._gone) > GONE:
+                oldest = next(iter(self._gone))
+                del self._gone[oldest]
+                self.participants.discard(oldest)
+
+    def _note_present(self, participant: str, key: str) -> None:
+        if participant in self.present or not self._announced.admit(participant, key):
+            return
+        self.present.add(participant)
+        self._gone.pop(participant, None)
+        if participant not in self.participants:
+            self.participants.add(participant)
+            self._on_participant(participant)
+
+
+def submessage_key(key: str, side: Side, participant: str) -> str:
+    """Return the key of submessages to one context.
+
+    Args:
+        key: That of the topic.
+        side: Which side sends them: subscriptions send ACKNACK, publishers everything else.
+        participant: The context that gets them.
+    """
+    return side_key(key, side, f"reliable/{VERSION}/{participant}")

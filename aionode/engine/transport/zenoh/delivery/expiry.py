@@ -1,0 +1,37 @@
+"""A message that has expired before it could be sent over Zenoh is not sent any more."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.engine.wire import _attachment as attachment
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["unless_expired"]
+
+
+def unless_expired(
+    extra: bytes, lifespan_ns: int, now_ns: Callable[[], int], send: Callable[[], None]
+) -> Callable[[], None]:
+    """Return a function that calls `send`, unless the message has expired by then.
+
+    Only readers of aionode look at the age of what arrives.
+
+    Args:
+        extra: The attachment of the message, which says when it was published.
+        lifespan_ns: How long it is valid; 0 for ever.
+        now_ns: Returns nanoseconds since 1970.
+        send: Sends the message.
+    """
+    fields = attachment.unpack_fields(extra)
+    if not lifespan_ns or fields is None:
+        return send
+    expires_ns = fields[1] + lifespan_ns
+
+    def send_if_fresh() -> None:
+        if now_ns() < expires_ns:
+            send()
+
+    return send_if_fresh

@@ -1,0 +1,1 @@
+"""What other contexts have announced over Zenoh."""

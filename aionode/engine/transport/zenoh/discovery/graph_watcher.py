@@ -1,0 +1,393 @@
+"""The graph of other contexts, from their liveliness tokens."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+from functools import partial
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.engine.transport.send_thread import SendThread
+from aionode.engine.transport.zenoh._session_state import Declaration
+from aionode.engine.transport.zenoh.connections.handlers import direct, translated
+from aionode.engine.wire._liveliness import PREFIX, is_node_token, node_token, parse_token
+from aionode.graph import EndpointInfo, NodeInfo
+from aionode.names import is_hidden
+
+if TYPE_CHECKING:
+    from aionode.clock import Alarm
+    from aionode.engine.transport.zenoh._session_state import SessionState
+    from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
+
+__all__ = ["NodeDeclaration", "Watcher"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+
+CHECK_S: Final = 2.0
+"""Timeout for the tokens of others, in seconds; they take a millisecond."""
+
+ATTEMPTS: Final = 5
+"""Number of queries for tokens while answers lack those of this context."""
+
+ANSWER_S: Final = 60.0
+"""Time for which Zenoh waits for the tokens of all peers, in seconds; a frozen peer is cut long
+before."""
+
+EXPECTED_NS: Final = 2_000_000_000
+"""Time for which nodes of this domain are expected; meanwhile other domains are not told of."""
+
+NAMED: Final = 5
+"""Number of other domains that are named in the log."""
+
+MAX_FOREIGN: Final = 100
+"""Number of other domains that are remembered, and of tokens of each."""
+
+FILL_S: Final = 5.0
+"""Longest time until tokens that were left out take the place of tokens that have gone."""
+
+SHOWN: Final = 200
+"""Number of characters of an unknown text that are shown."""
+
+
+def participant_of(key: str) -> str:
+    """Return the participant that a liveliness token names; empty without one."""
+    return key.split("/", 3)[2] if key.count("/") > 1 else ""
+
+
+def is_of_tool(info: NodeInfo | EndpointInfo) -> bool:
+    """Return whether it is a hidden node or an endpoint of one, which nobody misses."""
+    node = info if isinstance(info, NodeInfo) else info.node
+    return is_hidden(node.fully_qualified_name)
+
+
+class NodeDeclaration(Declaration):
+    """A node: nothing but its token."""
+
+    def __init__(self, state: SessionState, node: NodeInfo) -> None:
+        super().__init__(state, node_token(state.domain_id, node))
+        state.add(self)
+
+    def declare_data(self, session: zenoh.Session) -> None:
+        """Nodes send and receive nothing themselves."""
+
+    def undeclare_data(self) -> None:
+        """Nor is there anything to withdraw."""
+
+
+class Answer:
+    """The end of a query for all tokens.
+
+    Attributes:
+        answered: What waits for it.
+        complete: Whether no reply is missing.
+    """
+
+    def __init__(self, answered: asyncio.Future[bool]) -> None:
+        self.answered = answered
+        # Zenoh's thread sets it before it reports the end, and the loop reads it after that.
+        self.complete = True
+
+    def take(self, reply: zenoh.Reply) -> None:
+        """Note a failure; in a thread of Zenoh, before the end is."""
+        if reply.ok is None:
+            self.complete = False
+
+
+class Check:
+    """A query for all tokens, whose replies are compared with the known ones.
+
+    Attributes:
+        tokens: The tokens in the replies.
+        changed: Tokens that were declared or undeclared meanwhile; replies may be older.
+        failed: Whether replies may be missing.
+        attempt: Which attempt it is, beginning with 1.
+    """
+
+    def __init__(self, attempt: int) -> None:
+        self.attempt = attempt
+        self.tokens: set[str] = set()
+        self.changed: set[str] = set()
+        # The thread that asks may set it, but only before it puts the check into the queue, from
+        # which the loop takes it: the two never use it at the same time.
+        self.failed = False
+
+
+class Change(NamedTuple):
+    """The declaration or undeclaration of a token.
+
+    Attributes:
+        key: The token.
+        present: Whether it is declared.
+    """
+
+    key: str
+    present: bool
+
+
+class Watcher:
+    """Keeps the graph up to date with the tokens of other contexts.
+
+    Attributes:
+        newest_ns: When the newest token arrived, or was asked for, by `perf_ns`.
+    """
+
+    def __init__(self, state: SessionState) -> None:
+        self.newest_ns = 0
+        self._state = state
+        self._check: Check | None = None
+        self._missing: set[str] = set()
+        self._known: dict[str, NodeInfo | EndpointInfo] = {}
+        # The tokens of nodes in other domains, as far as they are of interest.
+        self._foreign: dict[int, set[str]] = {}
+        self._tell_from = 1
+        self._warned = False
+        self._may_tell = False
+        self._expected: Alarm | None = None
+        self._filling: asyncio.TimerHandle | None = None
+        self._subscriber: zenoh.Subscriber[None] | None = None
+        self._asking = SendThread("aionode-graph", state.waker)
+        self._queue = state.queue(self._take)
+        state.connections.on_change.append(self._take_change)
+
+    def start(self, session: zenoh.Session) -> None:
+        """Subscribe to the tokens; existing ones arrive at once."""
+        with translated("the graph"):
+            # Of all domains, so that a node with another domain id can be named in the log.
+            self._subscriber = session.liveliness().declare_subscriber(
+                f"{PREFIX}/**", direct(self._hand_over), history=True
+            )
+
+    def stop(self) -> None:
+        """Unsubscribe, and forget all tokens."""
+        if self._subscriber is not None:
+            self._subscriber.undeclare()
+            self._subscriber = None
+        if self._filling is not None:
+            self._filling.cancel()
+            self._filling = None
+        self._asking.abandon()
+        self._queue.clear()
+        self._state.announced.clear()
+        self._check = None
+        self._missing = set()
+        self._known.clear()
+        self._foreign.clear()
+        self._tell_from = 1
+        self._may_tell = False
+        if self._expected is not None:
+            self._expected.cancel()
+            self._expected = None
+
+    @property
+    def other_domains(self) -> frozenset[int]:
+        """The domains of reachable nodes that are not hidden; a hundred at most."""
+        return frozenset(self._foreign)
+
+    def ask(self, session: zenoh.Session, answered: asyncio.Future[bool]) -> None:
+        """Resolve `answered` when the tokens of all connected peers are in the graph.
+
+        With false if some may be missing, as a peer has not answered in time.
+        """
+        self.newest_ns = perf_ns()  # from now on it is waited for the first one as well
+        answer = Answer(answered)
+        # The subscriber gets the same tokens, and a reply may be older than an undeclaration that
+        # it has got since: only the end of the replies is of interest, and whether one failed.
+        session.liveliness().get(
+            f"{PREFIX}/{self._state.domain_id}/**",
+            direct(answer.take, lambda: self._queue.put(answer)),
+            timeout=ANSWER_S,
+        )
+
+    def knows(self, key: str) -> bool:
+        """Return whether a token is in the graph, is one of this context, or may be left out."""
+        return (
+            key in self._known
+            or participant_of(key) == self._state.participant
+            or self._state.announced.left_out > 0
+        )
+
+    def node_tokens(self) -> set[str]:
+        """Return the tokens of all nodes that are known, those of this context included."""
+        own = {token for token in self._state.own_tokens() if is_node_token(token)}
+        return own | {token for token, info in self._known.items() if isinstance(info, NodeInfo)}
+
+    def check(self, attempt: int = 1) -> None:
+        """Compare the graph with the tokens that exist, and correct it.
+
+        While connections break and are made anew, Zenoh may deliver the end of a token on the old
+        one after its declaration on the new one. At the same time its replies may lack existing
+        tokens: one is removed if it is missing twice, and its context is not connected. Replies
+        without the tokens of this context count for nothing, and it is asked again.
+        """
+        session = self._state.session
+        if session is None or self._check is not None:
+            return
+        check = self._check = Check(attempt)
+        self._asking.submit(partial(self._ask_all, session, check))
+
+    def _ask_all(self, session: zenoh.Session, check: Check) -> None:
+        """Ask, in a thread: Zenoh takes 0.2 ms for each token that it knows, before it returns."""
+        try:
+            session.liveliness().get(
+                f"{PREFIX}/{self._state.domain_id}/**",
+                direct(self._queue.put, lambda: self._queue.put(check)),
+                timeout=CHECK_S,
+            )
+        except zenoh.ZError:  # the session was closed meanwhile
+            check.failed = True
+            self._queue.put(check)
+
+    def _hand_over(self, sample: zenoh.Sample) -> None:
+        """Have the loop take a token; thousands may wait, and the sample would take three times."""
+        self._queue.put(Change(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT))
+
+    def _take(self, item: Change | zenoh.Reply | Check | Answer) -> None:
+        if isinstance(item, Change):
+            self.newest_ns = perf_ns()
+            if self._check is not None:
+                self._check.changed.add(item.key)
+            if item.present:
+                self._add(item.key)
+            else:
+                self._remove(item.key)
+        elif isinstance(item, zenoh.Reply):
+            if self._check is None:
+                return
+            if item.ok is None:
+                self._check.failed = True
+            else:
+                self._check.tokens.add(str(item.ok.key_expr))
+        elif isinstance(item, Check):
+            self._end_check(item)
+        else:
+            self.newest_ns = perf_ns()
+            if not item.answered.done():
+                item.answered.set_result(item.complete)
+
+    def _take_change(self, change: ConnectionChange) -> None:
+        """Record the loss of a router: the tokens of everyone behind it go as well."""
+        graph = self._state.graph
+        if not change.is_made and change.kind == zenoh.WhatAmI.ROUTER and graph is not None:
+            graph.router_lost_ns = perf_ns()
+
+    def _end_check(self, check: Check) -> None:
+        if check is not self._check:
+            return
+        self._check = None
+        for key in check.tokens - check.changed:
+            self._add(key)
+        if check.failed or self._state.session is None:
+            return
+        if not self._state.own_tokens() <= check.tokens | check.changed:
+            if check.attempt < ATTEMPTS:
+                self.check(check.attempt + 1)
+            return
+        missing = self._known.keys() - check.tokens - check.changed
+        for key in missing & self._missing:
+            if key.split("/", 3)[2] not in self._state.connections.kinds:
+                self._remove(key)
+        self._missing = missing
+
+    def _add(self, key: str) -> None:
+        participant = participant_of(key)
+        if key in self._known or participant == self._state.participant:
+            return
+        announced = self._state.announced
+        if not announced.admit(participant, key):
+            return
+        if not self._show(key):
+            announced.release(participant, key)
+
+    def _show(self, key: str) -> bool:
+        """Add a token to the graph; return whether it belongs there."""
+        token = parse_token(key)
+        if token is None:
+            self._state.note_malformed(f"{PREFIX}/**", f"the liveliness token {key[:SHOWN]}")
+        elif token.domain_id != self._state.domain_id:
+            if not is_of_tool(token.info):
+                self._note_domain(token.domain_id, key)
+        elif self._state.graph is not None:
+            info = self._known[key] = token.info
+            if isinstance(info, NodeInfo):
+                self._state.graph.add_node(info)
+            else:
+                self._state.graph.add_endpoint(info)
+                self._state.tell_writers(info, present=True)
+            return True
+        return False
+
+    def _remove(self, key: str) -> None:
+        info = self._known.pop(key, None)
+        if info is None:
+            self._forget_domain(key)
+            return
+        self._state.announced.release(participant_of(key), key)
+        if self._state.announced.left_out and self._filling is None:
+            self._filling = asyncio.get_running_loop().call_later(FILL_S, self._fill)
+        if self._state.graph is None:
+            return
+        if isinstance(info, NodeInfo):
+            self._state.graph.remove_node(info)
+        else:
+            self._state.graph.remove_endpoint(info)
+            self._state.tell_writers(info, present=False)
+
+    def _fill(self) -> None:
+        """Ask for what was left out: there is room again."""
+        self._filling = None
+        self._state.announced.begin_to_fill()
+        self.check()
+
+    def _forget_domain(self, key: str) -> None:
+        for domain_id, keys in list(self._foreign.items()):
+            keys.discard(key)
+            if not keys:
+                del self._foreign[domain_id]
+
+    def note_domains(self) -> None:
+        """Log nodes of other domains once those of this one had time, and when more appear."""
+        time_base = self._state.time_base
+        self._expected = time_base.call_at(time_base.steady_ns() + EXPECTED_NS, self._begin_to_tell)
+
+    def _begin_to_tell(self) -> None:
+        self._may_tell = True
+        self._tell_domains()
+
+    def _note_domain(self, domain_id: int, key: str) -> None:
+        keys = self._foreign.get(domain_id)
+        if keys is not None:
+            if len(keys) < MAX_FOREIGN:
+                keys.add(key)
+        elif len(self._foreign) < MAX_FOREIGN:
+            self._foreign[domain_id] = {key}
+            if self._may_tell:
+                self._tell_domains()
+
+    def _tell_domains(self) -> None:
+        """Log a few of the other domains; again only when there are ten times as many.
+
+        One warning, if this context hears no other and has a single node: then the domain id may be
+        a mistake.
+        """
+        count = len(self._foreign)
+        own = sum(map(is_node_token, self._state.own_tokens()))
+        hears = not all(map(is_of_tool, self._known.values()))
+        warns = bool(count) and own < 2 and not hears and not self._warned
+        if count < self._tell_from and not warns:
+            return
+        self._tell_from = 10 * max(count, 1)
+        self._warned = self._warned or warns
+        named = sorted(self._foreign)[:NAMED]
+        logger.log(
+            logging.WARNING if warns else logging.DEBUG,
+            "nodes of domain %s%s can be reached, but this is domain %d: they do not hear each "
+            "other. ROS_DOMAIN_ID or Context(domain_id=...) changes the domain; in a "
+            "program, --ros-args --log-level aionode.transport.zenoh:=error hides this",
+            ", ".join(map(str, named)),
+            f" and {count - len(named)} more" if count > len(named) else "",
+            self._state.domain_id,
+        )

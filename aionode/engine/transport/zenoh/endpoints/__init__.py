@@ -1,0 +1,1 @@
+"""Publishers, subscriptions, servers and clients over Zenoh."""

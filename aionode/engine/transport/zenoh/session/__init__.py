@@ -1,0 +1,1 @@
+"""Sessions of Zenoh: how they open, find one another, and close."""

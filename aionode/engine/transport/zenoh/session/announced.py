@@ -1,0 +1,118 @@
+"""Limits of the tokens of other contexts that are kept: nodes, endpoints, filters, links."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from typing import TYPE_CHECKING, Final
+
+from aionode.engine.transport.zenoh._defects.crowd import is_crowd
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container
+
+__all__ = ["AnnouncedLimit"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+TOKEN_BYTES: Final = 2_000
+"""Bytes that a token counts besides its text, approximately: an endpoint in the graph takes as
+much."""
+
+SHARE: Final = 8
+"""One participant may have an eighth of it all."""
+
+RESERVED_BYTES: Final = 256_000
+"""Bytes of each connected participant that are kept whatever others announce: 100 endpoints. A
+process that fills the graph under invented names displaces no participant that is there."""
+
+
+class AnnouncedLimit:
+    """Limits how many liveliness tokens of others are kept, in all and of each participant.
+
+    Zenoh keeps all of them, and takes about 4 kB for each.
+
+    Args:
+        limit_bytes: The limit in all; a token counts its text, and `TOKEN_BYTES`.
+        connected: The participants that are connected now; the others may be behind routers, or
+            invented.
+
+    Attributes:
+        left_out: How many tokens were left out since the graph was last filled up; those that come
+            again count again.
+        is_crowded: Whether there are so many that Zenoh may stand still for a moment.
+        on_crowded: Called when that has changed.
+    """
+
+    def __init__(self, limit_bytes: int, connected: Container[str] = ()) -> None:
+        self.left_out = 0
+        self.is_crowded = False
+        self.on_crowded: list[Callable[[], None]] = []
+        self._count = 0
+        self._is_told = False
+        self._connected = connected
+        self._limit_bytes = limit_bytes
+        self._used_bytes = 0
+        self._of: Counter[str] = Counter()  # by participant
+
+    def admit(self, participant: str, key: str) -> bool:
+        """Count a token that is to be kept; return whether it may be, and log the first refusal."""
+        size_bytes = TOKEN_BYTES + len(key)
+        own_bytes = self._of[participant] + size_bytes
+        is_reserved = own_bytes <= RESERVED_BYTES and participant in self._connected
+        fits = self._used_bytes + size_bytes <= self._limit_bytes
+        if own_bytes > max(self._limit_bytes // SHARE, RESERVED_BYTES) or not (fits or is_reserved):
+            self._leave_out(participant)
+            return False
+        self._of[participant] = own_bytes
+        self._used_bytes += size_bytes
+        self._count += 1
+        self._judge()
+        return True
+
+    def release(self, participant: str, key: str) -> None:
+        """Count no more a token that was admitted."""
+        if participant not in self._of:  # everything was forgotten meanwhile
+            return
+        size_bytes = TOKEN_BYTES + len(key)
+        self._used_bytes -= size_bytes
+        self._of[participant] -= size_bytes
+        if not self._of[participant]:
+            del self._of[participant]
+        self._count -= 1
+        self._judge()
+
+    def begin_to_fill(self) -> None:
+        """Count anew what is left out: everything is asked for again."""
+        self.left_out = 0
+        self._judge()
+
+    def clear(self) -> None:
+        """Begin anew: nothing is kept any more."""
+        self._used_bytes = self._count = 0
+        self._of.clear()
+        self._judge()
+
+    def _judge(self) -> None:
+        """Find out whether it is crowded."""
+        is_crowded = is_crowd(self._count) or self.left_out > 0
+        if is_crowded is not self.is_crowded:
+            self.is_crowded = is_crowded
+            for call in self.on_crowded:
+                call()
+
+    def _leave_out(self, participant: str) -> None:
+        if not self._of[participant]:
+            del self._of[participant]  # it was asked for only
+        self.left_out += 1
+        self._judge()
+        if not self._is_told:
+            self._is_told = True
+            logger.warning(
+                "the graph is full: nodes or endpoints that other processes announce are left out, "
+                "from now on without a word. It keeps %.3g MiB, about %d endpoints, and an eighth "
+                "of that from one process. AIONODE_GRAPH_BYTES, or Context(graph_bytes=…), sets "
+                "the limit",
+                self._limit_bytes / 2**20,
+                self._limit_bytes // (TOKEN_BYTES + 200),
+            )

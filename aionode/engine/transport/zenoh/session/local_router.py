@@ -1,0 +1,164 @@
+"""The router of this machine towards static peers, in one of the processes that name them.
+
+Routers of Zenoh do not carry messages between the peers of one router, as these are expected to
+reach each other. Nodes listen on loopback only, so a node that dials the router of another machine
+would hear nothing behind it: each machine needs a router of its own, linked with those of others.
+Where there is none, the first process with static peers opens it; where there is one, a process
+with static peers opens a router that links it with them, and takes no peers.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import secrets
+import threading
+from contextlib import closing, suppress
+from typing import TYPE_CHECKING, Final
+
+import zenoh
+
+from aionode.clock import perf_ns
+from aionode.engine.transport.network import is_near
+from aionode.engine.transport.send_thread import start_thread
+from aionode.engine.transport.zenoh._defects.lingering import SocketOptions
+from aionode.engine.transport.zenoh.connections.config import LOOPBACK, load_config, open_probe
+from aionode.engine.transport.zenoh.connections.handlers import reason
+from aionode.engine.transport.zenoh.session.session import (
+    answering_ports,
+    close_session,
+    run_in_own_thread,
+)
+from aionode.engine.transport.zenoh.session.settings import router_settings
+from aionode.errors import ConfigurationError
+
+if TYPE_CHECKING:
+    from aionode.engine.transport.network import Network
+    from aionode.engine.transport.zenoh._session_state import SessionState
+    from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
+
+__all__ = ["LocalRouter"]
+
+logger = logging.getLogger("aionode.transport.zenoh")
+
+ROUTER_IDS: Final = "a10de20c"
+"""The prefix of the ids of such routers."""
+
+LINKED_S: Final = 1.0
+"""Time for which `open` waits for the first static peer, in seconds; the peer may be absent."""
+
+LINKED_POLL_S: Final = 0.005
+
+TREES_S: Final = 0.25
+"""Time that routers take to exchange their tokens, in seconds; Zenoh waits 0.1 s by itself."""
+
+TAKE_OVER_S: Final = 0.3
+"""Within this time after a router of another process has ended, this one opens its own."""
+
+
+class LocalRouter:
+    """Links this machine with the static peers of a context, by a router where one is needed.
+
+    Args:
+        state: The session state of the context.
+        network: Its settings.
+    """
+
+    def __init__(self, state: SessionState, network: Network) -> None:
+        self._state = state
+        self._network = network
+        self._router: zenoh.Session | None = None
+        self._closed = True
+        state.connections.on_change.append(self._take_change)
+        self._timer: asyncio.TimerHandle | None = None
+        # Held to read and change `_router`, and while a router is opened, so that `close` finds it.
+        # `close` sets `_closed` before it takes the lock: no router is opened after that.
+        self._opening = threading.Lock()
+
+    async def open(self) -> None:
+        """Open a router if this machine needs one; return when it is linked, if that is soon.
+
+        Raises:
+            ConfigurationError: the configuration cannot be used.
+        """
+        if not self._network.far_peers:
+            return
+        self._closed = False
+        await run_in_own_thread(self._open)
+
+    async def close(self) -> None:
+        """Close the router, if this process has it."""
+        if self._closed:
+            return
+        self._closed = True
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+        router = await run_in_own_thread(self._give_up)
+        if router is not None:
+            await close_session(router)
+
+    def _give_up(self) -> zenoh.Session | None:
+        """Return the router, which the caller closes; runs in a thread, as it may be opening."""
+        with self._opening:
+            router, self._router = self._router, None
+        return router
+
+    def _take_change(self, change: ConnectionChange) -> None:
+        """Take the place of the router of another process when that has ended."""
+        if change.is_made or not change.zid.startswith(ROUTER_IDS) or self._closed:
+            return
+        if self._timer is None:
+            delay_s = TAKE_OVER_S * int(self._state.participant[-4:], 16) / 0x10000
+            self._timer = asyncio.get_running_loop().call_later(delay_s, self._take_over)
+
+    def _take_over(self) -> None:
+        self._timer = None
+        start_thread(threading.Thread(target=self._open_again, name="aionode-zenoh"))
+
+    def _open_again(self) -> None:
+        with suppress(ConfigurationError):  # it was right before
+            self._open()
+
+    def _open(self) -> None:
+        """Open a router unless there is one of another process; runs in a thread."""
+        with self._opening:
+            if self._closed or self._router is not None:
+                return
+            port = self._network.router_port
+            there = self._router_at(port) if answering_ports((port,)) else ""
+            if there.startswith(ROUTER_IDS):
+                return
+            here = f"tcp/{LOOPBACK}:{port}"
+            settings = router_settings(
+                [] if there else [here], (*self._network.far_peers, *([here] if there else ()))
+            )
+            config = load_config(self._network, {}, ROUTER_IDS + secrets.token_hex(12), settings)
+            try:
+                router = self._router = zenoh.open(config)
+            except zenoh.ZError as error:  # another process was faster
+                logger.debug("%s: no router was opened: %s", here, reason(error))
+                return
+        SocketOptions(router)
+        until_linked(router)
+
+    def _router_at(self, port: int) -> str:
+        """Return the id of the router at a port of this machine, "unknown" if it does not say."""
+        with (
+            suppress(zenoh.ZError),
+            closing(open_probe(self._network, f"tcp/{LOOPBACK}:{port}")) as probe,
+        ):
+            for zid in probe.info.routers_zid():
+                return str(zid)
+        return "unknown"
+
+
+def until_linked(router: zenoh.Session) -> None:
+    """Wait until a router is linked with another machine, and knows what is there."""
+    ends_ns = perf_ns() + int(LINKED_S * 1e9)
+    while perf_ns() < ends_ns:
+        with suppress(zenoh.ZError):  # it is closed meanwhile
+            if any(not is_near(str(link.dst)) for link in router.info.links()):
+                threading.Event().wait(TREES_S)
+                return
+        threading.Event().wait(LINKED_POLL_S)

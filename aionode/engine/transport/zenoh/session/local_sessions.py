@@ -1,0 +1,142 @@
+"""The Zenoh sessions of this machine, as Linux lists them.
+
+Each session that other processes may dial connects a UDP socket, which sends nothing: the remote
+address says which sessions it meets, and the remote port is that on which Zenoh listens.
+``/proc/net/udp`` lists these sockets, so that a session knows all others before it is opened, and
+dials them. They belong to a network namespace, as loopback does: a listed session can be dialled,
+whatever user or container it belongs to. A socket ends with its process, however that ends.
+
+Unix sockets with abstract names would do as well, but ``/proc/net/unix`` lists all connections too:
+with a hundred processes that are linked it takes 8 ms to read, when all of them start and wait.
+
+Zenoh's gossip would introduce the sessions too, but each one tells all that it is connected with of
+each new one: a hundred that start at once send half a million such messages. Where nothing is
+listed, that is how sessions meet.
+"""
+
+from __future__ import annotations
+
+import socket
+import sys
+from contextlib import suppress
+from pathlib import Path
+from typing import Final, NamedTuple
+
+from aionode.engine.transport.network import udp_sockets
+from aionode.engine.transport.zenoh.connections.config import LOOPBACK
+from aionode.errors import escaped, shortened
+
+__all__ = ["LocalProcess", "announce", "holder_of", "listed", "processes", "reserve_port"]
+
+PROCESSES: Final = Path("/proc")
+
+STOPPED: Final = {"T", "t"}
+"""States of processes that a signal, or a debugger, has stopped; see proc(5)."""
+
+COMMAND: Final = 100
+"""Number of characters of a command line that are shown."""
+
+PRESENCE: Final = 97
+"""The second number of these addresses, all of which belong to loopback."""
+
+
+def announce(group: int, port: int) -> socket.socket:
+    """Have this machine list a session, until what is returned is closed.
+
+    Args:
+        group: The first of the ports on which sessions meet; those with others do not meet.
+        port: Where it listens on loopback.
+    """
+    presence = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    presence.bind((LOOPBACK, 0))
+    with suppress(OSError):  # loopback is down, and nobody could dial it
+        presence.connect((address_of(group), port))
+    return presence
+
+
+def listed(group: int) -> set[int] | None:
+    """Return the ports of the sessions that are listed; None if the machine has no list."""
+    lines = udp_sockets()
+    if lines is None:
+        return None
+    start = address_in_list(group)
+    ports = set()
+    for line in lines:
+        remote = line.split(maxsplit=3)[2]
+        if remote.startswith(start):
+            ports.add(int(remote.removeprefix(start), 16))
+    return ports
+
+
+class LocalProcess(NamedTuple):
+    """The process of a session that is listed.
+
+    Attributes:
+        pid: Its id.
+        command: Its command line, for people to read.
+        is_stopped: Whether a signal or a debugger has stopped it, so that it answers nobody.
+    """
+
+    pid: int
+    command: str
+    is_stopped: bool
+
+
+def processes(group: int) -> dict[int, LocalProcess]:
+    """Return the processes whose sessions are listed, by port, as far as the system tells."""
+    start = address_in_list(group)
+    ports = {}
+    for line in udp_sockets() or ():
+        columns = line.split()
+        if columns[2].startswith(start):
+            ports[f"socket:[{columns[9]}]"] = int(columns[2].removeprefix(start), 16)
+    found: dict[int, LocalProcess] = {}
+    for folder in PROCESSES.iterdir() if ports else ():
+        if folder.name.isdigit():
+            with suppress(OSError):  # it is another user's, or has ended
+                for descriptor in (folder / "fd").iterdir():
+                    port = ports.get(str(descriptor.readlink()))
+                    if port is not None:
+                        found[port] = process_in(folder)
+    return found
+
+
+def process_in(folder: Path) -> LocalProcess:
+    """Return what the system tells of a process."""
+    command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
+    state = (folder / "stat").read_text(errors="replace").rpartition(") ")[2][:1]
+    text = shortened(escaped(" ".join(command.split())), COMMAND)  # in one line
+    return LocalProcess(int(folder.name), text, state in STOPPED)
+
+
+def address_in_list(group: int) -> str:
+    """Return the address of a group as the list has it, up to the port."""
+    address = int.from_bytes(socket.inet_aton(address_of(group)), sys.byteorder)
+    return f"{address:08X}:"
+
+
+def holder_of(port: int) -> int | None:
+    """Return the user id of the process that has bound a UDP port of loopback, if it is listed."""
+    local = f"{int.from_bytes(socket.inet_aton(LOOPBACK), sys.byteorder):08X}:{port:04X}"
+    for line in udp_sockets() or ():
+        columns = line.split()
+        if columns[1] == local:
+            return int(columns[7])
+    return None
+
+
+def reserve_port(host: str) -> socket.socket:
+    """Return a socket with a free port, where a session can listen as long as it is open."""
+    reserved = socket.socket()
+    try:
+        reserved.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        reserved.bind((host, 0))
+    except OSError:
+        reserved.close()
+        raise
+    return reserved
+
+
+def address_of(group: int) -> str:
+    """Return the address with which the sessions of a group are connected."""
+    return f"127.{PRESENCE}.{group >> 8}.{group & 0xFF}"

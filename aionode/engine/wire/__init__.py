@@ -1,0 +1,1 @@
+"""The wire format of ROS 2 on Zenoh; these modules do no I/O."""

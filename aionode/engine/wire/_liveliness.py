@@ -1,0 +1,290 @@
+"""Liveliness tokens: the ROS graph as Zenoh key expressions.
+
+Each node and each endpoint declares one token for as long as it exists::
+
+    @ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<node>
+    @ros2_lv/<domain>/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>
+
+A name is one chunk, with each slash replaced by ``%``. The QoS chunk omits values that are equal to
+rmw_zenoh's defaults. Since ROS 2 Lyrical a 14th chunk ``backends:…`` may follow.
+
+Parsing is lenient: it returns None for a token of unknown format, or with a name that ROS does not
+allow, and never raises, as any program may declare any token with this prefix.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Final, NamedTuple
+
+import xxhash
+
+from aionode.clock import CONST_INFINITE_NS, S_TO_NS, Duration
+from aionode.engine.wire._key_expression import dds_type, demangle, mangle, ros_type
+from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
+from aionode.names import is_full_name, is_full_node_name, is_plain
+from aionode.qos import (
+    DEFAULT_DEPTH,
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+
+__all__ = [
+    "CPU_BACKEND",
+    "PREFIX",
+    "Token",
+    "endpoint_token",
+    "gid_of",
+    "is_node_token",
+    "node_token",
+    "parse_qos",
+    "parse_token",
+    "qos_chunk",
+]
+
+PREFIX: Final = "@ros2_lv"
+
+BACKENDS: Final = "backends:"
+
+CPU_BACKEND: Final = f"{BACKENDS}cpu:"
+"""The 14th chunk of a subscription that also accepts plain bytes on the buffer key."""
+
+NODE_KIND: Final = "NN"
+KIND_CHUNKS: Final = {
+    EndpointKind.PUBLISHER: "MP",
+    EndpointKind.SUBSCRIPTION: "MS",
+    EndpointKind.SERVER: "SS",
+    EndpointKind.CLIENT: "SC",
+}
+KINDS: Final = {chunk: kind for kind, chunk in KIND_CHUNKS.items()}
+
+NODE_CHUNKS: Final = 9
+ENDPOINT_CHUNKS: Final = 13
+
+LONGEST_TOKEN: Final = 4096
+"""Longest token in characters: names of ROS have 255 at most, and a token has five of them."""
+
+QOS_CHUNKS: Final = 256
+"""Of how many different QoS chunks the profiles are remembered."""
+
+SHARED: Final = 1024
+"""So many nodes and names, and so many types, are one object in all endpoints that have them."""
+
+FOREVER: Final = divmod(CONST_INFINITE_NS, S_TO_NS)
+
+
+class Token(NamedTuple):
+    """A parsed liveliness token."""
+
+    domain_id: int
+    info: NodeInfo | EndpointInfo
+
+
+# Writing
+
+
+def node_token(domain_id: int, node: NodeInfo) -> str:
+    """Return the token of a node."""
+    return "/".join(node_chunks(domain_id, node, node.node_id, NODE_KIND))
+
+
+def is_node_token(token: str) -> bool:
+    """Return whether a token is that of a node."""
+    return token.split("/", 6)[5:6] == [NODE_KIND]
+
+
+def endpoint_token(domain_id: int, endpoint: EndpointInfo, backends: str = "") -> str:
+    """Return the token of an endpoint; the `gid` is not part of it, but derived from it."""
+    chunks = [
+        *node_chunks(domain_id, endpoint.node, endpoint.endpoint_id, KIND_CHUNKS[endpoint.kind]),
+        mangle(endpoint.name),
+        mangle(dds_type(endpoint.type_name)),
+        mangle(endpoint.type_hash),
+        qos_chunk(endpoint.qos),
+    ]
+    if backends:
+        chunks.append(backends)
+    return "/".join(chunks)
+
+
+def node_chunks(domain_id: int, node: NodeInfo, entity_id: int, kind: str) -> list[str]:
+    """Return the chunks that nodes and endpoints have in common."""
+    return [
+        PREFIX,
+        str(domain_id),
+        node.participant,
+        str(node.node_id),
+        str(entity_id),
+        kind,
+        mangle(node.enclave or "/"),
+        mangle(node.namespace or "/"),
+        node.name,
+    ]
+
+
+def gid_of(token: str) -> bytes:
+    """Return the 16 bytes that identify an entity in attachments and in the graph.
+
+    They are derived from its token alone: XXH3-128, low half first, each half little-endian.
+    """
+    return xxhash.xxh3_128_digest(token.encode())[::-1]
+
+
+def qos_chunk(qos: QoSProfile) -> str:
+    """Return the QoS chunk of a profile, with system defaults resolved as in rmw_zenoh."""
+    qos = qos.resolved()
+    lease = duration_text(qos.liveliness_lease_duration)
+    return ":".join(
+        (
+            elided(qos.reliability, ReliabilityPolicy.RELIABLE),
+            elided(qos.durability, DurabilityPolicy.VOLATILE),
+            f"{elided(qos.history, HistoryPolicy.KEEP_LAST)},{elided(qos.depth, DEFAULT_DEPTH)}",
+            duration_text(qos.deadline),
+            duration_text(qos.lifespan),
+            f"{elided(qos.liveliness, LivelinessPolicy.AUTOMATIC)},{lease}",
+        )
+    )
+
+
+def elided(value: int, default: int) -> str:
+    """Return `value` as text, empty for the default."""
+    return "" if value == default else str(int(value))
+
+
+def duration_text(duration: Duration) -> str:
+    """Return seconds and nanoseconds as text; the parts of an infinite duration are omitted."""
+    parts = divmod(duration.nanoseconds, S_TO_NS)
+    return ",".join(elided(*pair) for pair in zip(parts, FOREVER, strict=True))
+
+
+# Reading
+
+
+def parse_token(key: str) -> Token | None:
+    """Return the parsed token, or None if its format is unknown."""
+    chunks = key.split("/")
+    if len(chunks) < NODE_CHUNKS or chunks[0] != PREFIX or "" in chunks:
+        return None
+    if len(key) > LONGEST_TOKEN or not is_plain(key):
+        return None
+    _, domain, zid, node_id, entity_id, kind, enclave, namespace, name = chunks[:NODE_CHUNKS]
+    numbers = [number(text) for text in (domain, node_id, entity_id)]
+    if None in numbers:
+        return None
+    domain_id, nid, eid = (n or 0 for n in numbers)
+    node = shared_node(zid, nid, name, namespace, enclave)
+    if node is None:
+        return None
+    if kind == NODE_KIND:
+        return Token(domain_id, node)
+    endpoint = parse_endpoint(key, node, eid, kind, chunks[NODE_CHUNKS:])
+    return None if endpoint is None else Token(domain_id, endpoint)
+
+
+def parse_endpoint(
+    key: str, node: NodeInfo, endpoint_id: int, kind: str, chunks: list[str]
+) -> EndpointInfo | None:
+    """Return the endpoint described by the last chunks of its token."""
+    if kind not in KINDS or len(chunks) < ENDPOINT_CHUNKS - NODE_CHUNKS:
+        return None
+    name_chunk, dds_name, type_hash, qos_text = chunks[:4]
+    name = shared_name(name_chunk)
+    type_name, hash_text = shared_type(dds_name, type_hash)
+    qos = parse_qos(qos_text)
+    if name is None or type_name is None or qos is None:
+        return None
+    backends = next(iter(chunks[4:]), "")
+    return EndpointInfo(
+        KINDS[kind],
+        node,
+        endpoint_id,
+        name,
+        type_name,
+        hash_text,
+        qos,
+        gid_of(key),
+        backends if backends.startswith(BACKENDS) else "",
+    )
+
+
+@lru_cache(SHARED)
+def shared_node(zid: str, node_id: int, name: str, namespace: str, enclave: str) -> NodeInfo | None:
+    """Return the node of some chunks, None if it cannot be one; the same object always."""
+    node = NodeInfo(zid, node_id, name, demangle(namespace), demangle(enclave))
+    return node if is_full_node_name(name, node.namespace, node.enclave) else None
+
+
+@lru_cache(SHARED)
+def shared_name(chunk: str) -> str | None:
+    """Return the name of a topic or service, None if it cannot be one; the same object always."""
+    name = demangle(chunk)
+    return name if is_full_name(name) else None
+
+
+@lru_cache(SHARED)
+def shared_type(dds_name: str, type_hash: str) -> tuple[str | None, str]:
+    """Return the name of a type, None if it is not one, and its hash; the same objects always."""
+    return ros_type(demangle(dds_name)), demangle(type_hash)
+
+
+def parse_qos(chunk: str) -> QoSProfile | None:
+    """Return the profile described by a QoS chunk, or None if its format is unknown."""
+    profile = cached_profile(chunk)
+    return None if profile is None else profile.replace()  # a copy, as it can be changed
+
+
+@lru_cache(QOS_CHUNKS)
+def cached_profile(chunk: str) -> QoSProfile | None:
+    """Return the same profile for the same chunk: few differ, and each takes 20 µs."""
+    fields = [field.split(",") for field in chunk.split(":")]
+    if len(fields) < 6 or any(
+        len(parts) < needed for parts, needed in zip(fields, (1, 1, 2, 2, 2, 3), strict=False)
+    ):
+        return None
+    history = fields[2]
+    liveliness = fields[5]
+    try:
+        return QoSProfile(
+            reliability=ReliabilityPolicy(value(fields[0][0], ReliabilityPolicy.RELIABLE)),
+            durability=DurabilityPolicy(value(fields[1][0], DurabilityPolicy.VOLATILE)),
+            history=HistoryPolicy(value(history[0], HistoryPolicy.KEEP_LAST)),
+            depth=value(history[1], DEFAULT_DEPTH) or DEFAULT_DEPTH,
+            deadline=parse_duration(fields[3]),
+            lifespan=parse_duration(fields[4]),
+            liveliness=LivelinessPolicy(value(liveliness[0], LivelinessPolicy.AUTOMATIC)),
+            liveliness_lease_duration=parse_duration(liveliness[1:]),
+        )
+    except ValueError:
+        return None
+
+
+def parse_duration(parts: list[str]) -> Duration:
+    """Return the duration given as seconds and nanoseconds.
+
+    Raises:
+        ValueError: A part is not a number, or is too large.
+    """
+    seconds, nanoseconds = (value(*pair) for pair in zip(parts[:2], FOREVER, strict=True))
+    return Duration(nanoseconds=min(seconds * S_TO_NS + nanoseconds, CONST_INFINITE_NS))
+
+
+def value(text: str, default: int) -> int:
+    """Return the number in `text`, or `default` if it is empty.
+
+    Raises:
+        ValueError: `text` is not a number.
+    """
+    if not text:
+        return int(default)
+    result = number(text)
+    if result is None:
+        raise ValueError(text)
+    return result
+
+
+def number(text: str) -> int | None:
+    """Return a decimal number, or None; int() would also accept signs, blanks and underscores."""
+    return int(text) if text.isascii() and text.isdigit() and len(text) <= 20 else None

@@ -1,0 +1,211 @@
+"""Encodes and decodes messages in the encoding of ROS 2 (XCDR1).
+
+The functions are generated when a type is first encoded or decoded, which takes about a
+millisecond. Slower code handles unusual values, and raises the errors. How a field is written:
+`_encoder.py`.
+"""
+
+from __future__ import annotations
+
+import copy
+import struct
+from collections.abc import Callable, Sequence
+from functools import cache
+from operator import attrgetter
+from typing import Any, TypeAlias, TypeVar
+
+from aionode.engine.wire.cdr._decoder import generate_decoder
+from aionode.engine.wire.cdr._encoder import FALLBACK_ERRORS, JOIN, generate_encoder, views
+from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
+from aionode.engine.wire.cdr._family import OWN, MessageFamily
+from aionode.engine.wire.cdr._layout import has_buffers, has_views
+from aionode.errors import MessageError
+from aionode.message import Message, fields, snapshotter, type_name, unserialized
+
+__all__ = [
+    "Data",
+    "MessageFamily",
+    "decode",
+    "decoder",
+    "encode",
+    "encoder",
+    "has_buffers",
+    "has_views",
+    "parts_encoder",
+]
+
+MessageT = TypeVar("MessageT", bound=Message)
+Encoded = TypeVar("Encoded")
+
+Data: TypeAlias = bytes | bytearray | memoryview
+"""Types that can hold an encoded message."""
+
+
+def encode(msg: Message) -> bytes:
+    """Return a message encoded: little-endian, zeros as padding, nothing after the last field.
+
+    Raises:
+        MessageError: A value does not fit its field.
+        TypeError: `msg` is not a message.
+    """
+    try:
+        function = ENCODERS[msg.__class__]
+    except KeyError:
+        function = encoder(msg.__class__)
+    return function(msg)
+
+
+def decode(msg_type: type[MessageT], data: Data) -> MessageT:
+    """Return the message of this type in `data`; bytes after it are ignored.
+
+    Arrays of numbers and sequences of bytes are read-only views of `data`: no copy is made, and
+    `data` lives as long as they do. It must not change while they are in use.
+
+    Raises:
+        DecodeError: `data` does not hold such a message: it is truncated, corrupt, or of another
+            type.
+        TypeError: `msg_type` is not a message class, or `data` is not bytes-like.
+    """
+    try:
+        function = DECODERS[msg_type]
+    except KeyError:
+        function = decoder(msg_type)
+    return function(data)  # type: ignore[no-any-return] # a message of this type
+
+
+def encoder(
+    cls: type[MessageT], family: MessageFamily | None = None
+) -> Callable[[MessageT], bytes]:
+    """Return the function that encodes messages of one class, as `encode` does.
+
+    Args:
+        cls: A message class of aionode.
+        family: Whose objects the function takes; aionode's own without it.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    if family is not None:
+        return family_encoder(cls, JOIN, family)
+    if cls not in ENCODERS:
+        ENCODERS[cls] = new_encoder(cls, JOIN, OWN)
+    return ENCODERS[cls]
+
+
+def parts_encoder(
+    cls: type[MessageT], family: MessageFamily | None = None
+) -> Callable[[MessageT], list[bytes | memoryview]]:
+    """Return the function that encodes messages of one class into a list of parts.
+
+    Joined, the parts are what `encode` returns. Large arrays and byte sequences of the message are
+    read-only views of its own memory, as single bytes: no copy is made, and a view shows the
+    current content of the message, so use the parts before the message may change. This pays off
+    for classes for which `has_views` is true; other classes have no such views.
+
+    Args:
+        cls: A message class of aionode.
+        family: Whose objects the function takes; aionode's own without it.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    if family is not None:
+        return family_encoder(cls, views, family)
+    if cls not in PARTS_ENCODERS:
+        PARTS_ENCODERS[cls] = new_encoder(cls, views, OWN)
+    return PARTS_ENCODERS[cls]
+
+
+def decoder(cls: type[MessageT], family: MessageFamily | None = None) -> Callable[[Data], MessageT]:
+    """Return the function that decodes messages of one class, as `decode` does.
+
+    Args:
+        cls: A message class of aionode.
+        family: Whose objects the function makes; aionode's own without it.
+
+    Raises:
+        TypeError: `cls` is not a message class.
+    """
+    if family is not None:
+        return family_decoder(cls, family)
+    if cls not in DECODERS:
+        DECODERS[cls] = new_decoder(cls, OWN)
+    return DECODERS[cls]
+
+
+ENCODERS: dict[type[Message], Callable[[Any], bytes]] = {}
+PARTS_ENCODERS: dict[type[Message], Callable[[Any], list[bytes | memoryview]]] = {}
+DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
+
+
+@cache
+def family_encoder(
+    cls: Any, finish: Callable[[Sequence[Any]], Any], family: MessageFamily
+) -> Callable[[Any], Any]:
+    """Return the encoder of a class for objects of another family."""
+    return new_encoder(cls, finish, family)
+
+
+@cache
+def family_decoder(cls: Any, family: MessageFamily) -> Callable[[Any], Any]:
+    """Return the decoder of a class that makes objects of another family."""
+    return new_decoder(cls, family)
+
+
+def new_encoder(
+    cls: type[Message], finish: Callable[[Sequence[Any]], Encoded], family: MessageFamily
+) -> Callable[[Any], Encoded]:
+    """Return a new encoder of a class; arguments as for `generate_encoder`."""
+    fields(cls)  # raises TypeError for a service class
+    if unserialized(cls) is not cls:
+        return attrgetter("data") if finish is JOIN else lambda msg: finish((msg.data,))
+    if family is not OWN:
+        own = new_encoder(cls, finish, OWN)
+        return generate_encoder(cls, lambda msg: own(family.adopt(msg)), finish, family)
+    take = snapshotter(cls)
+
+    def encode_unusual(msg: Any) -> Encoded:
+        taken = take(msg)
+        try:
+            return fast(taken, True)
+        except struct.error as error:
+            raise MessageError(type_name(cls), f"too large to encode ({error})") from None
+        except FALLBACK_ERRORS:
+            # Arrays that are not contiguous, which a snapshot may share with the message.
+            return fast(copy.deepcopy(taken), True)
+
+    fast = generate_encoder(cls, encode_unusual, finish)
+    return fast
+
+
+def new_decoder(cls: type[Message], family: MessageFamily) -> Callable[[Any], Any]:
+    """Return a new decoder of a class that makes objects of `family`."""
+    fields(cls)  # raises TypeError for a service class
+    if unserialized(cls) is not cls:
+        return cls
+
+    def decode_carefully(data: bytes) -> Any:
+        return decode_slowly(cls, memoryview(data), family)
+
+    def decode_other(data: Any) -> Any:
+        return view_decoder(cls, family)(read_only(data))
+
+    return generate_decoder(cls, decode_carefully, decode_other, family=family)
+
+
+@cache
+def view_decoder(cls: Any, family: MessageFamily) -> Callable[[memoryview], Any]:
+    """Return the decoder of a class for data that is not a bytes object."""
+
+    def decode_carefully(data: memoryview) -> Any:
+        return decode_slowly(cls, data, family)
+
+    return generate_decoder(cls, decode_carefully, family=family)
+
+
+def read_only(data: Any) -> memoryview:
+    """Return `data` as a read-only view of single bytes."""
+    view = memoryview(data)
+    if not view.nbytes or not view.c_contiguous:
+        view = memoryview(bytes(view))
+    return view.cast("B").toreadonly()

@@ -1,0 +1,337 @@
+"""Foxglove's protocol, ``foxglove.sdk.v1``, for one client and its session."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import AsyncIterator, Awaitable, Callable, Hashable
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+from uuid import uuid4
+
+from aionode.engine.wire import cdr
+from aionode.errors import AionodeError, EntityDestroyedError, MessageError
+from aionode.gateway.foxglove import frames
+from aionode.gateway.foxglove.channels import Channels
+from aionode.gateway.foxglove.parameters import Parameters
+from aionode.gateway.foxglove.playback import Playback
+from aionode.gateway.session.client_json import decoded
+from aionode.gateway.session.lanes import Lanes
+from aionode.gateway.session.values import json_of
+from aionode.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from aionode.bag import Player
+    from aionode.gateway.session.session import Session
+    from aionode.gateway.session.topics import Subscribed
+
+__all__ = ["serve_frames"]
+
+CAPABILITIES: Final = (
+    "clientPublish",
+    "services",
+    "parameters",
+    "parametersSubscribe",
+    "connectionGraph",
+    "time",
+)
+ENCODINGS: Final = ("cdr", "json")
+CALL_SEC: Final = 30.0
+"""Longest time for a service: the protocol has no time limit."""
+
+SETTLING_SEC: Final = 0.1
+"""Time for which a change of the graph waits for further ones: a robot that starts has hundreds."""
+
+MOST_MALFORMED: Final = 100
+"""Frames that are no ops that a client may send before it is disconnected."""
+
+MOST_CHANNELS: Final = 1000
+"""Channels that a client may advertise, of all topics together."""
+
+ERROR: Final = 2
+"""The level of a status, of which 0 is an information and 1 a warning."""
+
+
+async def serve_frames(
+    session: Session, incoming: AsyncIterator[bytes | str], player: Player | None = None
+) -> None:
+    """Speak with one client until its frames end.
+
+    Cancelling ends all that the client has begun.
+
+    Args:
+        session: The session of the client; its outbox is sent by the caller.
+        incoming: The frames of the client.
+        player: A bag's player, which Foxglove's timeline controls through the services of its node.
+    """
+    async with asyncio.TaskGroup() as tasks:
+        lanes = Lanes(tasks)
+        client = Client(session, lanes, player)
+        client.greet()
+        watching = tasks.create_task(client.watch())
+        playing = tasks.create_task(client.playback.watch())
+        try:
+            async for frame in incoming:
+                await client.take(frame)
+                if client.malformed > MOST_MALFORMED:
+                    break
+        finally:
+            watching.cancel()
+            playing.cancel()
+            lanes.cancel()
+
+
+class Client:
+    """One client.
+
+    Attributes:
+        malformed: How many of its frames were no ops.
+        playback: The player that it controls.
+    """
+
+    def __init__(self, session: Session, lanes: Lanes, player: Player | None) -> None:
+        self._session = session
+        self._lanes = lanes
+        self._published: dict[int, frames.ClientChannel] = {}
+        self._graph: Connections | None = None
+        self._news = asyncio.Event()
+        self.malformed = 0
+        self.playback = Playback(session, player)
+        self._channels = Channels(session, self.playback.time_ns)
+        self._parameters = Parameters(session)
+        session.on_policy = self._note_policy
+
+    def greet(self) -> None:
+        """Send the name and the capabilities of this server."""
+        info = {
+            "name": "aionode",
+            "capabilities": [*CAPABILITIES, *self.playback.capabilities],
+            "supportedEncodings": ENCODINGS,
+            "metadata": {"ROS_DISTRO": os.environ.get("ROS_DISTRO", "jazzy")},
+            "sessionId": str(uuid4()),
+            **self.playback.range,
+        }
+        self._session.outbox.send(frames.op_frame("serverInfo", info))
+
+    async def watch(self) -> None:
+        """Announce topics and services again whenever the graph or the policy has changed."""
+        robot = self._session._robot
+        with suppress(EntityDestroyedError):  # the context has closed
+            while True:
+                self._news.clear()
+                changed = robot.node.graph.changed()
+                changed.add_done_callback(lambda _: self._news.set())
+                await self._session.turn()
+                await self._channels.announce()
+                if self._graph is not None:
+                    self._graph.tell()
+                await self._news.wait()
+                if changed.done():
+                    changed.result()
+                changed.cancel()
+                await robot.clock.sleep(SETTLING_SEC)
+
+    def _note_policy(self, ended: list[Subscribed]) -> None:
+        """Take that the policy has changed, which has ended subscriptions."""
+        self._channels.tell_ended(ended)
+        self._parameters.forget(ended)
+        self._news.set()
+
+    async def take(self, frame: bytes | str) -> None:
+        """Handle a frame; the client is told of failures by a status."""
+        try:
+            most = self._session._limits.frame_parts
+            asked = frames.op_of(frame, most) if isinstance(frame, str) else frames.binary_of(frame)
+        except MessageError as error:
+            self.malformed += 1
+            self._session.refused += 1
+            self._refuse(error)
+            return
+        try:
+            await self._begin(asked)
+        except MessageError as error:  # too much is under way
+            self._refuse(error)
+
+    async def _begin(self, asked: frames.Asked) -> None:
+        """Begin the op of a frame, behind the ops that it has to wait for."""
+        match asked:
+            case frames.Advertise():
+                for channel in asked.channels:
+                    await self._put(("publish", channel.id), self._advertise, channel)
+            case frames.Unadvertise():
+                for channel_id in asked.channel_ids:
+                    await self._put(("publish", channel_id), self._unadvertise, channel_id)
+            case frames.ClientMessage():
+                arrived_ns = self._session.arrival_ns()  # it may wait, and be too old then
+                await self._put(("publish", asked.channel_id), self._publish, asked, arrived_ns)
+            case frames.ServiceCall():
+                self._start(self._call, asked)
+            case frames.PlaybackRequest():
+                await self._put("playback", self.playback.control, self._start, asked)
+            case frames.Subscribe() | frames.Unsubscribe():
+                await self._put("channels", self._do, asked)
+            case _:
+                await self._put(type(asked).__name__.removeprefix("Un"), self._do, asked)
+
+    async def _put(
+        self, lane: Hashable, work: Callable[..., Awaitable[None]], *arguments: Any
+    ) -> None:
+        await self._lanes.put(lane, partial(self._attempt, work, *arguments))
+
+    def _start(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
+        self._lanes.start(partial(self._attempt, work, *arguments))
+
+    async def _attempt(self, work: Callable[..., Awaitable[None]], *arguments: Any) -> None:
+        """Await work, and tell the client if it fails."""
+        try:
+            await work(*arguments)
+        except (AionodeError, TimeoutError) as error:
+            self._refuse(error)
+
+    def _refuse(self, error: Exception) -> None:
+        status = {"level": ERROR, "message": str(error) or "no answer in time"}
+        self._session.outbox.send(frames.op_frame("status", status))
+
+    async def _do(self, op: frames.Op) -> None:
+        """Do an op about channels, parameters or the graph."""
+        match op:
+            case frames.Subscribe():
+                for wish in op.subscriptions:
+                    await self._attempt(self._channels.subscribe, wish.id, wish.channel_id)
+            case frames.Unsubscribe():
+                self._channels.unsubscribe(op.subscription_ids)
+            case frames.GetParameters():
+                await self._parameters.get(op.parameter_names, op.id)
+            case frames.SetParameters():
+                await self._parameters.set(op.parameters, op.id)
+            case frames.SubscribeParameterUpdates():
+                await self._parameters.follow(op.parameter_names)
+            case frames.UnsubscribeParameterUpdates():
+                self._parameters.unfollow(op.parameter_names)
+            case frames.SubscribeConnectionGraph():
+                await self._session.turn()
+                self._graph = Connections(self._session)
+                self._graph.tell()
+            case frames.UnsubscribeConnectionGraph():
+                self._graph = None
+
+    # Messages and calls of the client
+
+    async def _advertise(self, channel: frames.ClientChannel) -> None:
+        if channel.encoding not in ENCODINGS:
+            problem = f"{channel.encoding!r}; use one of {', '.join(ENCODINGS)}"
+            raise MessageError(f"advertise {channel.topic}: encoding", problem)
+        if channel.id in self._published:
+            raise MessageError("advertise", f"the channel {channel.id} is advertised already")
+        if len(self._published) >= MOST_CHANNELS:
+            raise MessageError("advertise", f"there are {MOST_CHANNELS} channels, the limit")
+        self._published[channel.id] = channel  # before it waits: others advertise meanwhile
+        try:
+            await self._session.advertise(channel.topic, channel.schema_name)
+        except BaseException:
+            del self._published[channel.id]
+            raise
+
+    async def _unadvertise(self, channel_id: int) -> None:
+        channel = self._published.pop(channel_id, None)
+        if channel is None:
+            raise MessageError("unadvertise", f"there is no channel {channel_id} of this client")
+        await self._session.unadvertise(channel.topic)
+
+    async def _publish(self, given: frames.ClientMessage, arrived_ns: int) -> None:
+        channel = self._published.get(given.channel_id)
+        if channel is None:
+            problem = f"there is no channel {given.channel_id} of this client; advertise it first"
+            raise MessageError("message", problem)
+        values = values_of(channel.encoding, given.data, self._session._limits.frame_parts)
+        await self._session.publish(
+            channel.topic, values, channel.schema_name, arrived_ns=arrived_ns
+        )
+
+    async def _call(self, call: frames.ServiceCall) -> None:
+        try:
+            if call.encoding not in ENCODINGS:
+                raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
+            name, type_name = self._channels.service(call.service_id)
+            values = values_of(call.encoding, call.data, self._session._limits.frame_parts)
+            response = await self._session.call(
+                name, values, type_name=type_name, timeout_sec=CALL_SEC
+            )
+        except (AionodeError, TimeoutError) as error:
+            failure = {
+                "serviceId": call.service_id,
+                "callId": call.call_id,
+                "message": str(error) or f"no answer within {CALL_SEC:g} s",
+            }
+            self._session.outbox.send(frames.op_frame("serviceCallFailure", failure))
+            return
+        data = json_of(response) if call.encoding == "json" else bytes(cdr.encode(response))
+        self._session.outbox.send(frames.response_frame(call, data))
+
+
+def values_of(encoding: str, data: memoryview, most_parts: int) -> Any:
+    """Return the values of a message or request: CDR as it is, JSON decoded.
+
+    Raises:
+        MessageError: the bytes are no JSON.
+    """
+    if encoding == "cdr":
+        return bytes(data)
+    return decoded(data, most_parts, "message")
+
+
+class Connections:
+    """The connection graph, as one client has it.
+
+    Args:
+        session: Its session, which leaves out names that the policy hides.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._known: list[dict[str, list[str]]] = [{}, {}, {}]
+
+    def tell(self) -> None:
+        """Send the changes since the last time, if there are any."""
+        now = self._connections()
+        changed = [
+            {name: nodes for name, nodes in new.items() if old.get(name) != nodes}
+            for old, new in zip(self._known, now, strict=True)
+        ]
+        gone = [
+            [name for name in old if name not in new]
+            for old, new in zip(self._known, now, strict=True)
+        ]
+        self._known = now
+        if not any(changed) and not any(gone):
+            return
+        published, subscribed, served = changed
+        topics = {*gone[0], *gone[1]}
+        # A topic that has lost its publishers only is one without publishers, and not removed.
+        left = {name for name in topics if name in now[0] or name in now[1]}
+        for name in left:
+            published.update({} if name in now[0] else {name: []})
+            subscribed.update({} if name in now[1] else {name: []})
+        self._session.outbox.send(
+            frames.op_frame(
+                "connectionGraphUpdate",
+                {
+                    "publishedTopics": listed(published, "publisherIds"),
+                    "subscribedTopics": listed(subscribed, "subscriberIds"),
+                    "advertisedServices": listed(served, "providerIds"),
+                    "removedTopics": sorted(topics - left),
+                    "removedServices": gone[2],
+                },
+            )
+        )
+
+    def _connections(self) -> list[dict[str, list[str]]]:
+        """Return the nodes by what they publish, subscribe and serve."""
+        kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVER)
+        return [self._session.connections(kind) for kind in kinds]
+
+
+def listed(nodes: dict[str, list[str]], ids: str) -> list[dict[str, Any]]:
+    """Return the names with their nodes in the form of the protocol."""
+    return [{"name": name, ids: nodes[name]} for name in sorted(nodes)]

@@ -1,0 +1,347 @@
+"""The frames of Foxglove's protocol, ``foxglove.sdk.v1``: ops in JSON, and binary frames.
+
+Nothing here does input or output. All numbers are little endian.
+"""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import struct
+from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, TypeAlias
+
+import msgspec
+
+from aionode.errors import MessageError
+from aionode.gateway.session.client_json import check_items, check_parts
+from aionode.gateway.session.outbox import LongFrame, binary_frame
+from aionode.parameter import Parameter, ParameterType
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+__all__ = [
+    "SUBPROTOCOL",
+    "Advertise",
+    "Asked",
+    "ClientChannel",
+    "ClientMessage",
+    "FoxgloveParameter",
+    "GetParameters",
+    "Op",
+    "PlaybackRequest",
+    "ServiceCall",
+    "SetParameters",
+    "Subscribe",
+    "SubscribeConnectionGraph",
+    "SubscribeParameterUpdates",
+    "Unadvertise",
+    "Unsubscribe",
+    "UnsubscribeConnectionGraph",
+    "UnsubscribeParameterUpdates",
+    "binary_of",
+    "message_frame",
+    "op_frame",
+    "op_of",
+    "parameter_of",
+    "playback_frame",
+    "response_frame",
+    "shown_parameter",
+    "time_frame",
+]
+
+SUBPROTOCOL: Final = "foxglove.sdk.v1"
+
+Id = Annotated[int, msgspec.Meta(ge=0, lt=1 << 32)]
+
+
+# Ops of clients
+
+
+class Op(msgspec.Struct, frozen=True, rename="camel", tag_field="op"):
+    """An op of a client in JSON; fields that are unknown here are ignored."""
+
+
+class Wish(msgspec.Struct, frozen=True, rename="camel"):
+    """The subscription to one channel."""
+
+    id: Id
+    channel_id: Id
+
+
+class ClientChannel(msgspec.Struct, frozen=True, rename="camel"):
+    """A topic on which the client will publish."""
+
+    id: Id
+    topic: str
+    encoding: str
+    schema_name: str
+
+
+class FoxgloveParameter(msgspec.Struct, frozen=True):
+    """A parameter, named by its node, a dot and its own name, as ``/driver.speed``."""
+
+    name: str
+    value: Any = None
+    type: str | None = None
+
+
+class Subscribe(Op, frozen=True, tag="subscribe"):
+    """Messages of these channels."""
+
+    subscriptions: list[Wish]
+
+
+class Unsubscribe(Op, frozen=True, tag="unsubscribe"):
+    """No more of them."""
+
+    subscription_ids: list[Id]
+
+
+class Advertise(Op, frozen=True, tag="advertise"):
+    """The client publishes these topics."""
+
+    channels: list[ClientChannel]
+
+
+class Unadvertise(Op, frozen=True, tag="unadvertise"):
+    """It publishes them no more."""
+
+    channel_ids: list[Id]
+
+
+class GetParameters(Op, frozen=True, tag="getParameters"):
+    """The values of these parameters; without names, of all."""
+
+    parameter_names: list[str] = []
+    id: str | None = None
+
+
+class SetParameters(Op, frozen=True, tag="setParameters"):
+    """New values; without a value the parameter is undeclared."""
+
+    parameters: list[FoxgloveParameter]
+    id: str | None = None
+
+
+class SubscribeParameterUpdates(Op, frozen=True, tag="subscribeParameterUpdates"):
+    """Values whenever they change."""
+
+    parameter_names: list[str] = []
+
+
+class UnsubscribeParameterUpdates(Op, frozen=True, tag="unsubscribeParameterUpdates"):
+    """No more of them."""
+
+    parameter_names: list[str] = []
+
+
+class SubscribeConnectionGraph(Op, frozen=True, tag="subscribeConnectionGraph"):
+    """The nodes that publish, subscribe and serve."""
+
+
+class UnsubscribeConnectionGraph(Op, frozen=True, tag="unsubscribeConnectionGraph"):
+    """No more of that."""
+
+
+ClientOp: TypeAlias = (
+    Subscribe
+    | Unsubscribe
+    | Advertise
+    | Unadvertise
+    | GetParameters
+    | SetParameters
+    | SubscribeParameterUpdates
+    | UnsubscribeParameterUpdates
+    | SubscribeConnectionGraph
+    | UnsubscribeConnectionGraph
+)
+DECODER: Final = msgspec.json.Decoder(ClientOp)
+
+
+def op_of(frame: str, most_parts: int) -> Op:
+    """Return the op in a text frame.
+
+    Raises:
+        MessageError: the frame is no op that clients send.
+    """
+    try:
+        octets = frame.encode()
+        check_parts(octets, most_parts)
+        op: Op = DECODER.decode(octets)
+    except (msgspec.DecodeError, RecursionError, UnicodeError) as error:
+        raise MessageError("frame", f"{error}") from None
+    return op
+
+
+def op_frame(op: str, fields: Mapping[str, Any]) -> str:
+    """Return the text frame of an op of the server."""
+    return msgspec.json.encode({"op": op, **fields}).decode()
+
+
+# Binary frames of clients
+
+
+class ClientMessage(NamedTuple):
+    """A message that a client publishes."""
+
+    channel_id: int
+    data: memoryview
+
+
+class ServiceCall(NamedTuple):
+    """A request to a service."""
+
+    service_id: int
+    call_id: int
+    encoding: str
+    data: memoryview
+
+
+class PlaybackRequest(NamedTuple):
+    """A wish for the player; without `seek_ns`, it goes on where it is."""
+
+    paused: bool
+    rate: float
+    seek_ns: int | None
+    request_id: str
+
+
+Asked: TypeAlias = Op | ClientMessage | ServiceCall | PlaybackRequest
+"""A frame of a client, decoded."""
+
+MESSAGE: Final = struct.Struct("<BI")
+CALL: Final = struct.Struct("<BIII")
+PLAYBACK: Final = struct.Struct("<BBfBQI")
+
+
+def binary_of(frame: bytes) -> ClientMessage | ServiceCall | PlaybackRequest:
+    """Return a binary frame of a client, decoded.
+
+    Raises:
+        MessageError: the frame has another form.
+    """
+    opcode = frame[:1]
+    try:
+        if opcode == b"\x01":
+            _, channel_id = MESSAGE.unpack_from(frame)
+            return ClientMessage(channel_id, memoryview(frame)[MESSAGE.size :])
+        if opcode == b"\x02":
+            _, service_id, call_id, length = CALL.unpack_from(frame)
+            encoding = text_at(frame, CALL.size, length)
+            data = memoryview(frame)[CALL.size + length :]
+            return ServiceCall(service_id, call_id, encoding, data)
+        if opcode == b"\x03":
+            _, command, rate, has_seek, seek_ns, length = PLAYBACK.unpack_from(frame)
+            request_id = text_at(frame, PLAYBACK.size, length)
+            return PlaybackRequest(bool(command), rate, seek_ns if has_seek else None, request_id)
+    except struct.error as error:
+        raise MessageError("frame", f"its {len(frame)} bytes end too early: {error}") from None
+    raise MessageError("frame", f"it begins with {opcode!r}, which no frame of a client does")
+
+
+def text_at(frame: bytes, start: int, length: int) -> str:
+    """Return a text within a frame.
+
+    Raises:
+        MessageError: it is no UTF-8, or longer than the frame.
+    """
+    piece = frame[start : start + length]
+    if len(piece) < length:
+        raise MessageError("frame", f"its {len(frame)} bytes end within a text of {length}")
+    try:
+        return piece.decode()
+    except UnicodeDecodeError as error:
+        raise MessageError("frame", f"{error}") from None
+
+
+# Binary frames of the server
+
+
+def message_frame(
+    subscription_id: int, time_ns: int, data: bytes | memoryview
+) -> bytes | LongFrame:
+    """Return the frame of a message."""
+    return binary_frame(struct.pack("<BIQ", 1, subscription_id, time_ns), data)
+
+
+def time_frame(time_ns: int) -> bytes:
+    """Return the frame that tells the time."""
+    return struct.pack("<BQ", 2, time_ns)
+
+
+def response_frame(call: ServiceCall, data: bytes) -> bytes:
+    """Return the frame of a service's response, in the encoding of its request."""
+    encoding = call.encoding.encode()
+    head = struct.pack("<BIII", 3, call.service_id, call.call_id, len(encoding))
+    return head + encoding + data
+
+
+PLAYING, PAUSED, ENDED = 0, 1, 3
+
+
+def playback_frame(
+    status: int, time_ns: int, rate: float, *, did_seek: bool, request_id: str = ""
+) -> bytes:
+    """Return the frame that tells the state of a player."""
+    answered = request_id.encode()
+    return struct.pack("<BBQfBI", 5, status, time_ns, rate, did_seek, len(answered)) + answered
+
+
+# Parameters
+
+
+def shown_parameter(name: str, parameter: Parameter) -> dict[str, Any]:
+    """Return a parameter as clients get it; without a value if it is not set.
+
+    Args:
+        name: Its name for clients.
+        parameter: The parameter of the node.
+    """
+    value, kind = parameter.value, parameter.type_
+    if kind is ParameterType.NOT_SET:
+        return {"name": name}
+    if kind is ParameterType.BYTE_ARRAY:
+        text = base64.b64encode(b"".join(value)).decode()
+        return {"name": name, "value": text, "type": "byte_array"}
+    hints = {ParameterType.DOUBLE: "float64", ParameterType.DOUBLE_ARRAY: "float64_array"}
+    hint = {"type": hints[kind]} if kind in hints else {}
+    return {"name": name, "value": value, **hint}
+
+
+def parameter_of(name: str, given: FoxgloveParameter, now: ParameterType) -> Parameter:
+    """Return the parameter that a client has given.
+
+    Args:
+        name: Its name at its node.
+        given: The parameter as the client has sent it.
+        now: Its type now: JSON tells no float from an integer, and says nothing of empty arrays.
+
+    Raises:
+        MessageError: a node can have no such value.
+    """
+    value = given.value
+    check_items(value, name)
+    try:
+        if value is None:
+            return Parameter(name)
+        if given.type == "byte_array":
+            data = base64.b64decode(value, validate=True)
+            return Parameter(name, ParameterType.BYTE_ARRAY, [bytes([byte]) for byte in data])
+        if given.type == "float64" or (now is ParameterType.DOUBLE and is_number(value)):
+            return Parameter(name, ParameterType.DOUBLE, float(value))
+        if isinstance(value, list) and (
+            given.type == "float64_array"
+            or (now is ParameterType.DOUBLE_ARRAY and all(map(is_number, value)))
+        ):
+            return Parameter(name, ParameterType.DOUBLE_ARRAY, [float(number) for number in value])
+        if value == [] and now is not ParameterType.NOT_SET:
+            return Parameter(name, now, [])
+        return Parameter(name, value=value)
+    except (TypeError, ValueError, OverflowError, binascii.Error) as error:
+        raise MessageError(given.name, f"{error}") from None
+
+
+def is_number(value: object) -> bool:
+    """Return whether a value of JSON is a number."""
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,157 @@
+"""Parameters of nodes, for a client of Foxglove's protocol."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import MessageError
+from aionode.gateway.foxglove import frames
+from aionode.parameter import Parameter
+
+if TYPE_CHECKING:
+    from aionode.gateway.session.feed import Received
+    from aionode.gateway.session.session import Session
+    from aionode.gateway.session.topics import Subscribed
+
+__all__ = ["Parameters"]
+
+EVENTS: Final = "/parameter_events"
+EVENT_TYPE: Final = "rcl_interfaces/msg/ParameterEvent"
+
+MOST_FOLLOWED: Final = 10_000
+"""Most parameters that a client follows."""
+
+MOST_CHARACTERS: Final = 1000
+"""The longest name of a parameter that a client follows, in characters."""
+
+
+class Parameters:
+    """The parameters that one client reads, sets and follows.
+
+    A client names a parameter by its node, a dot and its own name: names of nodes have no dots.
+
+    Args:
+        session: The session of the client.
+    """
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+        self._followed: set[str] = set()
+        self._follows_all = False
+        self._events: Subscribed | None = None
+
+    async def get(self, names: Sequence[str], request_id: str | None) -> None:
+        """Send parameters; without names those of all nodes.
+
+        Raises:
+            MessageError: a name is not that of a node, a dot, and a parameter.
+            RefusedError: the policy hides a node.
+        """
+        wanted = by_node(names) if names else await self._session.all_parameter_names()
+        shown: list[dict[str, Any]] = []
+        for node, own in wanted.items():
+            values = await self._session.get_parameters(node, own)
+            shown += [
+                frames.shown_parameter(f"{node}.{name}", Parameter(name, value=value))
+                for name, value in values.items()
+            ]
+        self._send(shown, request_id)
+
+    async def set(
+        self, parameters: Sequence[frames.FoxgloveParameter], request_id: str | None
+    ) -> None:
+        """Set parameters, and send their values if the client has asked for them.
+
+        Raises:
+            MessageError: a value is none that parameters have, or its node refuses it.
+            RefusedError: the policy refuses it.
+        """
+        given = {parameter.name: parameter for parameter in parameters}
+        for node, own in by_node(given).items():
+            for name in own:  # before anything is read
+                self._session.decide("parameter", f"{node}:{name}", "")
+            now = await self._session.get_parameters(node, own)
+            changed = {
+                name: frames.parameter_of(
+                    name, given[f"{node}.{name}"], Parameter(name, value=now.get(name)).type_
+                ).value
+                for name in own
+            }
+            results = await self._session.set_parameters(node, changed)
+            for name, result in zip(changed, results, strict=True):
+                if not result.successful:
+                    raise MessageError(f"{node}.{name}", result.reason)
+        if request_id is not None:
+            await self.get(list(given), request_id)
+
+    async def follow(self, names: Sequence[str]) -> None:
+        """Send parameters whenever they change; without names all of them.
+
+        Raises:
+            RefusedError: the policy refuses to subscribe to the events of parameters.
+        """
+        if len(self._followed) + len(names) > MOST_FOLLOWED or any(
+            len(name) > MOST_CHARACTERS for name in names
+        ):
+            raise MessageError("subscribeParameterUpdates", "too many names, or too long ones")
+        if self._events is None:
+            self._events = await self._session.subscribe(
+                EVENTS, EVENT_TYPE, frame=self._frame, key="parameterValues", depth=100
+            )
+        self._follows_all = self._follows_all or not names
+        self._followed.update(names)
+
+    def unfollow(self, names: Iterable[str]) -> None:
+        """Send these no more; without names none."""
+        wanted = set(names)
+        self._followed -= wanted or set(self._followed)
+        self._follows_all = self._follows_all and bool(wanted)
+        if self._events is not None and not self._followed and not self._follows_all:
+            self._events.close()
+            self._events = None
+
+    def forget(self, ended: list[Subscribed]) -> None:
+        """Forget the parameters that the client follows, if the policy has ended that."""
+        if self._events in ended:
+            self._events, self._follows_all = None, False
+            self._followed.clear()
+
+    def _frame(self, received: Received) -> str | None:
+        """Return the frame for an event, if the client follows one of its parameters."""
+        event = received.message
+        shown = [
+            frames.shown_parameter(f"{event.node}.{msg.name}", Parameter.from_parameter_msg(msg))
+            for msg in (*event.new_parameters, *event.changed_parameters)
+        ]
+        shown += [{"name": f"{event.node}.{msg.name}"} for msg in event.deleted_parameters]
+        wanted = [item for item in shown if self._is_wanted(event.node, item["name"])]
+        return frames.op_frame("parameterValues", {"parameters": wanted}) if wanted else None
+
+    def _is_wanted(self, node: str, name: str) -> bool:
+        """Return whether the client follows a parameter that it may see."""
+        own = name.removeprefix(f"{node}.")
+        is_followed = self._follows_all or name in self._followed
+        return is_followed and self._session._sees(f"{node}:{own}", [])
+
+    def _send(self, shown: list[dict[str, Any]], request_id: str | None) -> None:
+        fields: dict[str, Any] = {"parameters": shown}
+        if request_id is not None:
+            fields["id"] = request_id
+        self._session.outbox.send(frames.op_frame("parameterValues", fields))
+
+
+def by_node(names: Iterable[str]) -> dict[str, list[str]]:
+    """Return the names of parameters by their nodes.
+
+    Raises:
+        MessageError: a name has no dot.
+    """
+    names_of: dict[str, list[str]] = defaultdict(list)
+    for name in names:
+        node, dot, own = name.partition(".")
+        if not dot or not own:
+            raise MessageError("parameters", f"{name!r} is not of the form /node.parameter")
+        names_of[node].append(own)
+    return names_of

@@ -1,0 +1,1 @@
+"""HTTP for curl and programs."""

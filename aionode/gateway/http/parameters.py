@@ -1,0 +1,74 @@
+"""Parameters over HTTP."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from aionode.gateway.http.answers import Asked, json_response
+from aionode.gateway.session.client_json import check_items
+
+__all__ = ["set_parameter", "show_parameters"]
+
+
+def node_and_parameter(asked: Asked) -> tuple[str, str]:
+    """Return the node and the parameter that a path names; the parameter may be empty.
+
+    Both may contain slashes, so the longest name of a node counts that is at the beginning.
+
+    Raises:
+        HTTPException: it does not begin with the name of a node that the caller sees (404).
+    """
+    path = asked.name
+    nodes = [node for node in asked.session.nodes() if f"{path}/".startswith(f"{node}/")]
+    if not nodes:
+        raise HTTPException(404, f"{path[:200]}: no node of that name")
+    node = max(nodes, key=len)
+    return node, path[len(node) + 1 :]
+
+
+async def show_parameters(asked: Asked) -> Response:
+    """Return the parameters of a node, or the value of one."""
+    node, parameter = node_and_parameter(asked)
+    names = [parameter] if parameter else await asked.session.parameter_names(node)
+    values = await asked.session.get_parameters(node, names)
+    if parameter and parameter not in values:
+        raise HTTPException(404, f"{node}: parameter {parameter[:200]!r} is not declared")
+    return json_response(plain(values[parameter] if parameter else values))
+
+
+async def set_parameter(asked: Asked) -> Response:
+    """Set one parameter."""
+    node, parameter = node_and_parameter(asked)
+    if not parameter:
+        raise HTTPException(404, f"{node}: name a parameter, as in /parameters{node}/rate")
+    value = asked.json()
+    check_items(value, parameter)
+    asked.session.decide("parameter", f"{node}:{parameter}", "")  # before anything is read
+    present = (await asked.session.get_parameters(node, [parameter])).get(parameter)
+    (result,) = await asked.session.set_parameters(node, {parameter: as_real(value, present)})
+    if not result.successful:
+        raise HTTPException(409, f"{node}: {parameter}: {result.reason}")
+    return Response(status_code=204)
+
+
+def as_real(value: Any, present: Any) -> Any:
+    """Return whole numbers as the parameter has them: JSON may write 1.0 as 1."""
+    if isinstance(value, list):
+        like = plain(present)
+        example = like[0] if isinstance(like, list) and like else None
+        return [as_real(item, example) for item in value]
+    if isinstance(present, float) and type(value) is int:
+        return float(value)
+    return value
+
+
+def plain(value: Any) -> Any:
+    """Return the value of a parameter, or of several by name, as JSON has it."""
+    if isinstance(value, dict):
+        return {name: plain(item) for name, item in value.items()}
+    if isinstance(value, bytes):
+        return list(value)
+    return value.tolist() if hasattr(value, "tolist") else value

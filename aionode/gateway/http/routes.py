@@ -1,0 +1,323 @@
+"""HTTP: the graph, topics, services, actions and parameters of the robot for curl and programs.
+
+Each request is a session of its own, which ends with its connection: a program that closes the
+stream of a goal cancels the goal. Only the lease of a command outlives the request, by its time to
+live: the next command before that has to come over the same connection, or with the same name of a
+client (``?client=``), to hold the topic further.
+"""
+
+from __future__ import annotations
+
+import importlib.metadata
+from collections.abc import AsyncGenerator, Awaitable, Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.routing import Route
+
+from aionode.errors import AionodeError, RefusedError
+from aionode.fastapi import until_disconnected
+from aionode.gateway.http.answers import (
+    ALIVE,
+    CLIENT_GONE,
+    EVENTS,
+    HEADERS,
+    MOST_SEC,
+    Asked,
+    Stream,
+    body_of,
+    error_of,
+    error_response,
+    event,
+    json_response,
+    until_ended,
+)
+from aionode.gateway.http.metrics import MEDIA_TYPE, gateway_metrics, node_metrics, prometheus
+from aionode.gateway.http.offers import offers
+from aionode.gateway.http.openapi import openapi
+from aionode.gateway.http.parameters import set_parameter, show_parameters
+from aionode.gateway.http.topics import answer_topic
+from aionode.gateway.policy.identity import Identity
+from aionode.gateway.session.values import json_of
+from aionode.node import Node
+
+if TYPE_CHECKING:
+    from starlette.routing import BaseRoute
+    from starlette.types import Receive, Scope, Send
+
+    from aionode.gateway._clients import Clients
+    from aionode.gateway.session.session import Session
+    from aionode.gateway.session.topics import Subscribed
+
+__all__ = ["answer_http_error", "routes"]
+
+CALL_SEC: Final = 5.0
+"""Time for which a request waits for a response unless it says otherwise, in seconds."""
+
+LONGEST_CLIENT: Final = 100
+"""The longest name of a client, in characters."""
+
+NAMELESS: Final = (
+    "a program that opens a connection for each command shows by ?client=NAME that it is the same"
+)
+"""Added where a request without a name is refused, as another one commands the topic."""
+
+Handler = Callable[[Asked], Awaitable[Response]]
+
+
+def routes(gateway: Clients) -> list[BaseRoute]:
+    """Return the routes of HTTP, for a Starlette application."""
+    api = HttpApi(gateway)
+    table: list[tuple[str, str, Handler]] = [
+        ("GET", "/topics", list_topics),
+        ("GET", "/services", list_services),
+        ("GET", "/actions", list_actions),
+        ("GET", "/nodes", list_nodes),
+        ("GET", "/nodes/{name:path}", show_node),
+        ("GET", "/topics/{name:path}", answer_topic),
+        ("POST", "/topics/{name:path}", publish),
+        ("POST", "/services/{name:path}", call),
+        ("POST", "/actions/{name:path}", send_goal),
+        ("GET", "/parameters/{name:path}", show_parameters),
+        ("PUT", "/parameters/{name:path}", set_parameter),
+        ("GET", "/openapi.json", api.openapi),
+        ("GET", "/metrics", api.metrics),
+    ]
+    return [
+        *(
+            Route(path, Endpoint(gateway, handler), methods=[method])
+            for method, path, handler in table
+        ),
+        Route("/healthz", api.healthz, methods=["GET"]),
+    ]
+
+
+class Endpoint:
+    """One route: opens a session for the request, and answers errors in JSON."""
+
+    def __init__(self, gateway: Clients, handler: Handler) -> None:
+        self._gateway = gateway
+        self._handler = handler
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer one request, which ends with its connection."""
+        request = Request(scope, receive)
+        has_session = False
+        try:
+            body = await body_of(request, self._gateway.policy.limits.handshake_sec)
+            async with (
+                self._gateway.session_of(scope, "http") as session,
+                until_disconnected(request),
+            ):
+                has_session = True
+                session.owner = caller_of(request, session)
+                self._gateway.robot.standstills.look()
+                session.note_arrival(scope["state"]["aionode_connection"].silent_sec())
+                session.on_policy = partial(end_with, session)
+                async with until_ended(session):
+                    if request.method != "POST":  # about the graph, or the nodes in it
+                        await session.turn()
+                    answer = await self._handler(Asked(session, request, body))
+                await answer(scope, receive, send)
+        except (AionodeError, HTTPException, TimeoutError) as error:
+            if isinstance(error, HTTPException) and error.status_code == CLIENT_GONE:
+                return  # there is nobody to answer
+            if isinstance(error, RefusedError) and not has_session:
+                self._gateway.note_refusal(scope["aionode.credentials"], error)
+            await error_response(error)(scope, receive, send)
+
+
+def end_with(session: Session, ended: list[Subscribed]) -> None:
+    """End a session whose request was for a topic that the policy does not allow any more."""
+    if ended:
+        session.ended.set()
+
+
+class Caller(msgspec.Struct, frozen=True):
+    """The holder of topics that requests command, as the session of each ends with the request.
+
+    Two programs may be one identity, so that alone does not make them one holder.
+
+    Attributes:
+        identity: The client that has sent the requests.
+        client: Its own name for itself; empty without one.
+        connection: Without that name, what it has sent the requests over.
+    """
+
+    identity: Identity
+    client: str
+    connection: object
+
+    @property
+    def way(self) -> str:
+        """How it is connected, for `Owner`."""
+        return f"http as client {self.client!r}" if self.client else "another connection of http"
+
+    def doubt(self) -> None:
+        """Do nothing: the next request has to come with all that the caller has to show."""
+
+
+def caller_of(request: Request, session: Session) -> Caller:
+    """Return who holds the topics that a request commands.
+
+    A proxy may send the requests of several programs over one connection, so behind one that says
+    what it is each request is a caller of its own, unless it has a name.
+
+    Raises:
+        HTTPException: the name is too long (400).
+    """
+    client = request.query_params.get("client", "")
+    if len(client) > LONGEST_CLIENT:
+        raise HTTPException(400, f"client: {len(client)} characters, at most {LONGEST_CLIENT} fit")
+    connection: object = None
+    if not client:
+        connection = request.scope["state"].get("aionode_connection")
+        credentials = session.credentials
+        if credentials is not None and credentials.is_forwarded:
+            connection = object()
+    return Caller(session.identity, client, connection)
+
+
+async def answer_http_error(_request: Request, error: Exception) -> Response:
+    """Answer a path or method that does not exist, for a Starlette application."""
+    return error_response(error)
+
+
+class HttpApi:
+    """The routes that need more than the session of their request.
+
+    Args:
+        gateway: The gateway.
+    """
+
+    def __init__(self, gateway: Clients) -> None:
+        self._gateway = gateway
+
+    async def openapi(self, asked: Asked) -> Response:
+        """Return the document of the requests that the caller may send."""
+        version = importlib.metadata.version("aionode")
+        title = f"aionode gateway {self._gateway.node.get_fully_qualified_name()}"
+        return json_response(openapi(title, version, await offers(asked.session)))
+
+    async def metrics(self, asked: Asked) -> Response:
+        """Return the counts of nodes and of the gateway, for Prometheus."""
+        nodes = [node for node in self._gateway.node.context._nodes if isinstance(node, Node)]
+
+        def sees(name: str, type_name: str) -> bool:
+            return asked.session.sees(name, type_name)
+
+        families = [*gateway_metrics(self._gateway.stats, sees), *node_metrics(nodes, sees)]
+        return Response(prometheus(families), headers=HEADERS, media_type=MEDIA_TYPE)
+
+    async def healthz(self, _request: Request) -> Response:
+        """Return whether the gateway's node runs: to all who reach it, as it says nothing else."""
+        ok = self._gateway.node.is_running
+        return json_response({"ok": ok}, 200 if ok else 503)
+
+
+# The graph
+
+
+def named(types: Mapping[str, list[str]]) -> list[dict[str, Any]]:
+    """Return names with their types, as ``aionode topic list --json`` prints them."""
+    return [{"name": name, "types": of} for name, of in sorted(types.items())]
+
+
+async def list_topics(asked: Asked) -> Response:
+    """Return the topics that the caller sees."""
+    return json_response(named(asked.session.topics()))
+
+
+async def list_services(asked: Asked) -> Response:
+    """Return the services that the caller sees."""
+    return json_response(named(asked.session.services()))
+
+
+async def list_actions(asked: Asked) -> Response:
+    """Return the actions that the caller sees."""
+    return json_response(named(asked.session.actions()))
+
+
+async def list_nodes(asked: Asked) -> Response:
+    """Return the full names of the nodes that the caller sees."""
+    return json_response(asked.session.nodes())
+
+
+async def show_node(asked: Asked) -> Response:
+    """Return the publishers, subscriptions, services and clients of a node."""
+    return json_response(asked.session.node_details(asked.name))
+
+
+# Messages, services and actions
+
+
+async def publish(asked: Asked) -> Response:
+    """Publish one message."""
+    values = asked.json()
+    type_name = asked.type_name
+    try:
+        await asked.session.publish(asked.name, values, type_name)
+    except RefusedError as error:
+        if error.code != "held" or "client" in asked.request.query_params:
+            raise
+        raise RefusedError(error.subject, f"{error.reason}; {NAMELESS}", error.code) from None
+    return Response(status_code=204)
+
+
+async def call(asked: Asked) -> Response:
+    """Call a service and return its response. The call ends with the connection."""
+    response = await asked.session.call(
+        asked.name,
+        asked.json(),
+        type_name=asked.type_name,
+        timeout_sec=asked.number("timeout_sec", CALL_SEC, MOST_SEC),
+    )
+    return json_response(json_of(response))
+
+
+async def send_goal(asked: Asked) -> Response:
+    """Send a goal, and return its feedback and result as events, or its result alone as JSON.
+
+    The goal ends with the connection.
+    """
+    values, type_name = asked.json(), asked.type_name
+    asked.lose_silent_client()
+    if "application/json" in asked.accept:
+        async with asked.session.goal(asked.name, values, type_name=type_name) as goal:
+            return json_response(outcome_of(goal, await goal.result()))
+    events = goal_events(asked.session, asked.name, values, type_name)
+    accepted = await anext(events)  # a goal that is not accepted is answered without a stream
+    return Stream(asked.session, events, EVENTS, first=accepted, alive=ALIVE)
+
+
+async def goal_events(
+    session: Session, action: str, values: Any, type_name: str | None
+) -> AsyncGenerator[bytes, None]:
+    """Send a goal, and yield its events. Closing the generator cancels the goal."""
+    async with session.goal(action, values, type_name=type_name) as goal:
+        yield event("accepted", msgspec.json.encode({"goal_id": goal.text}))
+        try:
+            async for feedback in goal:
+                yield event("feedback", json_of(feedback))
+            result = await goal.result()
+        except AionodeError as error:
+            _, code, text = error_of(error)
+            yield event("failure", msgspec.json.encode({"code": code, "error": text}))
+        else:
+            yield event("result", outcome_of(goal, result))
+
+
+def outcome_of(goal: Any, result: Any) -> bytes:
+    """Return how a goal ended, as JSON."""
+    return msgspec.json.encode(
+        {
+            "goal_id": goal.text,
+            "status": result.status.name,
+            "error": result.error_text,
+            "result": msgspec.Raw(json_of(result.result)),
+        }
+    )

@@ -1,0 +1,187 @@
+"""Topics over HTTP: the next message, or a stream of them, as JSON or as pictures."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Final
+
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from aionode.gateway.http.answers import (
+    ALIVE,
+    EVENTS,
+    HEADERS,
+    MOST_SEC,
+    Asked,
+    Stream,
+    event,
+    json_response,
+)
+from aionode.gateway.session.image import BOUNDARY, IMAGE_TYPES, part_of, picture_of
+from aionode.gateway.session.large_json import prepare_json
+from aionode.gateway.session.values import json_of
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncGenerator
+
+    from aionode.gateway.session.feed import Received
+    from aionode.gateway.session.image import Picture
+    from aionode.gateway.session.outbox import Frame, Outbox
+
+__all__ = ["answer_topic"]
+
+PICTURES: Final = "multipart/x-mixed-replace"
+
+WAIT_SEC: Final = 5.0
+"""Time for which a request waits for a message unless it says otherwise, in seconds."""
+
+SUFFIXES: Final = {".jpeg": "image/jpeg", ".jpg": "image/jpeg", ".mjpeg": PICTURES}
+"""The media type for each end of a path, as an ``<img>`` of a page can name no other way."""
+
+
+async def answer_topic(asked: Asked) -> Response:
+    """Return the next message of a topic, or a stream of its messages."""
+    topic, media_type = topic_and_form(asked)
+    type_name = asked.type_name
+    if type_name is None and not asked.session.types_of(topic, "topic"):
+        raise HTTPException(404, f"{topic[:200]}: no such topic; ?type= waits for one of that type")
+    if media_type == EVENTS:
+        return await events(asked, topic)
+    newest = await Newest.of(asked, topic)
+    received = await newest.within(asked.number("timeout_sec", WAIT_SEC, MOST_SEC))
+    if media_type == "application/json":
+        return json_response(await asked.session.json_of(received))
+    picture = await picture_or_refusal(received)
+    if media_type == PICTURES:
+        boundary = f"{PICTURES}; boundary={BOUNDARY}"
+        return Stream(asked.session, pictures(newest), boundary, first=part_of(picture))
+    return Response(bytes(picture.data), headers=HEADERS, media_type=picture.media_type)
+
+
+def topic_and_form(asked: Asked) -> tuple[str, str]:
+    """Return the name of a topic, and the media type in which the caller wants its messages.
+
+    An image is a picture unless the caller asks for JSON.
+    """
+    path, accept = asked.name, asked.accept
+    for suffix, media_type in SUFFIXES.items():
+        if path.endswith(suffix):
+            return path.removesuffix(suffix), media_type
+    for media_type in (EVENTS, PICTURES, "application/json", "image/jpeg"):
+        if media_type in accept:
+            return path, media_type
+    types = {asked.type_name, *asked.session.types_of(path, "topic")}
+    return path, "image/jpeg" if types & IMAGE_TYPES else "application/json"
+
+
+# Messages
+
+
+async def events(asked: Asked, topic: str) -> Response:
+    """Return the messages of a topic as server-sent events."""
+    await asked.session.subscribe(
+        topic,
+        asked.type_name,
+        frame=as_event,
+        key=topic,
+        depth=round(asked.number("depth", 10, 1000)) or 1,
+        min_period_sec=asked.number("min_period_sec", 0.0, MOST_SEC),
+        prepare=prepare_json,
+    )
+    return Stream(asked.session, frames(asked.session.outbox), EVENTS, first=ALIVE, alive=ALIVE)
+
+
+def as_event(received: Received) -> Frame:
+    """Return a message as an event, which is made once for all clients."""
+    return received.once(EVENTS, make_event)
+
+
+def make_event(received: Received) -> bytes:
+    """Return a message as an event."""
+    return event("", received.once("json", lambda taken: json_of(taken.message)))
+
+
+async def frames(outbox: Outbox) -> AsyncGenerator[Frame, None]:
+    """Yield the frames that leave an outbox."""
+    async for frame in outbox:
+        yield frame
+
+
+class Newest:
+    """The newest message of a topic that was not taken yet: the others are left out.
+
+    Unlike a frame in an outbox, it is encoded only when its client is ready for it.
+    """
+
+    def __init__(self, topic: str) -> None:
+        self._topic = topic
+        self._received: Received | None = None
+        self._arrived = asyncio.Event()
+
+    @classmethod
+    async def of(cls, asked: Asked, topic: str) -> Newest:
+        """Subscribe to a topic."""
+        newest = cls(topic)
+        period_sec = asked.number("min_period_sec", 0.0, MOST_SEC)
+        await asked.session.subscribe(
+            topic, asked.type_name, frame=newest.put, key=topic, depth=1, min_period_sec=period_sec
+        )
+        return newest
+
+    def put(self, received: Received) -> None:
+        """Keep a message; `Session.subscribe` calls this, and has no frame for the outbox."""
+        self._received = received
+        self._arrived.set()
+
+    async def get(self) -> Received:
+        """Wait for a message that was not taken yet."""
+        while self._received is None:
+            self._arrived.clear()
+            await self._arrived.wait()
+        received, self._received = self._received, None
+        return received
+
+    async def within(self, timeout_sec: float) -> Received:
+        """Wait for a message.
+
+        Raises:
+            HTTPException: there was none within `timeout_sec` seconds (504).
+        """
+        try:
+            async with asyncio.timeout(timeout_sec):
+                return await self.get()
+        except TimeoutError:
+            text = f"{self._topic}: no message within {timeout_sec:g} s; ?timeout_sec= waits longer"
+            raise HTTPException(504, text) from None
+
+
+# Pictures
+
+
+async def picture_or_refusal(received: Received) -> Picture:
+    """Return the picture of an image.
+
+    Raises:
+        HTTPException: it is no image (406), no picture can be made of it (422), or Pillow is not
+            installed (501).
+    """
+    if received.type_name not in IMAGE_TYPES:
+        text = f"{received.topic} has {received.type_name}, which is no picture"
+        raise HTTPException(406, text)
+    try:
+        return await picture_of(received)
+    except ValueError as error:
+        raise HTTPException(422, str(error)) from error
+    except ModuleNotFoundError as error:
+        raise HTTPException(501, str(error)) from error
+
+
+async def pictures(newest: Newest) -> AsyncGenerator[Frame, None]:
+    """Yield the pictures of a topic, as many as the client takes; one that fails is the last."""
+    while True:
+        try:
+            picture = await picture_or_refusal(await newest.get())
+        except HTTPException:
+            return
+        yield part_of(picture)

@@ -1,0 +1,1 @@
+"""The protocol of rosbridge, with the services of rosapi."""

@@ -1,0 +1,190 @@
+"""The ops of rosbridge by which a client calls services and sends goals."""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from aionode.engine.rules.goal import CancelCode
+from aionode.errors import AionodeError, MessageError
+from aionode.gateway.rosbridge import rosapi as _rosapi
+from aionode.gateway.rosbridge.request import (
+    number,
+    optional_text,
+    text,
+    type_text,
+    values,
+)
+from aionode.gateway.session.values import json_of
+
+if TYPE_CHECKING:
+    from aionode.action import ClientGoalHandle
+    from aionode.gateway.rosbridge.link import Link
+    from aionode.gateway.session.lanes import Lanes
+
+__all__ = ["Calls"]
+
+Op = dict[str, Any]
+
+TIMEOUT_SEC: Final = 5.0
+"""Time for which a call waits if the client gives no ``timeout``."""
+
+
+@dataclass
+class Goal:
+    """One goal of the client, from the op that sends it to its result."""
+
+    action: str
+    task: asyncio.Task[None] | None = None
+    handle: ClientGoalHandle[Any, Any] | None = None
+    is_withdrawn: bool = False
+
+
+class Calls:
+    """The calls and goals of one client; every one is answered.
+
+    Args:
+        link: The way to the client.
+        lanes: The tasks of the client.
+    """
+
+    def __init__(self, link: Link, lanes: Lanes) -> None:
+        self._link = link
+        self._lanes = lanes
+        self._session = link.session
+        self._goals: dict[object, Goal] = {}
+
+    # Services
+
+    async def call_service(self, op: Op) -> None:
+        """Begin a call; the client goes on meanwhile."""
+        name, _, old_id = text(op, "service").partition("#")  # as in the first rosbridge
+        message_id = optional_text(op, "id") or old_id or None
+        answer = {"op": "service_response", "service": name, "id": message_id}
+        try:
+            self._lanes.start(partial(self._call, op, name, answer))
+        except MessageError as error:
+            self._link.send(answer | {"values": str(error), "result": False})
+
+    async def _call(self, op: Op, service: str, answer: Op) -> None:
+        size = 0.0
+        try:
+            size = number(op, "fragment_size")
+            result = {"values": await self._values(op, service), "result": True}
+        except (AionodeError, TimeoutError) as error:
+            result = {"values": str(error), "result": False}
+        self._link.send(answer | result, size)
+
+    async def _values(self, op: Op, service: str) -> Any:
+        args = values(op, "args")
+        of_rosapi = service.removeprefix("/").removeprefix("rosapi/")
+        if service.removeprefix("/") != of_rosapi:
+            return await _rosapi.answer(self._session, of_rosapi, args)
+        timeout = op.get("timeout")
+        if timeout != timeout:  # noqa: PLR0124  # NaN, which would put the loop's timers in disorder
+            raise MessageError("call_service: timeout", "NaN; it needs a number of seconds")
+        limit = None if is_negative(timeout) else number(op, "timeout") or None
+        response = await self._session.call(
+            service, args, timeout_sec=TIMEOUT_SEC if timeout is None else limit
+        )
+        return msgspec.Raw(json_of(response))
+
+    # Actions
+
+    async def send_action_goal(self, op: Op) -> None:
+        """Begin a goal; its feedback and its result follow."""
+        action, message_id = text(op, "action"), optional_text(op, "id")
+        goal = Goal(action)
+        key = message_id if message_id is not None else object()
+        answer = {"op": "action_result", "action": action, "id": message_id}
+        if key in self._goals:
+            self._fail(answer, f"send_action_goal.id: {message_id} is under way; use another id")
+            return
+        self._goals[key] = goal
+        try:
+            goal.task = self._lanes.start(partial(self._pursue, op, goal, answer, key))
+        except MessageError as error:
+            del self._goals[key]
+            self._fail(answer, str(error))
+
+    async def _pursue(self, op: Op, goal: Goal, answer: Op, key: object) -> None:
+        """Send a goal, pass on its feedback, and answer with its result."""
+        try:
+            await self._pursued(op, goal, answer)
+        except (AionodeError, TimeoutError) as error:
+            self._fail(answer, str(error))
+        except asyncio.CancelledError:
+            if not goal.is_withdrawn:
+                raise
+            self._fail(answer, f"{goal.action}: canceled before the server had accepted it")
+        finally:
+            self._goals.pop(key, None)
+
+    async def _pursued(self, op: Op, goal: Goal, answer: Op) -> None:
+        type_name = type_text(text(op, "action_type", ""), "action") or None
+        size = number(op, "fragment_size")
+        async with self._session.goal(
+            goal.action, values(op, "args"), type_name=type_name
+        ) as handle:
+            goal.handle = handle
+            if op.get("feedback"):
+                async for feedback in handle:
+                    told = {"values": msgspec.Raw(json_of(feedback))}
+                    self._link.send(answer | {"op": "action_feedback"} | told)
+            ended = await handle.result()
+        result = {
+            "values": msgspec.Raw(json_of(ended.result)),
+            "status": int(ended.status),
+            "result": True,
+        }
+        self._link.send(answer | result, size)
+
+    def _fail(self, answer: Op, problem: str) -> None:
+        self._link.send(answer | {"values": problem, "status": 0, "result": False})
+
+    async def cancel_action_goal(self, op: Op) -> None:
+        """Cancel a goal by its id, or without one all goals that the client sent to the action.
+
+        Raises:
+            MessageError: the client has no such goal.
+        """
+        action, message_id = text(op, "action"), optional_text(op, "id")
+        goals = [
+            goal
+            for key, goal in self._goals.items()
+            if same_name(goal.action, action) and message_id in {None, key}
+        ]
+        if not goals:
+            problem = f"no goal with this id is under way; {action} may have ended it"
+            raise MessageError("cancel_action_goal.id", problem)
+        for goal in goals:
+            if goal.handle is not None:
+                self._lanes.start(partial(self._cancel, op, goal.handle))
+            elif goal.task is not None:
+                goal.is_withdrawn = True
+                goal.task.cancel()
+
+    async def _cancel(self, op: Op, handle: ClientGoalHandle[Any, Any]) -> None:
+        """Cancel a goal; the next op about the action does not wait for the answer."""
+        try:
+            answer = await handle.cancel()
+        except (AionodeError, TimeoutError) as error:
+            self._link.status("error", f"cancel_action_goal: {error}", op)
+        else:
+            if answer.return_code == CancelCode.REJECTED:
+                problem = "cancel was rejected: the goal goes on"
+                self._link.status("error", f"cancel_action_goal: {op['action']}: {problem}", op)
+
+
+def same_name(name: str, other: str) -> bool:
+    """Return whether two names differ at most in the leading slash, which clients may omit."""
+    return name.removeprefix("/") == other.removeprefix("/")
+
+
+def is_negative(timeout: object) -> bool:
+    """Return whether a time limit of a client is below 0, which means none."""
+    return isinstance(timeout, int | float) and timeout < 0

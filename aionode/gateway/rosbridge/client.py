@@ -1,0 +1,164 @@
+"""The protocol of rosbridge 2, for one client: frames in, calls of its session, frames out.
+
+It knows no socket. Ops are those of rosbridge 4; where that one fails in silence, the client is
+told, by a ``status`` if it has asked for those with ``set_level``.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterable, Awaitable, Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.errors import AionodeError, MessageError
+from aionode.gateway.rosbridge.calls import Calls
+from aionode.gateway.rosbridge.link import Link
+from aionode.gateway.rosbridge.offers import Offers
+from aionode.gateway.rosbridge.request import FragmentStore, full_name, op_of, text
+from aionode.gateway.rosbridge.topics import Topics
+from aionode.gateway.session.lanes import Lanes
+
+if TYPE_CHECKING:
+    from aionode.gateway.session.session import Session
+
+__all__ = ["serve_frames"]
+
+Op = dict[str, Any]
+Handler = Callable[..., Awaitable[None]]
+
+MOST_MALFORMED: Final = 100
+"""Frames that are no ops that a client may send before it is disconnected."""
+
+
+async def serve_frames(session: Session, frames: AsyncIterable[str | bytes]) -> None:
+    """Serve a client until its frames end, or it has sent too many that are no ops.
+
+    Answers and messages go to the session's outbox. Cancelling it ends what the client has begun,
+    as its leaving does.
+
+    Args:
+        session: The session of the client, which its owner closes.
+        frames: What the client sends, each text or bytes with one JSON object.
+    """
+    async with asyncio.TaskGroup() as tasks:
+        client = Client(session, Lanes(tasks))
+        try:
+            async for frame in frames:
+                await client.take(frame)
+                if client.malformed > MOST_MALFORMED:
+                    break
+        finally:
+            await client.close()
+
+
+class Client:
+    """One client of rosbridge.
+
+    Args:
+        session: Its session.
+        lanes: Its tasks.
+
+    Attributes:
+        malformed: How many frames were no ops.
+    """
+
+    def __init__(self, session: Session, lanes: Lanes) -> None:
+        self._link = link = Link(session)
+        self._lanes = lanes
+        self._fragments = FragmentStore(session._limits.frame_bytes)
+        self._most_parts = session._limits.frame_parts
+        self._offers = offers = Offers(link)
+        topics, calls = Topics(link), Calls(link, lanes)
+        self.malformed = 0
+        self._at_once: dict[str, Handler] = {
+            "action_feedback": offers.action_feedback,
+            "action_result": offers.action_result,
+            "auth": self._auth,
+            "service_response": offers.service_response,
+            "set_level": self._set_level,
+        }
+        # In order for each name, but one name does not wait for another. Calls and goals begin in
+        # their turn, so that a client finds the service that it has just advertised.
+        self._in_order: dict[str, tuple[str, str, Handler]] = {
+            "advertise": ("topic", "topic", topics.advertise),
+            "advertise_action": ("serve", "action", offers.advertise_action),
+            "advertise_service": ("serve", "service", offers.advertise_service),
+            "call_service": ("serve", "service", calls.call_service),
+            "cancel_action_goal": ("serve", "action", calls.cancel_action_goal),
+            "publish": ("topic", "topic", topics.publish),
+            "send_action_goal": ("serve", "action", calls.send_action_goal),
+            "subscribe": ("topic", "topic", topics.subscribe),
+            "unadvertise": ("topic", "topic", topics.unadvertise),
+            "unadvertise_action": ("serve", "action", offers.unadvertise_action),
+            "unadvertise_service": ("serve", "service", offers.unadvertise_service),
+            "unsubscribe": ("topic", "topic", topics.unsubscribe),
+        }
+
+    async def take(self, frame: str | bytes) -> None:
+        """Begin the op in a frame."""
+        try:
+            op = self._op_of(frame)
+        except MessageError as error:
+            self.malformed += 1
+            self._link.session.refused += 1
+            self._link.status("error", str(error))
+        else:
+            if op is not None:
+                await self._begin(op)
+
+    def _op_of(self, frame: str | bytes) -> Op | None:
+        """Return the op in a frame; None if the frame is a fragment, and others are missing.
+
+        Raises:
+            MessageError: the frame is no op, or its fragments are none.
+        """
+        op = op_of(frame, self._most_parts)
+        if op["op"] != "fragment":
+            return op
+        whole = self._fragments.add(op)
+        if whole is None:
+            return None
+        op = op_of(whole, self._most_parts)
+        if op["op"] == "fragment":
+            raise MessageError("fragment.data", "has fragments in it")
+        return op
+
+    async def close(self) -> None:
+        """End all that the client has begun."""
+        self._lanes.cancel()
+        await self._offers.close()
+
+    async def _begin(self, op: Op) -> None:
+        name = op["op"]
+        if name in self._at_once:
+            await self._attempt(op, self._at_once[name])
+        elif name in self._in_order:
+            await self._attempt(op, self._put)
+        else:
+            self._link.session.refused += 1
+            known = ", ".join(sorted(["fragment", *self._at_once, *self._in_order]))
+            self._link.status("error", f"op: {name[:60]!r} is unknown; there are {known}", op)
+
+    async def _put(self, op: Op) -> None:
+        kind, field, handler = self._in_order[op["op"]]
+        if op["op"] == "publish":  # it may wait for an earlier one, and be too old then
+            handler = partial(handler, arrived_ns=self._link.session.arrival_ns())
+        name = full_name(text(op, field).partition("#")[0])  # what follows is an id
+        await self._lanes.put((kind, name), partial(self._attempt, op, handler))
+
+    async def _attempt(self, op: Op, handler: Handler) -> None:
+        """Tell the client if an op fails."""
+        try:
+            await handler(op)
+        except (AionodeError, TimeoutError) as error:
+            if isinstance(error, MessageError):  # a refusal by the policy is counted there
+                self._link.session.refused += 1
+            self._link.status("error", f"{op['op']}: {error}", op)
+
+    async def _set_level(self, op: Op) -> None:
+        self._link.set_level(text(op, "level"))
+
+    async def _auth(self, op: Op) -> None:
+        """Ignore the authentication of ROS 1, whose server is gone."""
+        self._link.status("warning", "auth: has no effect; connect with a token instead", op)

@@ -1,0 +1,260 @@
+"""The fields of an op of rosbridge, checked: no client is believed."""
+
+from __future__ import annotations
+
+import reprlib
+from collections.abc import Mapping
+from typing import Any, Final, NamedTuple
+
+from aionode.clock import Duration
+from aionode.errors import MessageError
+from aionode.gateway.session.client_json import decoded
+from aionode.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+
+__all__ = [
+    "FragmentStore",
+    "full_name",
+    "number",
+    "op_of",
+    "profile",
+    "shown",
+    "text",
+    "type_text",
+    "values",
+]
+
+Op = dict[str, Any]
+
+POLICIES: Final[dict[str, Mapping[str, Any]]] = {
+    "history": {"keep_last": HistoryPolicy.KEEP_LAST, "keep_all": HistoryPolicy.KEEP_ALL},
+    "reliability": {
+        "reliable": ReliabilityPolicy.RELIABLE,
+        "best_effort": ReliabilityPolicy.BEST_EFFORT,
+        "best_available": ReliabilityPolicy.BEST_AVAILABLE,
+    },
+    "durability": {
+        "transient_local": DurabilityPolicy.TRANSIENT_LOCAL,
+        "volatile": DurabilityPolicy.VOLATILE,
+        "best_available": DurabilityPolicy.BEST_AVAILABLE,
+    },
+}
+
+LONGEST_NAME: Final = 1000
+"""The longest name, id or word in an op, in characters: they are remembered, and told back."""
+
+MOST_FRAGMENTS: Final = 10_000
+
+OVERHEAD: Final = 20
+"""Bytes that a fragment counts beside its own: empty ones take memory as well."""
+
+
+def op_of(frame: str | bytes, most_parts: int) -> Op:
+    """Return the op in a frame, which is one object of JSON.
+
+    Raises:
+        MessageError: the frame is something else.
+    """
+    op = decoded(frame, most_parts)
+    if not isinstance(op, dict):
+        raise MessageError("frame", "not a JSON object, which each frame of rosbridge is")
+    if not isinstance(op.get("op"), str):
+        raise MessageError("frame", "no field 'op' of text, which each frame of rosbridge has")
+    return op
+
+
+def text(op: Op, name: str, default: str | None = None, most: int | None = LONGEST_NAME) -> str:
+    """Return a field of text.
+
+    Args:
+        op: The op.
+        name: The name of the field.
+        default: The value of a missing field; None if it has to be there.
+        most: The longest text, in characters.
+
+    Raises:
+        MessageError: the field is missing and has no default, is no text, or is too long.
+    """
+    value = op.get(name)
+    if value is None and default is not None:
+        return default
+    if not isinstance(value, str):
+        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs text")
+    if most is not None and len(value) > most:
+        raise MessageError(f"{op['op']}.{name}", f"{len(value)} characters, at most {most} fit")
+    return value
+
+
+def optional_text(op: Op, name: str) -> str | None:
+    """Return a field of text, or None if it is missing; see `text`."""
+    return None if op.get(name) is None else text(op, name)
+
+
+def number(op: Op, name: str, default: float = 0) -> float:
+    """Return a field that is a number of at least 0; a missing or negative one is `default`.
+
+    Raises:
+        MessageError: the field is no number.
+    """
+    value = op.get(name)
+    if value is None:
+        return default
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs a number")
+    return min(value, 1e9) if value >= 0 else default  # NaN is neither
+
+
+def values(op: Op, name: str) -> dict[str, Any] | list[Any]:
+    """Return a field with the values of a message: a dict, or a list by position.
+
+    Raises:
+        MessageError: the field is something else.
+    """
+    value = op.get(name)
+    if value is None:
+        return {}
+    if not isinstance(value, dict | list):
+        raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs an object or a list")
+    return value
+
+
+def given(op: Op, name: str) -> str:
+    """Return how an error describes the value of a field."""
+    if name not in op:
+        return "missing"
+    return f"{shown(op[name])} ({type(op[name]).__name__})"
+
+
+def shown(value: object) -> str:
+    """Return a value, shortened: it may be nested deeper than Python's repr can follow."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # Python writes no numbers of thousands of digits
+        return "a huge number"
+
+
+def full_name(name: str) -> str:
+    """Return the name of a topic, service or action with a leading slash, which clients omit."""
+    return name if name.startswith("/") else f"/{name}"
+
+
+def type_text(name: str, kind: str) -> str:
+    """Return the name of a type with its kind, which clients omit: ``std_msgs/String``.
+
+    Args:
+        name: The name that a client has sent.
+        kind: ``msg``, ``srv`` or ``action``.
+    """
+    parts = name.split("/")
+    return "/".join((parts[0], kind, parts[1])) if len(parts) == 2 else name
+
+
+# QoS
+
+
+def profile(op: Op, start: QoSProfile) -> QoSProfile | None:
+    """Return `start` with the policies that an op asks for in ``qos``; None if it has none.
+
+    Raises:
+        MessageError: a policy or its value is unknown.
+    """
+    asked = op.get("qos")
+    if asked is None:
+        return None
+    path = f"{op['op']}.qos"
+    if not isinstance(asked, Mapping):
+        raise MessageError(path, f"{given(op, 'qos')}, needs an object of policies")
+    policies = {name: policy(name, value, f"{path}.{name}") for name, value in asked.items()}
+    kept = {name: getattr(start, name) for name in ("history", "depth", "reliability")}
+    kept["durability"] = start.durability
+    return QoSProfile(**{**kept, **policies})
+
+
+def policy(name: str, value: object, path: str) -> Any:
+    """Return one policy of a profile."""
+    if name in POLICIES:
+        options = POLICIES[name]
+        choice = options.get(value.lower()) if isinstance(value, str) else None
+        if choice is None:
+            raise MessageError(path, f"{shown(value)}, needs one of {', '.join(options)}")
+        return choice
+    if name == "depth":
+        if not isinstance(value, int) or isinstance(value, bool) or not 0 <= value <= 10_000:
+            raise MessageError(path, f"{shown(value)}, needs a number of messages from 0 to 10000")
+        return value
+    if name in {"deadline", "lifespan"}:
+        return duration(value, path)
+    raise MessageError(
+        path,
+        "no such policy; there are history, depth, reliability, durability, deadline, lifespan",
+    )
+
+
+def duration(value: object, path: str) -> Duration:
+    """Return a duration that is given in seconds, as secs and nsecs, or as a word."""
+    if isinstance(value, str) and value.lower() in {"infinite", "best_available"}:
+        return Duration()
+    if isinstance(value, Mapping):
+        secs, nsecs = value.get("secs", 0), value.get("nsecs", 0)
+    else:
+        secs, nsecs = value, 0
+    for part in (secs, nsecs):
+        if isinstance(part, bool) or not isinstance(part, int | float) or not 0 <= part <= 1e9:
+            raise MessageError(
+                path, f"{shown(value)}, needs seconds, secs and nsecs, or 'infinite'"
+            )
+    return Duration(nanoseconds=int(secs * 1e9) + int(nsecs))
+
+
+# Fragments
+
+
+class Part(NamedTuple):
+    """One fragment, and how many bytes it counts."""
+
+    data: str
+    size: int
+
+
+class FragmentStore:
+    """The fragments of one client's messages that are not complete.
+
+    Args:
+        limit_bytes: How much is kept of messages that are incomplete, in bytes; the largest message
+            that a client may send.
+    """
+
+    def __init__(self, limit_bytes: int) -> None:
+        self._limit = limit_bytes
+        self._parts: dict[str, dict[int, Part]] = {}
+        self._kept = 0
+
+    def add(self, op: Op) -> str | None:
+        """Keep a fragment; return the whole message if it is complete now.
+
+        Raises:
+            MessageError: the fragment is invalid, or too much is kept; then all of it is forgotten.
+        """
+        message_id, data = text(op, "id"), text(op, "data", most=None)
+        num, total = op.get("num"), op.get("total")
+        if type(total) is not int or not 0 < total <= MOST_FRAGMENTS:
+            raise MessageError("fragment.total", f"{given(op, 'total')}, at most {MOST_FRAGMENTS}")
+        if type(num) is not int or not 0 <= num < total:
+            raise MessageError("fragment.num", f"{given(op, 'num')}, needs 0 to {total - 1}")
+        size = len(data.encode()) + len(message_id) + OVERHEAD
+        parts = self._parts.setdefault(message_id, {})
+        self._kept += size - parts.get(num, Part("", 0)).size
+        if self._kept > self._limit:
+            self._parts.clear()
+            self._kept = 0
+            raise MessageError("fragment", f"more than {self._limit} bytes are incomplete")
+        parts[num] = Part(data, size)
+        if len(parts) < total:
+            return None
+        del self._parts[message_id]
+        self._kept -= sum(part.size for part in parts.values())
+        return "".join(parts[index].data for index in sorted(parts))

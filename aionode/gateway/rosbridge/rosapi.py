@@ -1,0 +1,356 @@
+"""The services of rosapi, which clients of rosbridge ask about the robot.
+
+The gateway answers them itself: no node of this name has to run, and what the policy hides from a
+client is not in its answers.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Awaitable, Callable, Iterable
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from aionode._process.concurrency import checkpoint
+from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError
+from aionode.gateway.rosbridge.request import full_name, shown
+from aionode.gateway.rosbridge.rosapi_types import full_text, type_definitions
+from aionode.gateway.session.client_json import decoded
+from aionode.gateway.session.values import stamp
+from aionode.graph import EndpointKind
+from aionode.interfaces import interface_names
+
+if TYPE_CHECKING:
+    from aionode.gateway.session.base import Kind
+    from aionode.gateway.session.session import Session
+
+__all__ = ["SERVICES", "answer"]
+
+Args = dict[str, Any]
+Answer = Callable[["Session", Args], Awaitable[dict[str, Any]]]
+
+SERVICES: Final[dict[str, tuple[tuple[str, ...], Answer]]] = {}
+"""The fields of the request, and the function that answers, for each service."""
+
+
+def service(name: str, *request: str) -> Callable[[Answer], Answer]:
+    """Have a function answer a service; `request` has the fields of its request in their order."""
+
+    def add(answer: Answer) -> Answer:
+        SERVICES[name] = (request, answer)
+        return answer
+
+    return add
+
+
+async def answer(session: Session, name: str, args: dict[str, Any] | list[Any]) -> dict[str, Any]:
+    """Return the response of a service of rosapi.
+
+    Args:
+        session: The session of the client.
+        name: The service, without ``/rosapi/``.
+        args: The values of the request, or a list of them by position.
+
+    Raises:
+        MessageError: there is no such service, or a value of the request is invalid.
+        RefusedError: too many questions of the client wait.
+        AionodeError: something that the service is about is not known.
+    """
+    if name not in SERVICES:
+        raise MessageError(f"/rosapi/{name}", f"no such service; there are {', '.join(SERVICES)}")
+    fields, make = SERVICES[name]
+    values = dict(zip(fields, args, strict=False)) if isinstance(args, list) else args
+    for field in fields:
+        value = values.get(field, "")
+        if not isinstance(value, str):
+            raise MessageError(f"/rosapi/{name}.{field}", f"{shown(value)}, needs text")
+    await session.turn()
+    return await make(session, {field: values.get(field, "") for field in fields})
+
+
+# Topics
+
+
+def visible(names: Iterable[str]) -> list[str]:
+    """Return the names that are not hidden: no part begins with an underscore."""
+    return [name for name in names if "/_" not in name]
+
+
+def short(type_name: str) -> str:
+    """Return the name of a type without its kind, for comparisons."""
+    parts = type_name.split("/")
+    return f"{parts[0]}/{parts[-1]}"
+
+
+@service("topics")
+async def topics(session: Session, _: Args) -> dict[str, Any]:
+    types = session.topics()
+    names = visible(types)
+    return {"topics": names, "types": [types[name][0] for name in names]}
+
+
+@service("topics_and_raw_types")
+async def topics_and_raw_types(session: Session, _: Args) -> dict[str, Any]:
+    listed = await topics(session, _)
+    by_type = {}
+    for name in dict.fromkeys(listed["types"]):
+        by_type[name] = await text_of(session, name)
+        await checkpoint()  # a text takes a while, and a robot has hundreds of types
+    return {**listed, "typedefs_full_text": [by_type[name] for name in listed["types"]]}
+
+
+async def text_of(session: Session, name: str) -> str:
+    """Return the full definition of a type, or a comment that says why there is none."""
+    try:
+        return full_text(await session.message_class(name))
+    except AionodeError as error:
+        return f"# failed to get full definition text for {name}: {error}"
+
+
+@service("topics_for_type", "type")
+async def topics_for_type(session: Session, args: Args) -> dict[str, Any]:
+    return {"topics": of_type(session.topics(), args["type"])}
+
+
+def of_type(names: dict[str, list[str]], wanted: str) -> list[str]:
+    """Return the names that have a type, given with or without its kind."""
+    return [name for name, types in names.items() if short(wanted) in map(short, types)]
+
+
+@service("topic_type", "topic")
+async def topic_type(session: Session, args: Args) -> dict[str, Any]:
+    return {"type": type_of(session, args["topic"], "topic")}
+
+
+def type_of(session: Session, name: str, kind: Kind) -> str:
+    """Return the type of a name, or an empty text if it is unknown."""
+    return next(iter(session.types_of(full_name(name), kind)), "")
+
+
+@service("publishers", "topic")
+async def publishers(session: Session, args: Args) -> dict[str, Any]:
+    return {"publishers": session.users(EndpointKind.PUBLISHER, full_name(args["topic"]))}
+
+
+@service("subscribers", "topic")
+async def subscribers(session: Session, args: Args) -> dict[str, Any]:
+    return {"subscribers": session.users(EndpointKind.SUBSCRIPTION, full_name(args["topic"]))}
+
+
+# Services, actions, nodes
+
+
+@service("services")
+async def services(session: Session, _: Args) -> dict[str, Any]:
+    return {"services": [*session.services(), *(f"/rosapi/{name}" for name in SERVICES)]}
+
+
+@service("services_for_type", "type")
+async def services_for_type(session: Session, args: Args) -> dict[str, Any]:
+    return {"services": of_type(session.services(), args["type"])}
+
+
+@service("service_type", "service")
+async def service_type(session: Session, args: Args) -> dict[str, Any]:
+    own = full_name(args["service"]).removeprefix("/rosapi/")
+    if own in SERVICES:
+        return {"type": f"rosapi_msgs/srv/{TYPE_NAMES.get(own, camel(own))}"}
+    return {"type": type_of(session, args["service"], "service")}
+
+
+TYPE_NAMES: Final = {
+    "action_servers": "GetActionServers",
+    "get_ros_version": "GetROSVersion",
+}
+
+
+def camel(name: str) -> str:
+    """Return the name of the type of a service of rosapi."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
+@service("service_node", "service")
+async def service_node(session: Session, args: Args) -> dict[str, Any]:
+    return {"node": next(iter(session.users(EndpointKind.SERVER, full_name(args["service"]))), "")}
+
+
+@service("service_providers", "service")
+async def service_providers(session: Session, args: Args) -> dict[str, Any]:
+    # The field has the name of a service, and what clients send is a type; both are understood.
+    names = {full_name(args["service"]), *of_type(session.services(), args["service"])}
+    providers = {node for name in names for node in session.users(EndpointKind.SERVER, name)}
+    return {"providers": sorted(providers)}
+
+
+@service("action_servers")
+async def action_servers(session: Session, _: Args) -> dict[str, Any]:
+    graph = session._robot.node.graph
+    served = [
+        name
+        for name in session.actions()
+        if graph.count(EndpointKind.SERVER, f"{name}/_action/send_goal")
+    ]
+    return {"action_servers": served}
+
+
+@service("action_type", "action")
+async def action_type(session: Session, args: Args) -> dict[str, Any]:
+    return {"type": type_of(session, args["action"], "action")}
+
+
+@service("nodes")
+async def nodes(session: Session, _: Args) -> dict[str, Any]:
+    return {"nodes": session.nodes()}
+
+
+@service("node_details", "node")
+async def node_details(session: Session, args: Args) -> dict[str, Any]:
+    name = full_name(args["node"])
+    if name not in session.nodes():
+        return {"subscribing": [], "publishing": [], "services": []}
+    details = session.node_details(name)
+    return {
+        "subscribing": list(details.subscriptions),
+        "publishing": list(details.publishers),
+        "services": list(details.services),
+    }
+
+
+@service("interfaces")
+async def interfaces(_session: Session, _: Args) -> dict[str, Any]:
+    return {"interfaces": list(interface_names())}
+
+
+# Types
+
+
+def details_of(name: str, kind: str, part: str) -> None:
+    """Add a service that describes a part of a service or action type; or a message type."""
+
+    @service(name, "type")
+    async def details(session: Session, args: Args) -> dict[str, Any]:
+        find = {"msg": session.message_class, "srv": session.service_class}
+        found_class = await find.get(kind, session.action_class)(args["type"])
+        described: Any = getattr(found_class, part, None) if part else found_class
+        if not hasattr(described, "__ros_fields__"):
+            raise InterfaceNotFoundError(args["type"], problem=f"it is no type of kind {kind}")
+        return {"typedefs": type_definitions(described)}
+
+
+details_of("message_details", "msg", "")
+details_of("service_request_details", "srv", "Request")
+details_of("service_response_details", "srv", "Response")
+details_of("action_goal_details", "action", "Goal")
+details_of("action_result_details", "action", "Result")
+details_of("action_feedback_details", "action", "Feedback")
+
+
+# Parameters
+
+
+def parameter_name(name: str) -> tuple[str, str]:
+    """Return node and parameter of ``/node:parameter``.
+
+    Raises:
+        MessageError: the name has no colon.
+    """
+    node, colon, parameter = name.partition(":")
+    if not (node and colon and parameter):
+        problem = f"{shown(name)}, needs a node and a parameter, as /node:parameter"
+        raise MessageError("name", problem)
+    return full_name(node), parameter
+
+
+def failed(error: Exception) -> dict[str, Any]:
+    """Return the fields of an answer that say why a parameter was not read or set."""
+    return {"successful": False, "reason": str(error) or "the node has not answered in time"}
+
+
+@service("get_param", "name", "default_value")
+async def get_param(session: Session, args: Args) -> dict[str, Any]:
+    try:
+        return {"value": await parameter_json(session, args["name"]), **DONE}
+    except (AionodeError, TimeoutError) as error:
+        return {"value": args["default_value"], **failed(error)}
+
+
+DONE: Final = {"successful": True, "reason": ""}
+
+
+async def parameter_json(session: Session, name: str) -> str:
+    """Return the value of a parameter as JSON.
+
+    Raises:
+        MessageError: there is no such parameter.
+    """
+    value = await parameter_value(session, name)
+    if value is None:
+        raise MessageError(name, "not declared by its node, or not set")
+    return msgspec.json.encode(plain(value)).decode()
+
+
+async def parameter_value(session: Session, name: str) -> Any:
+    """Return the value of a parameter; None if its node has none of this name."""
+    node, parameter = parameter_name(name)
+    return (await session.get_parameters(node, [parameter])).get(parameter)
+
+
+def plain(value: Any) -> Any:
+    """Return the value of a parameter as builtin types."""
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, bytes):
+        return value[0]
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+@service("set_param", "name", "value")
+async def set_param(session: Session, args: Args) -> dict[str, Any]:
+    try:
+        value = decoded(args["value"], session._limits.frame_parts, "value")
+        node, parameter = parameter_name(args["name"])
+        (result,) = await session.set_parameters(node, {parameter: value})
+    except (AionodeError, TimeoutError) as error:
+        return failed(error)
+    return {"successful": result.successful, "reason": result.reason}
+
+
+@service("has_param", "name")
+async def has_param(session: Session, args: Args) -> dict[str, Any]:
+    try:
+        value = await parameter_value(session, args["name"])
+    except (AionodeError, TimeoutError):
+        return {"exists": False}
+    return {"exists": value is not None}
+
+
+@service("delete_param", "name")
+async def delete_param(session: Session, args: Args) -> dict[str, Any]:
+    try:
+        node, parameter = parameter_name(args["name"])
+        (result,) = await session.set_parameters(node, {parameter: None})
+    except (AionodeError, TimeoutError) as error:
+        return failed(error)
+    return {"successful": result.successful, "reason": result.reason}
+
+
+@service("get_param_names")
+async def get_param_names(session: Session, _: Args) -> dict[str, Any]:
+    names_of = await session.all_parameter_names()
+    return {"names": sorted(f"{node}:{name}" for node, names in names_of.items() for name in names)}
+
+
+# Time and version
+
+
+@service("get_time")
+async def get_time(session: Session, _: Args) -> dict[str, Any]:
+    time = stamp(session.now_ns())
+    # roslibpy reads the words of ROS 1.
+    return {"time": {**time, "secs": time["sec"], "nsecs": time["nanosec"]}}
+
+
+@service("get_ros_version")
+async def get_ros_version(_session: Session, _: Args) -> dict[str, Any]:
+    return {"version": 2, "distro": os.environ.get("ROS_DISTRO", "")}

@@ -1,0 +1,1 @@
+"""The web server, and what each request passes first."""

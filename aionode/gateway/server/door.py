@@ -1,0 +1,242 @@
+"""The door: every request passes it before any code of a way in runs."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable, MutableMapping
+from ipaddress import ip_network
+from typing import TYPE_CHECKING, Any, Final
+
+import msgspec
+
+from aionode.clock import S_TO_NS
+from aionode.errors import RefusedError
+from aionode.gateway.policy.identity import from_scope, parsed_address, take_token
+from aionode.gateway.policy.origin import check_browser
+
+if TYPE_CHECKING:
+    from aionode.gateway._clients import Clients
+    from aionode.gateway.policy.identity import Credentials
+
+__all__ = ["Door"]
+
+Message = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[Message]]
+Send = Callable[[Message], Awaitable[None]]
+
+PUBLIC: Final = ("/page/",)
+"""The files of the page: nothing of the robot is in them, and a page asks for them without a token.
+"""
+
+MOST_WRONG: Final = 10
+"""Wrong tokens that may come from one place at once."""
+
+WRONG_NS: Final = S_TO_NS
+"""After how many nanoseconds one of them is forgotten."""
+
+MOST_PLACES: Final = 10_000
+
+IPV6_HOST_BITS: Final = 64
+
+HEADERS: Final = [
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"x-content-type-options", b"nosniff"),
+    (b"x-frame-options", b"DENY"),
+    (b"referrer-policy", b"no-referrer"),
+]
+"""On each answer: other origins may not embed it, and no address with a token is passed on."""
+
+STATUS: Final = {
+    "unauthorized": 401,
+    "not_allowed": 403,
+    "not_confirmed": 403,
+    "out_of_limits": 422,
+    "held": 409,
+    "too_old": 409,
+    "too_large": 413,
+    "too_fast": 429,
+    "too_many": 429,
+}
+"""The HTTP status of each code of RefusedError."""
+
+
+class Door:
+    """Identifies the client of each request, and refuses requests of pages of other origins.
+
+    In the scope it leaves ``aionode.credentials``.
+    """
+
+    def __init__(self, app: Any, gateway: Clients) -> None:
+        self._app = app
+        self._gateway = gateway
+        self._guesses = Guesses(gateway.robot.time_base.steady_ns)
+
+    async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
+        """Serve one request, or one WebSocket."""
+        if scope["type"] not in {"http", "websocket"}:
+            return
+        token = take_token(scope)
+        credentials = from_scope(scope, token)
+        policy = self._gateway.policy
+        answer = Answer(send, allowed_origin(credentials.origin, policy.page_origins))
+        try:
+            if is_preflight(scope):
+                check_browser(credentials, policy.hosts, policy.page_origins)
+                await preflight(answer)
+                return
+            if is_public(scope):
+                check_browser(credentials, policy.hosts, policy.page_origins)
+            else:
+                self._check(credentials)
+            scope["aionode.credentials"] = credentials
+            limited = limit_body(scope, receive, policy.limits.frame_bytes)
+            await self._app(scope, limited, answer)
+        except RefusedError as error:
+            self._gateway.note_refusal(credentials, error)
+            if not answer.has_begun:
+                await refuse(scope, answer, error)
+
+    def _check(self, credentials: Credentials) -> None:
+        """Refuse a client that the policy does not know.
+
+        Raises:
+            RefusedError: it does not, or too many wrong tokens came from where the client is.
+        """
+        if credentials.token:
+            self._guesses.check(credentials.address)
+        try:
+            self._gateway.policy.identify(credentials)
+        except RefusedError:
+            if credentials.token:
+                self._guesses.note_wrong(credentials.address)
+            raise
+
+
+class Guesses:
+    """Bounds how often tokens are tried: so many from one place at once, and then one a second.
+
+    Right tokens of that place have to wait as well, or an attacker would see at once which is
+    right. Clients that are connected stay so.
+
+    Args:
+        now_ns: The steady clock, in nanoseconds.
+    """
+
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        self._now_ns = now_ns
+        self._free_ns: dict[str, int] = {}  # when a place has no wrong tokens left, by place
+
+    def check(self, address: str) -> None:
+        """Refuse a token if too many wrong ones came from where it comes from.
+
+        Raises:
+            RefusedError: there were too many; its code is ``too_fast``.
+        """
+        ahead_ns = self._free_ns.get(place_of(address), 0) - self._now_ns()
+        if ahead_ns > (MOST_WRONG - 1) * WRONG_NS:
+            raise RefusedError(
+                f"client of {address}", "too many wrong tokens came from there; wait", "too_fast"
+            )
+
+    def note_wrong(self, address: str) -> None:
+        """Take that a token was wrong."""
+        now_ns, place = self._now_ns(), place_of(address)
+        free_ns = max(self._free_ns.pop(place, 0), now_ns) + WRONG_NS
+        if len(self._free_ns) >= MOST_PLACES:
+            del self._free_ns[next(iter(self._free_ns))]  # from where none came for longest
+        self._free_ns[place] = free_ns
+
+
+def place_of(address: str) -> str:
+    """Return where an address is: one host may have all those of an IPv6 network."""
+    parsed = parsed_address(address)
+    if parsed is None or parsed.version == 4:
+        return str(parsed or address)
+    return str(ip_network((parsed, IPV6_HOST_BITS), strict=False))
+
+
+def is_public(scope: Message) -> bool:
+    """Return whether a request is for the page or the health, which tell nothing of the robot."""
+    path: str = scope["path"]
+    if scope["type"] != "http" or scope["method"] not in {"GET", "HEAD"}:
+        return False
+    return path in {"/", "/healthz"} or path.startswith(PUBLIC)
+
+
+def is_preflight(scope: Message) -> bool:
+    """Return whether a browser asks what a page of another origin may do."""
+    return bool(scope["type"] == "http" and scope["method"] == "OPTIONS")
+
+
+def allowed_origin(origin: str | None, origins: frozenset[str]) -> str | None:
+    """Return the origin of a page that may read the answers, if it is not the gateway's own."""
+    return origin if origin in origins else None
+
+
+class Answer:
+    """Sends an answer, with the headers that each one has.
+
+    Args:
+        send: Sends it.
+        origin: The origin of a page that may read it, if it is not the gateway's own.
+
+    Attributes:
+        has_begun: Whether its first part was sent.
+    """
+
+    def __init__(self, send: Send, origin: str | None) -> None:
+        self.has_begun = False
+        self._send = send
+        self._headers = list(HEADERS)
+        if origin is not None:
+            allowed = (b"access-control-allow-origin", origin.encode("latin-1", "replace"))
+            self._headers += [allowed, (b"vary", b"Origin")]
+
+    async def __call__(self, message: Message) -> None:
+        """Send one part."""
+        if not self.has_begun:
+            self.has_begun = True
+            if message["type"] != "websocket.accept":
+                message["headers"] = [*message.get("headers", ()), *self._headers]
+        await self._send(message)
+
+
+async def preflight(send: Send) -> None:
+    """Answer a browser that asks for a page which may connect."""
+    headers = [
+        (b"access-control-allow-methods", b"GET, POST, PUT"),
+        (b"access-control-allow-headers", b"authorization, content-type"),
+        (b"access-control-max-age", b"600"),
+    ]
+    await send({"type": "http.response.start", "status": 204, "headers": headers})
+    await send({"type": "http.response.body", "body": b""})
+
+
+def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
+    """Return a `receive` that refuses the body of a request beyond so many bytes."""
+    if scope["type"] != "http":
+        return receive
+    received = 0
+
+    async def receive_limited() -> Message:
+        nonlocal received
+        message = await receive()
+        received += len(message.get("body", b""))
+        if received > most:
+            raise RefusedError("request", f"its body has more than {most} bytes", "too_large")
+        return message
+
+    return receive_limited
+
+
+async def refuse(scope: Message, send: Send, error: RefusedError) -> None:
+    """Answer with the reason, and the HTTP status that fits it."""
+    kind = "http.response" if scope["type"] == "http" else "websocket.http.response"
+    body = msgspec.json.encode({"error": str(error), "code": error.code})
+    headers = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode())]
+    if error.code == "unauthorized":
+        headers.append((b"www-authenticate", b'Bearer realm="aionode"'))
+    if error.code == "too_fast":
+        headers.append((b"retry-after", b"1"))
+    status = STATUS[error.code]
+    await send({"type": f"{kind}.start", "status": status, "headers": headers})
+    await send({"type": f"{kind}.body", "body": body})

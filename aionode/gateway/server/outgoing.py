@@ -1,0 +1,187 @@
+"""How frames leave a WebSocket: framed once for all clients, and large ones in slices."""
+
+from __future__ import annotations
+
+import asyncio
+import struct
+from collections import deque
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.gateway.session.outbox import LongFrame
+
+if TYPE_CHECKING:
+    from aionode.gateway.session.outbox import Frame
+
+__all__ = ["Framing", "Outgoing"]
+
+TEXT: Final = 0x81
+BINARY: Final = 0x82
+"""The first byte of a frame that is a whole message, of either kind (RFC 6455)."""
+
+SLICE: Final = 256 << 10
+"""Bytes of a large frame that are given to the transport at once."""
+
+SLICES_IN_A_TURN: Final = 4
+"""Slices that leave before the event loop turns: they take about half a millisecond."""
+
+MOST_CONTROL_BYTES: Final = 1 << 20
+"""Bytes that may wait when a pong is added: a client may ask for many and read none."""
+
+
+class Framing:
+    """Puts heads of WebSocket frames before messages.
+
+    A server masks nothing, so that a frame is the same for all clients, which get it one after
+    another: the last one is kept.
+    """
+
+    def __init__(self) -> None:
+        self._frame: Frame | None = None
+        self._parts: tuple[bytes, ...] = ()
+
+    def parts(self, frame: Frame) -> tuple[bytes, ...]:
+        """Return the bytes that leave: one part, or a head and the parts of a large payload."""
+        if frame is not self._frame:
+            self._parts = framed(frame)
+            self._frame = frame
+        return self._parts
+
+
+def framed(frame: Frame) -> tuple[bytes, ...]:
+    """Return a WebSocket frame with its head, which is a part of its own before a large payload."""
+    if isinstance(frame, LongFrame):
+        return (head(TEXT if frame.is_text else BINARY, len(frame)), *frame.pieces)
+    first, payload = (TEXT, frame.encode()) if isinstance(frame, str) else (BINARY, frame)
+    before = head(first, len(payload))
+    return (before, payload) if len(payload) > SLICE else (before + payload,)
+
+
+def head(first: int, size: int) -> bytes:
+    """Return the head of a frame whose payload has a size."""
+    if size < 126:
+        return struct.pack(">BB", first, size)
+    if size < 1 << 16:
+        return struct.pack(">BBH", first, 126, size)
+    return struct.pack(">BBQ", first, 127, size)
+
+
+class Outgoing(asyncio.Transport):
+    """The transport of a WebSocket, which a large frame leaves in slices as its client reads.
+
+    A transport copies what its socket does not take at once. What uvicorn writes meanwhile, such as
+    the answer to a ping, leaves after the frame.
+
+    Args:
+        transport: The transport of the connection.
+        writable: Set while the client has read enough of what was sent, and no frame is leaving.
+    """
+
+    def __init__(self, transport: asyncio.Transport, writable: asyncio.Event) -> None:
+        super().__init__()
+        self._transport = transport
+        self._writable = writable
+        self._is_paused = False
+        self._rest: deque[bytes | memoryview] = deque()  # of the frame that is leaving
+        self._after: list[bytes] = []
+        self._after_bytes = 0
+        self._turn: asyncio.Handle | None = None
+
+    def send(self, parts: tuple[bytes, ...]) -> None:
+        """Send a frame, while `writable` is set."""
+        self._transport.write(parts[0])
+        if len(parts) > 1:
+            self._writable.clear()
+            self._rest.extend(parts[1:])
+            self._go_on()
+
+    def pause(self) -> None:
+        """Send no more until `resume`: the client has not read enough of what was sent."""
+        self._is_paused = True
+        self._writable.clear()
+
+    def resume(self) -> None:
+        """Go on with the frame that is leaving."""
+        self._is_paused = False
+        if not self._rest:
+            self._writable.set()
+        elif self._turn is None:
+            # Not at once: a transport whose connection breaks within this call ends twice.
+            self._turn = asyncio.get_running_loop().call_soon(self._go_on)
+
+    def _go_on(self) -> None:
+        self._turn = None
+        if self._transport.is_closing():
+            self._rest.clear()
+        for _ in range(SLICES_IN_A_TURN):
+            if not self._rest or self._is_paused:
+                break
+            self._transport.write(self._slice())
+        if not self._rest:
+            self._finish()
+        elif not self._is_paused:
+            self._turn = asyncio.get_running_loop().call_soon(self._go_on)
+
+    def _slice(self) -> bytes | memoryview:
+        part = self._rest.popleft()
+        if len(part) > SLICE:
+            part = memoryview(part)
+            self._rest.appendleft(part[SLICE:])
+        return part[:SLICE]
+
+    def _finish(self) -> None:
+        """Send what has waited for the end of the frame."""
+        after, self._after, self._after_bytes = self._after, [], 0
+        if after:
+            self._transport.write(b"".join(after))
+        if not self._is_paused:
+            self._writable.set()
+
+    def _forget_turn(self) -> None:
+        if self._turn is not None:
+            self._turn.cancel()
+            self._turn = None
+
+    # Methods of a transport that uvicorn calls
+
+    def write(self, data: Any) -> None:
+        """Send what is no message of the application, after the frame that is leaving."""
+        waiting = self._after_bytes + self._transport.get_write_buffer_size()
+        if waiting > MOST_CONTROL_BYTES:
+            self.abort()
+        elif not self._rest:
+            self._transport.write(data)
+        else:
+            self._after.append(bytes(data))
+            self._after_bytes += len(data)
+
+    def close(self) -> None:
+        """Close the connection when all has left."""
+        self._forget_turn()
+        if self._rest and not self._transport.is_closing():
+            self._transport.write(b"".join(self._rest))
+            self._rest.clear()
+            self._finish()
+        self._transport.close()
+
+    def abort(self) -> None:
+        """Close the connection at once."""
+        self._forget_turn()
+        self._rest.clear()
+        self._after.clear()
+        self._transport.abort()
+
+    def is_closing(self) -> bool:
+        """Return whether the connection is closed, or about to be."""
+        return self._transport.is_closing()
+
+    def pause_reading(self) -> None:
+        """Read nothing until `resume_reading`."""
+        self._transport.pause_reading()
+
+    def resume_reading(self) -> None:
+        """Read again."""
+        self._transport.resume_reading()
+
+    def get_extra_info(self, name: str, default: Any = None) -> Any:
+        """Return what is known of the connection."""
+        return self._transport.get_extra_info(name, default)

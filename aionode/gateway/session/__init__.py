@@ -1,0 +1,1 @@
+"""The session of one client, and what clients share."""

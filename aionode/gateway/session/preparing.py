@@ -1,0 +1,112 @@
+"""Large messages of a subscription, which are encoded before their client gets them."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+from collections import deque
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Final, TypeAlias
+
+from aionode.errors import AionodeError
+
+if TYPE_CHECKING:
+    from aionode.gateway.session.feed import Received
+    from aionode.gateway.session.robot import Robot
+
+__all__ = ["LARGE_BYTES", "Prepare", "Preparing", "prepared"]
+
+logger = logging.getLogger("aionode.gateway")
+
+Prepare: TypeAlias = Callable[["Received"], Awaitable[None]]
+"""Encodes a message while the event loop turns; what it makes is kept in the message."""
+
+LARGE_BYTES: Final = 128 << 10
+"""Bytes of a message up to which it is encoded at once, in half a millisecond."""
+
+MOST_BYTES: Final = 32 << 20
+"""Messages of one subscription that may wait to be encoded; beyond it the oldest is dropped."""
+
+
+class Preparing:
+    """The messages of one subscription of a client that wait to be encoded, in order.
+
+    One message of the gateway is encoded at a time, so that the loop turns after each slice of it.
+
+    Args:
+        robot: Has the turns, and runs the task.
+        prepare: Encodes a message.
+        deliver: Takes each message once it is encoded.
+        depth: How many messages may wait.
+
+    Attributes:
+        dropped: How many messages were dropped.
+    """
+
+    def __init__(
+        self, robot: Robot, prepare: Prepare, deliver: Callable[[Received], None], depth: int
+    ) -> None:
+        self.dropped = 0
+        self._robot = robot
+        self._prepare = prepare
+        self._deliver = deliver
+        self._depth = depth
+        self._waiting: deque[Received] = deque()
+        self._bytes = 0
+        self._task: asyncio.Task[None] | None = None
+
+    def put(self, received: Received) -> None:
+        """Take a message; it is delivered at once if it is small, and nothing waits."""
+        if self._task is None and len(received.raw) <= LARGE_BYTES:
+            self._deliver(received)
+            return
+        self._waiting.append(received)
+        self._bytes += len(received.raw)
+        while len(self._waiting) > self._depth or (
+            self._bytes > MOST_BYTES and len(self._waiting) > 1
+        ):
+            self._take()
+            self.dropped += 1
+        if self._task is None:
+            self._task = self._robot.tasks.create_task(self._run())
+
+    def close(self) -> None:
+        """Forget what waits."""
+        self._waiting.clear()
+        if self._task is not None:
+            self._task.cancel()
+
+    def _take(self) -> Received:
+        """Return the oldest message."""
+        received = self._waiting.popleft()
+        self._bytes -= len(received.raw)
+        return received
+
+    async def _run(self) -> None:
+        while self._waiting:
+            received = self._take()
+            try:
+                await prepared(self._robot, self._prepare, received)
+                self._deliver(received)
+            except Exception:  # the task belongs to the gateway, which goes on
+                self.dropped += 1
+                logger.exception("%s: a message could not be encoded", received.topic)
+        self._task = None
+
+
+async def prepared(robot: Robot, prepare: Prepare, received: Received) -> None:
+    """Encode a message in its turn, if it is large.
+
+    One that is no message of its type is left as it is: `Received.once` raises the error of it.
+
+    Args:
+        robot: Has the turns.
+        prepare: Encodes it.
+        received: The message.
+    """
+    if len(received.raw) <= LARGE_BYTES:
+        return
+    async with robot.turn:
+        with contextlib.suppress(AionodeError, ValueError):
+            await prepare(received)

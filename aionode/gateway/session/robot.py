@@ -1,0 +1,168 @@
+"""The robot, as the sessions of a gateway share it: node, policy, and endpoints in use."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import re
+from collections.abc import Awaitable, Callable
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.clock import S_TO_NS, SteadyClock
+from aionode.errors import InterfaceNotFoundError
+from aionode.gateway._goal_owners import GoalOwners
+from aionode.gateway._standstill import Standstills
+from aionode.gateway.rosbridge.request import type_text
+from aionode.gateway.session.command import Commands
+from aionode.gateway.session.feed import Feeds
+from aionode.gateway.session.sharing import Shared
+
+if TYPE_CHECKING:
+    from aionode.gateway.policy.identity import Identity
+    from aionode.gateway.policy.policy import Policy, Rule, Verb
+    from aionode.gateway.session.audit import Audit
+    from aionode.node import Node
+
+__all__ = ["Ask", "Rates", "Robot"]
+
+Ask = Callable[["Identity", "Verb", str, Any], Awaitable[bool]]
+"""Asks a person whether a client may do something: called with the client, what it wants to do,
+with which name, and what it sends. Returns whether the person says yes."""
+
+MOST_TYPES: Final = 1000
+MOST_RATES: Final = 10_000
+
+LONGEST_TYPE: Final = 255
+"""The longest name of a type, in characters: similar names are sought for one that is unknown."""
+
+
+class Robot:
+    """The robot, as the sessions of a gateway share it.
+
+    Args:
+        node: The node of the gateway.
+        policy: Who may do what.
+        audit: The audit log.
+        tasks: Run the leases, and encode large messages.
+        ask: Asks a person; None if there is nobody to ask.
+
+    Attributes:
+        turn: Held by who encodes a large message, or asks about the graph: one at a time.
+        making: Held by who makes a large message of what a client has sent, in a thread.
+        owners: Knows whose the goals are, and makes the clients that send them.
+        standstills: Notices that the event loop stood still.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        policy: Policy,
+        audit: Audit,
+        tasks: asyncio.TaskGroup,
+        ask: Ask | None = None,
+    ) -> None:
+        self.node = node
+        self.policy = policy
+        self.audit = audit
+        self.tasks = tasks
+        self.turn = asyncio.Lock()
+        self.making = asyncio.Lock()
+        self.ask = ask
+        self.time_base = node.context.time_base
+        self.clock = SteadyClock(time_base=self.time_base)
+        self.feeds = Feeds(node)
+        self.shared = Shared(self.time_base)
+        self.commands = Commands(tasks)
+        self.owners = GoalOwners(node, audit)
+        self.standstills = Standstills(self.time_base)
+        self.rates = Rates(self.time_base.steady_ns)
+        self._types: dict[tuple[str, frozenset[str]], Any] = {}
+        self._types_now: dict[str, Any] = {}  # by name, until the graph changes
+        self._changes = -1
+
+    async def find_type(self, name: str, kind: str) -> Any:
+        """Return the class of a type, once made for all.
+
+        Args:
+            name: Its name: ``std_msgs/msg/String``, or ``std_msgs/String``.
+            kind: ``msg``, ``srv`` or ``action``.
+
+        Raises:
+            InterfaceNotFoundError: neither this program nor a node that uses it describes it.
+        """
+        full = type_text(name, kind)
+        if len(full) > LONGEST_TYPE or not re.fullmatch(rf"\w+/{kind}/\w+", full, re.ASCII):
+            raise InterfaceNotFoundError(name[:200], problem=f"this is no name of a type of {kind}")
+        graph = self.node.graph
+        if self._changes != graph.changes:
+            self._changes, self._types_now = graph.changes, {}
+        now = self._types_now
+        if full not in now:
+            now[full] = await self._find_type(full)
+        return now[full]
+
+    async def _find_type(self, full: str) -> Any:
+        """Return the class of a type by its full name, once made for all nodes that use the same.
+
+        Raises:
+            InterfaceNotFoundError: see `find_type`.
+        """
+        endpoints = self.node.graph.endpoints()
+        hashes = frozenset(e.type_hash for e in endpoints if e.type_name.startswith(full))
+        key = (full, hashes)
+        if key not in self._types:
+            message_type = await self.node.find_type(full)
+            if len(self._types) >= MOST_TYPES:
+                self._types.clear()
+            self._types.setdefault(key, message_type)
+        return self._types[key]
+
+    def close(self) -> None:
+        """Destroy the endpoints that are shared."""
+        self.standstills.stop()
+        self.shared.close()
+
+
+class Rates:
+    """The rates of uses that rules limit: a bucket for each client, rule and name.
+
+    Args:
+        now_ns: The steady clock, in nanoseconds.
+    """
+
+    def __init__(self, now_ns: Callable[[], int]) -> None:
+        self._now_ns = now_ns
+        # With its rule, which therefore lives, so that no other one has its id.
+        self._buckets: dict[tuple[str, int, str], tuple[Rule, Bucket]] = {}
+
+    def allows(self, identity: Identity, rule: Rule, name: str) -> bool:
+        """Count one more, and return whether it is within the rate."""
+        if rule.rate_hz == math.inf:
+            return True
+        key = (identity.name, id(rule), name)
+        if key not in self._buckets:
+            if len(self._buckets) >= MOST_RATES:
+                del self._buckets[next(iter(self._buckets))]  # the oldest, not those of others
+            self._buckets[key] = (rule, Bucket(rule.rate_hz, self._now_ns))
+        return self._buckets[key][1].wait_sec() <= 0.0
+
+
+class Bucket:
+    """A token bucket: so many a second, and a second's worth at once, but at least one."""
+
+    def __init__(self, rate_hz: float, now_ns: Callable[[], int]) -> None:
+        self.rate_hz = rate_hz
+        self._now_ns = now_ns
+        self._room = self._tokens = max(1.0, rate_hz)
+        self._at_ns = now_ns()
+
+    def wait_sec(self) -> float:
+        """Take one, and return 0; without one, return after how many seconds there is one."""
+        now_ns = self._now_ns()
+        passed = (now_ns - self._at_ns) / S_TO_NS
+        self._tokens = min(self._room, self._tokens + passed * self.rate_hz)
+        self._at_ns = now_ns
+        if self._tokens >= 1.0:
+            self._tokens -= 1.0
+            return 0.0
+        return (1.0 - self._tokens) / self.rate_hz
