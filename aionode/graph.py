@@ -2,8 +2,8 @@
 
 `Graph` is a store that the context and its transports write to. It does no I/O: a transport adds
 what it discovers, the context adds its own, and each change wakes the tasks that wait for one.
-The graph watcher of a transport, `engine/transport/zenoh/discovery/graph_watcher.py`, adds the nodes of other
-processes, and removes those of a process that ends or dies.
+The graph watcher of a transport, `engine/transport/zenoh/discovery/graph_watcher.py`, adds the
+nodes of other processes, and removes those of a process that ends or dies.
 """
 
 from __future__ import annotations

@@ -7,7 +7,8 @@ as a link does, with nothing else of it. The receiver decodes each image and rea
 place, which takes its time too.
 
 The table gives half a round trip for each size, and the size from which on memory is cheaper:
-`SHARED_FROM` in ``aionode/engine/transport/link/_shared_memory.py``. Then, for 4 MB, what each step costs.
+`SHARED_FROM` in ``aionode/engine/transport/link/_shared_memory.py``. Then, for 4 MB, the cost of
+each step.
 
 Run it with ``python benchmarks/ipc_shared_memory.py``; ``--quick`` takes a fifth of the time. It
 prints the table and writes ``link_memory.json`` to ``benchmarks/results/``.

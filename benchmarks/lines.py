@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
 ROOT: Final = Path(__file__).parents[1]
-DIVIDED: Final = ("transport",)
+DIVIDED: Final = ("engine",)
 """Packages whose parts are rooms of their own."""
 
 INNER_ROOMS: Final = ("engine/transport/zenoh/bridge",)

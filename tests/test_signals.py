@@ -199,7 +199,7 @@ def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
     steps = []
     _sudden_end.STOPS.append(lambda: print(steps[-1], flush=True))
 
-    names = {"__name__": "aionode.transport.made_up", "signal": signal, "steps": steps}
+    names = {"__name__": "aionode.engine.transport.made_up", "signal": signal, "steps": steps}
     exec('''
     def send():
         steps.append("sending")
@@ -236,8 +236,8 @@ def test_a_callback_that_a_transport_has_called_is_not_sending() -> None:
     inside = lambda: is_sending(sys._getframe())  # noqa: E731
 
     assert not is_sending(sys._getframe())
-    assert not called_in("aionode.transport.link", inside)
-    assert called_in("aionode.transport.link", lambda: called_in("json", inside)) is False
+    assert not called_in("aionode.engine.transport.link", inside)
+    assert called_in("aionode.engine.transport.link", lambda: called_in("json", inside)) is False
 
 
 def test_the_second_signal_does_not_wait_for_a_reader_of_stderr() -> None:

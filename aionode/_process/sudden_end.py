@@ -59,7 +59,7 @@ such as Zenoh's, need the rest of the time.
 """
 
 LIBRARY: Final = sys.stdlib_module_names | {"aionode", "uvloop"}
-SENDING: Final = ("aionode.endpoints", "aionode.transport")
+SENDING: Final = ("aionode.endpoints", "aionode.engine.transport")
 
 
 def is_sending(frame: FrameType | None) -> bool:

@@ -16,7 +16,7 @@ __all__ = ["TRACEBACK_VARIABLE", "is_of_user", "is_whole", "traceback_text"]
 TRACEBACK_VARIABLE = "AIONODE_TRACEBACK"
 """If set to anything, aionode's own lines are shown as well."""
 
-LIBRARY = Path(__file__).parent
+LIBRARY = Path(__file__).parents[1]
 EXAMPLES = LIBRARY / "examples"
 GENERATED = re.compile(r"<(snapshot of|encode|write|decode|read|construct) [\w/]+>")
 """How the functions are named that are generated for message types."""

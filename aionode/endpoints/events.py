@@ -9,12 +9,25 @@ There are two ways to get them: callbacks, given when the endpoint is created, a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.stats import CallbackStats
-from aionode.qos import QoSPolicyKind
+from aionode.engine.rules.event_records import (
+    IncompatibleTypeInfo,
+    MatchedInfo,
+    PublisherEvent,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherMatchedInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionMatchedInfo,
+    SubscriptionEvent,
+)
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable
@@ -43,149 +56,6 @@ EventT = TypeVar("EventT")
 
 EVENTS_KEPT = 100
 """Most events that wait for a callback or a reader; beyond, the oldest is dropped and counted."""
-
-
-# Kinds of events
-
-
-@dataclass(frozen=True, slots=True)
-class QoSOfferedDeadlineMissedInfo:
-    """A publisher published nothing for as long as its deadline.
-
-    Attributes:
-        total_count: How many such periods there were.
-        total_count_change: How many of them are new.
-    """
-
-    total_count: int
-    total_count_change: int
-
-
-@dataclass(frozen=True, slots=True)
-class QoSRequestedDeadlineMissedInfo:
-    """A subscription received nothing for as long as its deadline.
-
-    Attributes:
-        total_count: How many such periods there were.
-        total_count_change: How many of them are new.
-    """
-
-    total_count: int
-    total_count_change: int
-
-
-@dataclass(frozen=True, slots=True)
-class QoSLivelinessLostInfo:
-    """A publisher with liveliness MANUAL_BY_TOPIC gave no sign of life within its lease.
-
-    Attributes:
-        total_count: How often that happened.
-        total_count_change: How often it happened since the last event.
-    """
-
-    total_count: int
-    total_count_change: int
-
-
-@dataclass(frozen=True, slots=True)
-class QoSLivelinessChangedInfo:
-    """A publisher of the topic came to life, lost its liveliness, or has gone.
-
-    Attributes:
-        alive_count: How many matched publishers are alive.
-        not_alive_count: How many gave no sign of life within the lease of the subscription.
-        alive_count_change: By how much `alive_count` has changed; negative if it fell.
-        not_alive_count_change: By how much `not_alive_count` has changed.
-    """
-
-    alive_count: int
-    not_alive_count: int
-    alive_count_change: int
-    not_alive_count_change: int
-
-
-@dataclass(frozen=True, slots=True)
-class QoSMessageLostInfo:
-    """Messages are missing in the sequence numbers of a publisher.
-
-    Attributes:
-        total_count: How many are missing in all.
-        total_count_change: How many of them are new.
-    """
-
-    total_count: int
-    total_count_change: int
-
-
-@dataclass(frozen=True, slots=True)
-class QoSRequestedIncompatibleQoSInfo:
-    """An endpoint appeared whose QoS does not fit.
-
-    Attributes:
-        total_count: How many there were.
-        total_count_change: How many of them are new.
-        last_policy_kind: A policy that does not fit; the last one, if there are several.
-    """
-
-    total_count: int
-    total_count_change: int
-    last_policy_kind: QoSPolicyKind
-
-
-QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
-
-
-@dataclass(frozen=True, slots=True)
-class IncompatibleTypeInfo:
-    """An endpoint appeared whose type is another, or another definition of the same name.
-
-    Attributes:
-        total_count: How many there were.
-        total_count_change: How many of them are new.
-    """
-
-    total_count: int
-    total_count_change: int
-
-
-@dataclass(frozen=True, slots=True)
-class MatchedInfo:
-    """A counterpart was matched, or has gone.
-
-    Attributes:
-        total_count: How many have been matched in all.
-        total_count_change: How many of them are new.
-        current_count: How many are matched now.
-        current_count_change: By how much `current_count` has changed; negative if it fell.
-    """
-
-    total_count: int
-    total_count_change: int
-    current_count: int
-    current_count_change: int
-
-
-QoSSubscriptionMatchedInfo = MatchedInfo
-QoSPublisherMatchedInfo = MatchedInfo
-
-PublisherEvent = (
-    QoSOfferedDeadlineMissedInfo
-    | QoSLivelinessLostInfo
-    | QoSRequestedIncompatibleQoSInfo
-    | IncompatibleTypeInfo
-    | MatchedInfo
-)
-"""The events that `Publisher.events` yields."""
-
-SubscriptionEvent = (
-    QoSRequestedDeadlineMissedInfo
-    | QoSLivelinessChangedInfo
-    | QoSMessageLostInfo
-    | QoSRequestedIncompatibleQoSInfo
-    | IncompatibleTypeInfo
-    | MatchedInfo
-)
-"""The events that `Subscription.events` yields."""
 
 
 # Callbacks

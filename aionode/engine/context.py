@@ -1,8 +1,8 @@
 """The context that nodes share: one participant in the ROS graph, with its transports.
 
-A peer that ends leaves the graph in `engine/transport/zenoh/discovery/graph_watcher.py`, and its links in
-`engine/transport/link/_manager.py`, which dials again as well. How often Zenoh dials, and when it gives a
-silent peer up: `engine/transport/zenoh/session/settings.py`.
+A peer that ends leaves the graph in `engine/transport/zenoh/discovery/graph_watcher.py`, and its
+links in `engine/transport/link/_manager.py`, which dials again as well. How often Zenoh dials, and
+when it gives a silent peer up: `engine/transport/zenoh/session/settings.py`.
 """
 
 from __future__ import annotations

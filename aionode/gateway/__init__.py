@@ -54,13 +54,15 @@ __all__ = [
 ]
 
 PLACES: Final = {
-    "Credentials": "_identity",
+    "Credentials": "policy.identity",
     "Gateway": "_gateway",
     "GatewayStats": "_clients",
-    "Identity": "_identity",
-    "Session": "_session",
-    "typescript": "_typescript",
+    "Identity": "policy.identity",
+    "Session": "session.session",
+    "typescript": "http.typescript",
 }
 """The module of each public name that is not in that of the policy, which needs no web server."""
 
-__getattr__ = imported_on_first_use(__name__, dict.fromkeys(__all__, "_policy") | PLACES, "gateway")
+__getattr__ = imported_on_first_use(
+    __name__, dict.fromkeys(__all__, "policy.policy") | PLACES, "gateway"
+)

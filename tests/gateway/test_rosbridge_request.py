@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from aionode.clock import Duration
 from aionode.errors import MessageError
-from aionode.gateway.rosbridge.request import FragmentStore, number, op_of, profile, type_text
+from aionode.gateway.rosbridge.request import FragmentStore, number, op_of, profile
+from aionode.gateway.session.client_json import type_text
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 

@@ -30,7 +30,7 @@ from aionode.rclpy._impl.errors import RCLError
 PATIENCE_S = 10.0
 PUBLISHED = 10_000
 MANY_PLACES = 30
-OWN_CODE = ("aionode/rclpy", "aionode/_lendable_loop", "aionode/bare_node", "aionode/transport")
+OWN_CODE = ("aionode/rclpy", "aionode/_process/lendable_loop", "aionode/engine/")
 
 
 class Interrupted(Exception):  # noqa: N818  # no error of the program

@@ -66,6 +66,7 @@ LACKS = {
 SHARED = {
     "aionode.clock": "one class for both APIs",
     "aionode.endpoints": "one class for both APIs",
+    "aionode.engine": "one class for both APIs",
     "aionode.errors": "one class for both APIs; programs of rclpy see its name in rclpy",
     "aionode.lifecycle": "one class for both APIs",
     "aionode.logging": "one class for both APIs",

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from aionode.clock import SilenceAlarm
-from aionode.endpoints.events import QoSLivelinessChangedInfo
+from aionode.engine.rules.event_records import QoSLivelinessChangedInfo
 from aionode.qos import LivelinessPolicy, is_unlimited
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints.events import (
+from aionode.engine.rules.event_records import (
     IncompatibleTypeInfo,
     MatchedInfo,
     QoSRequestedIncompatibleQoSInfo,

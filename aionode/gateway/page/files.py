@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 __all__ = ["routes"]
 
-FOLDER: Final = Path(__file__).with_name("_page")
+FOLDER: Final = Path(__file__).with_name("static")
 
 KINDS: Final = {".css": "text/css", ".html": "text/html", ".js": "text/javascript"}
 

@@ -12,13 +12,8 @@ import msgspec
 from aionode.engine.rules.goal import CancelCode
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway.rosbridge import rosapi as _rosapi
-from aionode.gateway.rosbridge.request import (
-    number,
-    optional_text,
-    text,
-    type_text,
-    values,
-)
+from aionode.gateway.rosbridge.request import number, optional_text, text, values
+from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.values import json_of
 
 if TYPE_CHECKING:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import reprlib
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
 
 from aionode.clock import Duration
 from aionode.errors import MessageError
-from aionode.gateway.session.client_json import decoded
+from aionode.gateway.session.client_json import decoded, shown
 from aionode.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -22,9 +21,7 @@ __all__ = [
     "number",
     "op_of",
     "profile",
-    "shown",
     "text",
-    "type_text",
     "values",
 ]
 
@@ -129,28 +126,9 @@ def given(op: Op, name: str) -> str:
     return f"{shown(op[name])} ({type(op[name]).__name__})"
 
 
-def shown(value: object) -> str:
-    """Return a value, shortened: it may be nested deeper than Python's repr can follow."""
-    try:
-        return reprlib.repr(value)
-    except ValueError:  # Python writes no numbers of thousands of digits
-        return "a huge number"
-
-
 def full_name(name: str) -> str:
     """Return the name of a topic, service or action with a leading slash, which clients omit."""
     return name if name.startswith("/") else f"/{name}"
-
-
-def type_text(name: str, kind: str) -> str:
-    """Return the name of a type with its kind, which clients omit: ``std_msgs/String``.
-
-    Args:
-        name: The name that a client has sent.
-        kind: ``msg``, ``srv`` or ``action``.
-    """
-    parts = name.split("/")
-    return "/".join((parts[0], kind, parts[1])) if len(parts) == 2 else name
 
 
 # QoS

@@ -9,14 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
-from aionode.gateway.rosbridge.request import (
-    number,
-    optional_text,
-    profile,
-    text,
-    type_text,
-    values,
-)
+from aionode.gateway.rosbridge.request import number, optional_text, profile, text, values
+from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.frames import (
     Fragmented,
     cbor_frame,

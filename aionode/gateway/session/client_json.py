@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import json
+import reprlib
 from typing import Any, Final
 
 import msgspec
 
 from aionode.errors import MessageError
 
-__all__ = ["check_items", "check_parts", "decoded", "is_large"]
+__all__ = ["check_items", "check_parts", "decoded", "is_large", "shown", "type_text"]
 
 MOST_ITEMS: Final = 10_000
 """Items that the value of a parameter may have."""
@@ -101,3 +102,22 @@ def is_large(values: object) -> bool:
         inner = value.values() if isinstance(value, dict) else value
         waiting.extend(item for item in inner if isinstance(item, dict | list))
     return False
+
+
+def shown(value: object) -> str:
+    """Return a value, shortened: it may be nested deeper than Python's repr can follow."""
+    try:
+        return reprlib.repr(value)
+    except ValueError:  # Python writes no numbers of thousands of digits
+        return "a huge number"
+
+
+def type_text(name: str, kind: str) -> str:
+    """Return the name of a type with its kind, which clients omit: ``std_msgs/String``.
+
+    Args:
+        name: The name that a client has sent.
+        kind: ``msg``, ``srv`` or ``action``.
+    """
+    parts = name.split("/")
+    return "/".join((parts[0], kind, parts[1])) if len(parts) == 2 else name

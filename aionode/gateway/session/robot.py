@@ -12,7 +12,7 @@ from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import InterfaceNotFoundError
 from aionode.gateway._goal_owners import GoalOwners
 from aionode.gateway._standstill import Standstills
-from aionode.gateway.rosbridge.request import type_text
+from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.command import Commands
 from aionode.gateway.session.feed import Feeds
 from aionode.gateway.session.sharing import Shared

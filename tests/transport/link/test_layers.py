@@ -9,7 +9,7 @@ from typing import Any
 import grimp
 
 ROOT = Path(__file__).parents[3]
-PACKAGE = "aionode.transport.link"
+PACKAGE = "aionode.engine.transport.link"
 
 
 def layers() -> list[str]:

@@ -402,7 +402,7 @@ def test_only_the_sender_can_write_to_sealed_memory(pool: BufferPool) -> None:
 
 def test_numpy_is_imported_with_the_first_payload_only() -> None:
     """It takes a tenth of a second, and a process of small messages never needs it."""
-    code = "import sys, aionode.engine.transport.link._shared_memory as m; m.BufferPool(); m.BufferMappings()"
-    code += "; assert 'numpy' not in sys.modules"
+    code = "import sys, aionode.engine.transport.link._shared_memory as m; m.BufferPool()"
+    code += "; m.BufferMappings(); assert 'numpy' not in sys.modules"
 
     subprocess.run([sys.executable, "-c", code], check=True)

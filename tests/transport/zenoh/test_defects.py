@@ -40,7 +40,7 @@ def test_a_defect_is_described(name: str) -> None:
 def test_a_defect_has_a_switch(name: str) -> None:
     """It is asked for by the name of its module, wherever the mend is."""
     asked = (f'is_mended("{name}")', f'defect = "{name}"')
-    modules = sorted((ROOT / "aionode/transport/zenoh").rglob("*.py"))
+    modules = sorted((ROOT / "aionode/engine/transport/zenoh").rglob("*.py"))
 
     assert any(text in module.read_text(encoding="utf-8") for module in modules for text in asked)
 

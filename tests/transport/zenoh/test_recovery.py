@@ -429,7 +429,7 @@ async def test_a_probe_makes_no_unannounced_peer() -> None:
 
 async def test_many_that_start_at_once_all_see_all() -> None:
     """More than there are meeting ports, so most of them are introduced."""
-    names = [f"{number}0" for number in range(1, 10)]
+    names = [f"a{number}" for number in range(1, 10)]
     async with AsyncExitStack() as stack:
         together = await asyncio.gather(
             *(stack.enter_async_context(context(name)) for name in names)
