@@ -52,7 +52,7 @@ shutdown time_base transports
 """
 TRANSPORT = """
 abandon all_known close create_node create_reader create_requester create_server create_writer
-link_status open send_rest
+link_status open send_rest silent_processes
 """
 
 
