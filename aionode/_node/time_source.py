@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from aionode.clock import S_TO_NS, Time
-from aionode.endpoints._core.entity import EndStage
+from aionode.clock import Time
+from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.engine.reports.simulated_time import ClockWatch, why_no_time
 from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.parameter import Parameter
@@ -21,6 +22,20 @@ __all__ = ["TimeSource"]
 CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
+class WatchedClock(Entity):
+    """Has the log say it if no time comes while the node runs."""
+
+    def __init__(self, watch: ClockWatch) -> None:
+        super().__init__("watch of /clock", EndStage.LAST)
+        self._watch = watch
+
+    def _run(self) -> None:
+        self._watch.start()
+
+    def _close(self) -> None:
+        self._watch.stop()
+
+
 class TimeSource:
     """Follows ``/clock`` while the parameter `use_sim_time` is true."""
 
@@ -28,6 +43,8 @@ class TimeSource:
         self._node = node
         self._clock = clock
         self._subscription: Subscription[ClockMsg] | None = None
+        self._watch: WatchedClock | None = None
+        self._heard = False
         self._warned = False
         node.add_on_set_parameters_callback(self._check)
         if not node.has_parameter("use_sim_time"):
@@ -57,13 +74,22 @@ class TimeSource:
             )
             # The subscription outlives the callbacks: their cleanup may sleep.
             self._node._node_shutdown.postpone(self._subscription, EndStage.GOALS)
+            context = self._node.context
+            watch = ClockWatch(
+                *(self._subscription._endpoint, context.graph, context.time_base),
+                heard=lambda: self._heard,
+            )
+            self._watch = self._node._add_entity(WatchedClock(watch))
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None
+            if self._watch is not None:
+                self._watch.destroy()
 
     def _on_tick(self, msg: ClockMsg) -> None:
         problem = why_no_time(msg.clock)
         if not problem:
+            self._heard = True
             self._clock.set_ros_time_override(Time.from_msg(msg.clock))
             return
         if self._subscription is not None:
@@ -71,18 +97,3 @@ class TimeSource:
         if not self._warned:
             self._warned = True
             self._node.get_logger().warning(f"{problem}. Further ones are only counted")
-
-
-def why_no_time(clock: Any) -> str:
-    """Return why the `clock` of a message on ``/clock`` is no time; empty if it is one.
-
-    Any node can publish there, so a message that holds no time ends no node: it is left out, and
-    the log says so once.
-    """
-    if clock.sec >= 0 and clock.nanosec < S_TO_NS:
-        return ""
-    return (
-        f"/clock: ignored an invalid time: {clock.sec} s and {clock.nanosec} ns; seconds must be "
-        f"at least 0, and nanoseconds less than {S_TO_NS}; `aionode topic info -v /clock` names "
-        "the publishers"
-    )

@@ -5,8 +5,9 @@ from __future__ import annotations
 import weakref
 from typing import TYPE_CHECKING, Any
 
-from aionode._node.time_source import why_no_time
 from aionode.clock import ClockType
+from aionode.engine.reports.simulated_time import ClockWatch, why_no_time
+from aionode.graph import EndpointKind
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy.clock import ROSClock
 from aionode.rclpy.parameter import Parameter
@@ -14,6 +15,8 @@ from aionode.rclpy.qos import QoSProfile, ReliabilityPolicy
 from aionode.rclpy.time import Time
 
 if TYPE_CHECKING:
+    from aionode.engine.context import Context as CoreContext
+    from aionode.graph import EndpointInfo
     from aionode.rclpy._protocols import NodeLike
     from aionode.rclpy.subscription import Subscription
 
@@ -62,6 +65,8 @@ class TimeSource:
                 self.clock_callback,
                 QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT),
             )
+            handle = self._clock_sub.handle
+            handle.io.call(watch_clock, handle.bare.endpoint, handle.io.context)
 
     def _unsubscribe(self) -> None:
         node = self._get_node()
@@ -152,3 +157,15 @@ class TimeSource:
 
     def _get_node(self) -> NodeLike | None:
         return None if self._node_weak_ref is None else self._node_weak_ref()
+
+
+def watch_clock(subscription: EndpointInfo, context: CoreContext) -> None:
+    """Have the log say it if nobody publishes simulated time; in the context's thread.
+
+    Whether a time has come is not known there: that depends on who spins.
+    """
+    graph = context.graph
+    ClockWatch(
+        *(subscription, graph, context.time_base),
+        heard=lambda: bool(graph.endpoints(EndpointKind.PUBLISHER, name=subscription.name)),
+    ).start()

@@ -13,8 +13,10 @@ from aionode.cli._support.lookup import ALIKE, close_to, likeness
 from aionode.engine.transport.network import network_from
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.std_msgs.msg import Int8, String
 from aionode.message import Message, int32
+from aionode.parameter import Parameter
 
 
 @pytest.fixture
@@ -57,6 +59,31 @@ async def test_two_types_do_not_communicate(
         "publisher of /talker and subscription of /listener do not communicate" in finding["text"]
     )
     assert "their types are std_msgs/msg/String and std_msgs/msg/Int8" in finding["text"]
+
+
+async def test_simulated_time_that_nobody_publishes_is_a_problem(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """The nodes stand still without a word."""
+    follower = node_factory("follower")
+    follower.set_parameters([Parameter("use_sim_time", value=True)])
+
+    status, (finding,) = await findings(tool, screen)
+
+    assert status == 1
+    assert (finding["severity"], finding["subject"]) == ("problem", "topic /clock")
+    assert "/follower: use_sim_time is true, and nobody publishes /clock" in finding["text"]
+    assert "aionode param set /follower use_sim_time false" in finding["remedy"]
+
+
+async def test_simulated_time_that_somebody_publishes_is_no_problem(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """However many follow it."""
+    node_factory("gazebo").create_publisher(Clock, "/clock", 1)
+    node_factory("follower").set_parameters([Parameter("use_sim_time", value=True)])
+
+    assert await findings(tool, screen) == (0, [])
 
 
 async def test_two_definitions_of_one_type_do_not_communicate(

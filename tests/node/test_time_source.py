@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING
 import pytest
 
 from aionode.clock import ClockType, Time
+from aionode.engine.context import Context
 from aionode.errors import TimeSourceChangedError
 from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.node import Node
 from aionode.parameter import Parameter
 from aionode.qos import QoSProfile
-from aionode.testing import settle
+from aionode.testing import ManualClock, settle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from aionode.engine.context import Context
 
 
 async def test_simulated_time_follows_the_clock_topic(context: Context, node: Node) -> None:
@@ -115,3 +114,53 @@ async def test_a_clock_message_that_holds_no_time_is_counted(
     (subscription,) = sim.subscriptions
     assert subscription.stats.errors == 2
     assert capsys.readouterr().err.count("/clock: ignored an invalid time") == 1
+
+
+async def test_the_log_says_it_if_nobody_publishes_simulated_time(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """The node would stand still without a word; a simulator may take some seconds to start."""
+    clock = ManualClock()
+    options = {"parameter_overrides": [Parameter("use_sim_time", value=True)]}
+    context = Context(transport="local", clock=clock)
+    async with Node("sim", context=context, **options):  # type: ignore[arg-type]  # one of many options
+        await clock.advance(4.9)
+        assert caplog.messages == []
+        await clock.advance(600)
+
+    (said,) = caplog.messages
+    assert "use_sim_time is true, and nobody publishes /clock" in said
+    assert "aionode bag play --clock" in said
+
+
+async def test_the_log_names_who_publishes_no_simulated_time(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Such as a simulator that begins paused."""
+    clock = ManualClock()
+    context = Context(transport="local", clock=clock)
+    async with Node("sim", context=context) as sim, Node("gazebo", context=context) as gazebo:
+        sim.set_parameters([Parameter("use_sim_time", value=True)])
+        gazebo.create_publisher(ClockMsg, "/clock", QoSProfile(depth=1))
+        await clock.advance(6)
+
+    assert ["/gazebo has published no time on /clock" in text for text in caplog.messages] == [True]
+
+
+@pytest.mark.parametrize("switched_off", [True, False])
+async def test_nothing_is_said_of_simulated_time_that_comes_or_is_not_wanted(
+    caplog: pytest.LogCaptureFixture, *, switched_off: bool
+) -> None:
+    """A first time of 0 is one."""
+    clock = ManualClock()
+    context = Context(transport="local", clock=clock)
+    async with Node("sim", context=context) as sim, Node("gazebo", context=context) as gazebo:
+        source = gazebo.create_publisher(ClockMsg, "/clock", QoSProfile(depth=1))
+        sim.set_parameters([Parameter("use_sim_time", value=True)])
+        if switched_off:
+            sim.set_parameters([Parameter("use_sim_time", value=False)])
+        else:
+            source.publish(ClockMsg())
+        await clock.advance(600)
+
+    assert caplog.messages == []

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import rclpy
+from aionode.clock import perf_ns
 from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.engine.transport.base import SampleInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInts
@@ -191,6 +192,19 @@ def test_a_clock_message_that_holds_no_time_is_left_out() -> None:
     for sec, nanosec in ((1, 0), (-1, 0), (5, 10**9), (2, 0)):
         take(Clock(clock=TimeMsg(sec=sec, nanosec=nanosec)))
         assert node.get_clock().now().nanoseconds == (2 if sec == 2 else 1) * 10**9
+
+
+@pytest.mark.usefixtures("initialised")
+def test_the_log_says_it_if_nobody_publishes_simulated_time(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Whether or not the node spins, as timers that stand still are all that would be seen."""
+    monkeypatch.setattr("aionode.engine.reports.simulated_time.WAIT_S", 0.0)
+    node = rclpy.create_node("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
+    ends_ns = perf_ns() + int(LIMIT_S * 1e9)
+    while not any("nobody publishes /clock" in text for text in caplog.messages):
+        assert perf_ns() < ends_ns
+        rclpy.spin_once(node, timeout_sec=0.01)
 
 
 @pytest.mark.usefixtures("initialised")

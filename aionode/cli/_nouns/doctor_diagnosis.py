@@ -17,7 +17,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Finding", "diagnose", "diagnose_names"]
 
-USED_BY_TOOLS = {"/rosout", "/parameter_events", "/clock"}
+CLOCK = "/clock"
+
+NAMED = 5
+"""Number of nodes that one finding names."""
+
+USED_BY_TOOLS = {"/rosout", "/parameter_events", CLOCK}
 """Topics that normally have publishers without subscriptions, or the reverse."""
 
 
@@ -44,6 +49,7 @@ def diagnose(nodes: Sequence[NodeInfo], endpoints: Sequence[EndpointInfo]) -> li
         *same_names(nodes),
         *same_servers(endpoints),
         *mismatches(endpoints),
+        *time_without_source(endpoints),
         *diagnose_names(endpoints),
     ]
     unique = list(dict.fromkeys(findings))
@@ -153,6 +159,27 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             subject_of(offering),
             f"{pair} communicate over rmw_zenoh, but would not over DDS: QoS {difference.reason}",
             "request no more than is offered, or offer more",
+        )
+
+
+def time_without_source(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
+    """Yield a finding if nodes follow simulated time, and nobody publishes it.
+
+    Nodes of ROS subscribe to it while their parameter `use_sim_time` is true.
+    """
+    of_clock = [endpoint for endpoint in endpoints if endpoint.name == CLOCK]
+    nodes = sorted({end.node.fully_qualified_name for end in of_clock})
+    if nodes and all(end.kind is EndpointKind.SUBSCRIPTION for end in of_clock):
+        named = ", ".join(nodes[:NAMED]) + (
+            f" and {len(nodes) - NAMED} more" if nodes[NAMED:] else ""
+        )
+        yield Finding(
+            "problem",
+            f"topic {CLOCK}",
+            f"{named}: use_sim_time is true, and nobody publishes {CLOCK}: their clocks stand at "
+            "0, and their timers wait",
+            "start the simulator, or `aionode bag play --clock`; or `aionode param set "
+            f"{nodes[0]} use_sim_time false`",
         )
 
 
