@@ -197,8 +197,18 @@ def attacks_on_gateway() -> list[Attack]:
         "read_nothing": ("20 clients of a gateway that ask for much and read nothing", "client"),
     }
     return [
-        Attack(name, who, program, pair(gateway=True), 8.0)
-        for program, (name, who) in tries.items()
+        *(
+            Attack(name, who, program, pair(gateway=True), 8.0)
+            for program, (name, who) in tries.items()
+        ),
+        Attack(
+            "commands to a gateway that stands still for 0.8 s again and again",
+            "client",
+            "drive_frozen",
+            pair(gateway=True),
+            8.0,
+            hurt=("talker",),
+        ),
     ]
 
 

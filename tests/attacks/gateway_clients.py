@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import itertools
 import json
+import os
+import signal
 import socket
 import struct
 import time
@@ -43,8 +45,8 @@ def begun() -> None:
     print("begun", flush=True)  # noqa: T201 - a program
 
 
-def port_of(pids: Sequence[int]) -> int:
-    """Return the port of the gateway: that which says by HTTP that it is well."""
+def gateway_of(pids: Sequence[int]) -> tuple[int, int]:
+    """Return the process and the port of the gateway: that which says by HTTP that it is well."""
     for pid in pids:
         for each in psutil.Process(pid).net_connections(kind="tcp"):
             if each.status != psutil.CONN_LISTEN:
@@ -53,13 +55,13 @@ def port_of(pids: Sequence[int]) -> int:
                 url = f"http://127.0.0.1:{each.laddr.port}/healthz"
                 with urllib.request.urlopen(url, timeout=1.0) as answer:  # of this host
                     if b"ok" in answer.read():
-                        return int(each.laddr.port)
+                        return pid, int(each.laddr.port)
     raise RuntimeError("none of the processes has a gateway")
 
 
 def against_gateway(attack: Attack, seconds: float, pids: Sequence[int]) -> int:
     """Run an attack against the port of the gateway."""
-    port = port_of(pids)
+    _, port = gateway_of(pids)
     begun()
     return attack(port, time.monotonic() + seconds)
 
@@ -260,6 +262,37 @@ def drive_late(port: int, until: float) -> int:
     return tries
 
 
+def drive_frozen(seconds: float, pids: Sequence[int]) -> int:
+    """Stop the gateway again and again for 0.8 s, and drive only in the first half of that.
+
+    Raises:
+        RuntimeError: a command has reached the wheels afterwards.
+    """
+    pid, port = gateway_of(pids)
+    begun()
+    url = f"ws://127.0.0.1:{port}"
+    until, tries = time.monotonic() + seconds, 0
+    topic = {"topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
+    with connect(url, proxy=None) as driver, connect(url, proxy=None) as wheels:
+        wheels.send(json.dumps({"op": "subscribe", **topic}))
+        time.sleep(0.5)
+        while time.monotonic() < until:
+            os.kill(pid, signal.SIGSTOP)
+            try:
+                for _ in range(20):
+                    command = {"linear": {"x": 1.0}}
+                    driver.send(json.dumps({"op": "publish", **topic, "msg": command}))
+                    tries += 1
+                    time.sleep(0.02)
+                time.sleep(0.4)
+            finally:
+                os.kill(pid, signal.SIGCONT)
+            with suppress(TimeoutError):
+                wheels.recv(timeout=0.7)
+                raise RuntimeError("a command from a standstill moves the wheels")
+    return tries
+
+
 GATEWAY_PROGRAMS = {
     attack.__name__: partial(against_gateway, attack)
     for attack in (
@@ -271,4 +304,4 @@ GATEWAY_PROGRAMS = {
         drive_twice,
         drive_late,
     )
-}
+} | {"drive_frozen": drive_frozen}

@@ -131,6 +131,7 @@ class Attack(msgspec.Struct, frozen=True):
         short: Whether it is part of the ordinary tests.
         around: What has to be there before its processes start.
         env: Variables of the attacker's environment.
+        hurt: The victims whose own loops it stops.
     """
 
     name: str
@@ -145,6 +146,7 @@ class Attack(msgspec.Struct, frozen=True):
     bare: bool = False
     around: contextlib.AbstractContextManager[None] = contextlib.nullcontext()
     env: dict[str, str] = {}
+    hurt: tuple[str, ...] = ()
 
     @property
     def lasts_s(self) -> float:
@@ -154,7 +156,7 @@ class Attack(msgspec.Struct, frozen=True):
     async def run(self, busy: asyncio.Semaphore) -> Sequence[tuple[Attack, Found | Exception]]:
         """Run once."""
         strike = Strike(self)
-        case = Case(self.name, self.roles, strike, around=self.around)
+        case = Case(self.name, self.roles, strike, self.hurt, around=self.around)
         try:
             outcome = await run_case(case, busy)
         except Exception as error:  # noqa: BLE001 - it is told

@@ -22,9 +22,10 @@ ALLOWED_S = 0.2
 
 Strike = Callable[["Play"], Awaitable[None]]
 
-Switch = Literal["lease", "silence", "lost", "end", "signals"]
+Switch = Literal["lease", "silence", "lost", "end", "signals", "gateway"]
 """A mechanism that stops the wheels: the lease of the mover, ``on_silence`` of the wheels,
-``on_client_lost`` of the server, what a node does at its end, aionode's handling of signals."""
+``on_client_lost`` of the server, what a node does at its end, aionode's handling of signals, the
+rules of a gateway for commands."""
 
 
 class Stopped(msgspec.Struct):
@@ -158,11 +159,13 @@ class Motion(msgspec.Struct, frozen=True):
             case "silence":
                 wheel = msgspec.structs.replace(wheel, silence_sec=0.0)
             case "lost":
-                wheel = msgspec.structs.replace(wheel, lost_sec=0.0)
+                wheel = msgspec.structs.replace(wheel, lost_sec=0.0, continues=True)
             case "end":
                 mover = msgspec.structs.replace(
                     mover, asks="goal left" if wheel.action else "publisher"
                 )
+            case "gateway":
+                mover = msgspec.structs.replace(mover, client="lax")
             case "signals":
                 mover = msgspec.structs.replace(mover, old_signals=True)
         role = msgspec.structs.replace(self.mover, mover=mover)

@@ -16,15 +16,17 @@ from tests.faults.motion.goings import (
     Strike,
     at_once,
     browser_leaves,
+    drives_into_standstill,
     frozen,
     hung_up,
     interrupted_twice,
     killed,
+    killed_beside_another,
     run_into,
     signalled,
 )
 from tests.faults.motion.ros_cases import ros_motions
-from tests.faults.motion.words import Mover, Wheel
+from tests.faults.motion.words import Mover, Way, Wheel
 from tests.faults.roles import Role
 
 __all__ = ["motions"]
@@ -48,9 +50,9 @@ def linked(way: str) -> Place:
     return Place(way, "On one host", way, within, roles=(ROUTER,) * (way == "router"))
 
 
-def mover(**options: Any) -> Role:
+def mover(topic: str = "", **options: Any) -> Role:
     """Return a process that moves wheels; see `Mover`."""
-    return Role("", mover=Mover("", **options))
+    return Role("", mover=Mover(topic, **options))
 
 
 TOPIC = Wheel("")
@@ -414,6 +416,66 @@ def cables() -> Iterator[Motion]:
                 )
 
 
+GATEWAY = Role("gateway", command=("-m", "tests.faults.motion.gateway"))
+WAYS: tuple[Way, ...] = ("rosbridge", "foxglove json", "foxglove cdr", "http")
+
+
+def gateways() -> Iterator[Motion]:
+    """Yield what happens to the wheels that clients of a gateway move."""
+
+    def place(name: str, *roles: Role) -> Place:
+        return Place(name, "Through a gateway", "longest", roles=(GATEWAY, *roles))
+
+    by_lease: dict[str, Any] = {"wheel": TOPIC, "switches": ("gateway",), "limit_s": TTL_S}
+    together = place("gateway")
+    for way in WAYS:
+        yield case(
+            together,
+            f"a page over {way}",
+            "computes NaN from some time on",
+            "a lease of the gateway, which refuses NaN",
+            mover=mover(program="page", asks="publisher", way=way),
+            strike=run_into("nan"),
+            **by_lease,
+        )
+    goal_ways: tuple[Way, ...] = ("rosbridge", "http")
+    for way in goal_ways:
+        yield case(
+            together,
+            f"a page with a goal over {way}",
+            "is killed",
+            "the gateway, at a server of aionode without a cancel_callback",
+            mover=mover(program="page", asks="goal", way=way),
+            wheel=Wheel("", action=True, accepts=False),
+            strike=killed,
+            switches=("lost",),
+            limit_s=TTL_S,
+            ends=True,
+        )
+        yield case(
+            place(f"gateway that stands still, {way}"),
+            f"a page over {way}",
+            "lets go, and drives for 2 s of 3 in which the gateway is frozen",
+            "a lease of the gateway, which passes on nothing old",
+            mover=mover(program="page", asks="publisher", way=way),
+            strike=drives_into_standstill,
+            lasts_s=4.0,
+            **by_lease,
+        )
+    rival = mover(topic="/motion0", program="page", asks="publisher", way="http")
+    yield case(
+        place("gateway with two", msgspec.structs.replace(rival, name="rival")),
+        "a program over http, beside another with the same token,",
+        "is killed",
+        "a lease of the gateway, which one of them holds",
+        mover=mover(program="page", asks="publisher", way="http"),
+        strike=killed_beside_another,
+        returns=True,
+        ends=True,
+        **by_lease,
+    )
+
+
 def beyond(hosts: TwoHosts, role: Role) -> Role:
     """Return a role on the robot if it is wheels, else on the other host, which names the robot."""
     if role.wheels:
@@ -445,6 +507,7 @@ def motions() -> list[Motion]:
     return [
         *(motion for place in places for kind in kinds for motion in kind(place)),
         *limits(places[0]),
+        *gateways(),
         *cables(),
         *ros_motions(),
     ]

@@ -14,10 +14,12 @@ __all__ = [
     "Strike",
     "at_once",
     "browser_leaves",
+    "drives_into_standstill",
     "frozen",
     "hung_up",
     "interrupted_twice",
     "killed",
+    "killed_beside_another",
     "run_into",
     "signalled",
 ]
@@ -119,3 +121,25 @@ async def browser_leaves(play: Play) -> None:
     assert play.browser is not None
     play.struck()
     play.browser.transport.abort()
+
+
+async def drives_into_standstill(play: Play) -> None:
+    """Let it let go, and drive again for 2 s of 3 in which its gateway stands still."""
+    gateway = play.stage.children["gateway"]
+    play.struck()
+    play.child.tell("quiet")
+    await asyncio.sleep(1.0)
+    gateway.send(signal.SIGSTOP)
+    play.child.tell("move")
+    await asyncio.sleep(2.0)
+    play.child.tell("quiet")
+    await asyncio.sleep(1.0)
+    gateway.send(signal.SIGCONT)
+
+
+async def killed_beside_another(play: Play) -> None:
+    """Have another program of the same identity want to drive as well, and kill it then."""
+    play.stage.children["rival"].tell("move")
+    await asyncio.sleep(1.0)
+    play.struck()
+    play.child.send(signal.SIGKILL)

@@ -214,7 +214,11 @@ def main() -> None:
     if role.mover.old_signals:
         old_signals()
     reporter = Reporter()
-    if role.mover.program == "uvicorn":
+    if role.mover.program == "page":
+        from tests.faults.motion.gateway import drive  # it needs no node
+
+        drive(role.mover, reporter)
+    elif role.mover.program == "uvicorn":
         from tests.faults.motion.web import serve  # what it imports is not everywhere
 
         serve(role.mover, lambda context: MoverNode(role, reporter, context), reporter.go_on())

@@ -86,6 +86,10 @@ class Wheels:
         options: dict[str, Any] = {}
         if wheel.lost_sec:
             options = {"on_client_lost": "cancel", "client_lost_sec": wheel.lost_sec}
+        elif wheel.continues:
+            options = {"on_client_lost": "continue"}
+        if wheel.accepts:
+            options["cancel_callback"] = lambda _: CancelResponse.ACCEPT
 
         async def drive(goal: Any) -> Fibonacci.Result:
             by = int(goal.request.order)
@@ -101,6 +105,5 @@ class Wheels:
             Fibonacci,
             wheel.topic,
             drive,
-            cancel_callback=lambda _: CancelResponse.ACCEPT,
             **options,
         )

@@ -11,14 +11,18 @@ from typing import Literal
 
 import msgspec
 
-__all__ = ["Asks", "Handed", "Mover", "Program", "What", "Wheel"]
+__all__ = ["Asks", "Handed", "Mover", "Program", "Way", "What", "Wheel"]
 
 Asks = Literal["lease", "publisher", "finally", "goal", "goal left"]
 """By what it asks for motion: a lease of a publisher, a plain publisher, one whose ``finally``
 publishes a last message, a goal that it awaits, or one that it does not await."""
 
-Program = Literal["run", "asyncio", "uvicorn"]
-"""How it runs: by `aionode.run`, `asyncio.run`, or in a route of FastAPI."""
+Program = Literal["run", "asyncio", "uvicorn", "page"]
+"""How it runs: by `aionode.run`, `asyncio.run`, in a route of FastAPI, or as a client of a gateway.
+"""
+
+Way = Literal["rosbridge", "foxglove json", "foxglove cdr", "http"]
+"""By which way in it is a client of a gateway."""
 
 What = Literal["move", "stop", "silence"]
 """A command to move; a command to stop, or the end of a goal; a call of ``on_silence``."""
@@ -41,6 +45,8 @@ class Mover(msgspec.Struct, frozen=True):
             ``finally`` does before it publishes.
         old_signals: Whether SIGHUP ends it without cleanup, and so does a second signal, however
             soon it comes: what aionode's handling of signals is compared with.
+        way: By which way in it drives through a gateway.
+        client: Who it is there, and its token.
     """
 
     topic: str
@@ -54,6 +60,8 @@ class Mover(msgspec.Struct, frozen=True):
     graceful_s: int | None = 1
     cleans_up_s: float = 0.0
     old_signals: bool = False
+    way: Way = "rosbridge"
+    client: str = "page"
 
 
 class Wheel(msgspec.Struct, frozen=True):
@@ -63,7 +71,9 @@ class Wheel(msgspec.Struct, frozen=True):
         topic: The topic or the action.
         action: Whether it obeys goals; else messages.
         silence_sec: After which it is told of silence; 0 if it does not ask.
-        lost_sec: After which it takes the client of a goal for lost; 0 if goals go on without.
+        lost_sec: After which it takes the client of a goal for lost; 0 if it does not look.
+        accepts: Whether its server of goals has a callback that accepts to cancel them.
+        continues: Whether it says that the goals of lost clients go on.
         transient: Whether it asks for what its publishers have kept.
     """
 
@@ -71,6 +81,8 @@ class Wheel(msgspec.Struct, frozen=True):
     action: bool = False
     silence_sec: float = 0.0
     lost_sec: float = 0.0
+    accepts: bool = True
+    continues: bool = False
     transient: bool = False
 
 
