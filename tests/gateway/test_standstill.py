@@ -11,7 +11,7 @@ import pytest
 
 from aionode.gateway import Gateway, Policy
 from aionode.gateway._gateway import REFUSALS_PER_SEC, paced
-from aionode.gateway._standstill import Standstills
+from aionode.gateway.session.standstill import Standstills
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.testing import ManualClock
 from tests.gateway.test_broken_connections import PONG, frame, ping_of

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import InterfaceNotFoundError
-from aionode.gateway._goal_owners import GoalOwners
-from aionode.gateway._standstill import Standstills
 from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.command import Commands
 from aionode.gateway.session.feed import Feeds
+from aionode.gateway.session.goal_owners import GoalOwners
 from aionode.gateway.session.sharing import Shared
+from aionode.gateway.session.standstill import Standstills
 
 if TYPE_CHECKING:
     from aionode.gateway.policy.identity import Identity
