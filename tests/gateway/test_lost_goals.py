@@ -51,6 +51,11 @@ def cancels(bench: Bench) -> list[dict[str, Any]]:
     return [line for line in map(json.loads, bench.lines) if line["action"] == "cancel"]
 
 
+def fail(_: object) -> CancelResponse:
+    """Decide nothing."""
+    raise RuntimeError("the arm does not answer")
+
+
 @pytest.mark.parametrize(
     "options",
     [
@@ -58,8 +63,9 @@ def cancels(bench: Bench) -> list[dict[str, Any]]:
         {"cancel_callback": lambda _: CancelResponse.ACCEPT},
         {"on_client_lost": "cancel"},
         {"on_client_lost": "cancel", "cancel_callback": lambda _: CancelResponse.REJECT},
+        {"on_client_lost": "cancel", "cancel_callback": fail},
     ],
-    ids=["by default", "a callback", "on_client_lost", "on_client_lost beside a callback"],
+    ids=["by default", "a callback", "on_client_lost", "beside one that rejects", "or fails"],
 )
 async def test_a_server_of_aionode_ends_the_goal_of_a_lost_client(
     bench: Bench, options: dict[str, Any], caplog: pytest.LogCaptureFixture
@@ -77,15 +83,19 @@ async def test_a_server_of_aionode_ends_the_goal_of_a_lost_client(
 
 @pytest.mark.parametrize(
     "options",
-    [{"on_client_lost": "continue"}, {"cancel_callback": lambda _: CancelResponse.REJECT}],
-    ids=["a server as in rclpy", "a callback that rejects"],
+    [
+        {"on_client_lost": "continue"},
+        {"cancel_callback": lambda _: CancelResponse.REJECT},
+        {"cancel_callback": fail},
+    ],
+    ids=["a server as in rclpy", "a callback that rejects", "a callback that fails"],
 )
 async def test_a_goal_that_goes_on_is_said(
     bench: Bench, options: dict[str, Any], caplog: pytest.LogCaptureFixture
 ) -> None:
     """Something moves that nobody watches: who operates the robot has to learn of it."""
     arm = Arm(bench, **options)
-    await settle()
+    await bench.advance(5.0)  # at time 0 a warning that is limited in rate is held back
     await lose_client(bench, bench.session("operator"))
 
     assert arm.moves == 1

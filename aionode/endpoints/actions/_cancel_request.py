@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints.actions._common import uuid_message
 from aionode.engine.rules.goal import CancelCode, lost_id
-from aionode.errors import EntityDestroyedError, ServiceUnavailableError
+from aionode.errors import EntityDestroyedError, ServiceError, ServiceUnavailableError
 
 if TYPE_CHECKING:
     from aionode.endpoints.actions._client_goal import ClientGoalHandle
@@ -109,6 +109,9 @@ class CancelRequest:
         elif isinstance(error, ServiceUnavailableError):
             if not self._client.service_is_ready():
                 self._fail(error)
+        elif error is not None and self._is_lost:  # the callback has failed, and decided nothing
+            rejected = self._client.srv_type.Response(return_code=CancelCode.REJECTED)
+            self._take_response(rejected)
         elif error is not None:
             self._fail(error)
             self.end()
@@ -184,9 +187,12 @@ class CancelRequest:
 
 
 def is_rejected(answer: asyncio.Future[Any]) -> bool:
-    """Return whether the server has rejected a cancel request."""
-    if answer.cancelled() or answer.exception() is not None:
+    """Return whether the server has rejected a cancel request, or its callback has failed."""
+    if answer.cancelled():
         return False
+    error = answer.exception()
+    if error is not None:
+        return isinstance(error, ServiceError) and not isinstance(error, ServiceUnavailableError)
     return bool(answer.result().return_code == CancelCode.REJECTED)
 
 

@@ -15,6 +15,9 @@ __all__ = ["GoalOwners"]
 MOST_GOALS: Final = 10_000
 """Goals whose owners are remembered, the newest ones."""
 
+WARN_SEC: Final = 1.0
+"""The time between two warnings, in seconds; the audit log has a line for each goal."""
+
 GOES_ON: Final = "cancel was rejected: the goal goes on"
 
 
@@ -63,7 +66,8 @@ class GoalOwners:
         who = "its client" if owned is None else owned.identity.name
         self._node.get_logger().warning(
             f"gateway: {action}: {who} has left, and {GOES_ON} ({goal_id}); give its server a "
-            "cancel callback that accepts"
+            "cancel callback that accepts",
+            throttle_duration_sec=WARN_SEC,
         )
         if owned is not None:
             self._audit.note(
