@@ -18,10 +18,11 @@ from aionode.engine.context import Context
 from aionode.engine.wire import cdr
 from aionode.errors import RefusedError
 from aionode.gateway import Gateway, Policy
-from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
+from aionode.gateway.policy.field_limits import OutOfLimitsError, check_finite
+from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
 from aionode.interfaces.nav_msgs.srv import GetPlan
 from aionode.interfaces.sensor_msgs.msg import LaserScan
-from aionode.interfaces.std_msgs.msg import Float64
+from aionode.interfaces.std_msgs.msg import Float64, Header
 from aionode.interfaces.trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from aionode.interfaces.turtlesim.action import RotateAbsolute
 from aionode.node import Node
@@ -131,6 +132,16 @@ async def test_numbers_in_arrays_and_nested_messages_count(bench: Bench) -> None
                 "/arm", JointTrajectory(points=[JointTrajectoryPoint(), point]),
                 "trajectory_msgs/msg/JointTrajectory",
             )  # fmt: skip
+
+
+def test_a_text_that_says_null_is_no_number() -> None:
+    """Numbers are looked for as JSON first, in which they are null."""
+    for text in ("null", "\udcff"):
+        check_finite(TwistStamped(header=Header(frame_id=text)))
+        with pytest.raises(OutOfLimitsError, match=r"twist\.linear\.x is nan"):
+            check_finite(
+                TwistStamped(header=Header(frame_id=text), twist=Twist(linear=Vector3(x=math.nan)))
+            )
 
 
 async def test_a_scan_may_have_infinities_unless_it_commands(bench: Bench) -> None:

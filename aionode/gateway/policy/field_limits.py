@@ -6,7 +6,7 @@ import math
 from array import array
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
-from typing import Any, Literal
+from typing import Any, Final, Literal
 
 import msgspec
 
@@ -41,7 +41,7 @@ def check_finite(message: Any) -> None:
         OutOfLimitsError: there is one; its path is named.
     """
     if isinstance(message, Message):
-        found = next(not_finite_in(message), None)
+        found = next(not_finite_in(message), None) if may_not_be_finite(message) else None
     else:  # the value of a parameter
         found = next((("value", each) for each in not_finite(message["value"])), None)
     if found is not None:
@@ -50,6 +50,28 @@ def check_finite(message: Any) -> None:
             f"{path} is {number}; the robot takes finite numbers only, unless a rule of the policy "
             "for this name has finite = false"
         )
+
+
+def may_not_be_finite(message: Message) -> bool:
+    """Return whether a message may have a number that is NaN or infinite.
+
+    A walk over 100 000 numbers would hold up the loop for a tenth of a second. As JSON, which is
+    written twenty times faster, those numbers are null; a text may say so as well.
+    """
+    if not floating(type(message)):
+        return False
+    try:
+        return b"null" in ENCODER.encode(message)
+    except UnicodeError:  # a text that is no UTF-8
+        return True
+
+
+def numbers_only(value: Any) -> object:
+    """Return the floating-point numbers of an array of numpy for JSON; nothing of other arrays."""
+    return value.tolist() if value.dtype.kind == "f" else []
+
+
+ENCODER: Final = msgspec.json.Encoder(enc_hook=numbers_only)
 
 
 def not_finite_in(message: Message) -> Iterator[tuple[str, float]]:
