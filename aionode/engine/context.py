@@ -17,6 +17,7 @@ import random
 import threading
 import uuid
 import weakref
+from collections import Counter
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, TypeVar
 
 from aionode._distribution import NO_TYPE_HASH, choose_distribution
@@ -524,6 +525,16 @@ class Context:
     def _current_usage(self) -> Usage:
         """Tells which of the current arguments the nodes have used."""
         return self._command_line if self._usage is None else self._usage
+
+    @property
+    def dropped(self) -> Mapping[str, int]:
+        """How many things of other processes were dropped or refused, by the reason.
+
+        Such as ``malformed``; the log has said what they were. What the QoS of a subscription lets
+        go is in its `stats`.
+        """
+        drops = {id(drops): drops for drops in (each.drops for each in self._transports)}
+        return sum((each.totals() for each in drops.values()), Counter())
 
     @property
     def transports(self) -> tuple[Transport, ...]:

@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, Final, Literal, NamedTuple, Protocol
 
 import msgspec
 
+from aionode.engine.transport.drops import Drops
+
 if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Set as AbstractSet
@@ -405,6 +407,11 @@ class Transport(ABC):
         an endpoint: the process is about to end, or to be suspended. It may take until `ends_ns`,
         by `perf_ns`.
         """
+
+    @property
+    def drops(self) -> Drops:
+        """What was dropped of what others send."""
+        return Drops()
 
     async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # no other process
         """Wait until the graph of all reachable peers is known.

@@ -19,16 +19,18 @@ from aionode._process.concurrency import checkpoint
 from aionode.content_filter import ContentFilterOptions
 from aionode.endpoints.subscription import MessageInfo
 from aionode.engine.context import Context
+from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.link import _listener as listener
 from aionode.engine.transport.link import _subscription as subscription
 from aionode.engine.transport.link._continuation import seal
-from aionode.engine.transport.link._protocol import RetransmitDone
+from aionode.engine.transport.link._protocol import Kind, RetransmitDone
 from aionode.engine.transport.link._subscription import LinkReader
 from aionode.engine.transport.link._transport import LinkTransport
 from aionode.engine.wire import cdr
 from aionode.engine.wire._key_expression import data_key
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import ConfigurationError, ServiceUnavailableError
+from aionode.graph import EndpointKind
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.sensor_msgs.msg import Image
@@ -262,14 +264,38 @@ async def test_malformed_data_ends_the_link_and_not_the_stream(
     assert len(garbage) < 40 or "expected a frame" in caplog.text
 
 
-async def test_retransmissions_that_cannot_be_read_are_reported_once(
+async def test_what_a_link_brings_and_nobody_can_read_has_a_number_and_a_line(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """The other process may have another definition of the type: the reader has to be told."""
+    async with two_nodes() as nodes:
+        numbers = Counting(nodes)
+        nodes.b.create_service(AddTwoInts, "add", lambda request, response: response)
+        client: Any = nodes.a.create_client(AddTwoInts, "add")
+        await client.wait_for_service()
+        await numbers.until_linked()
+        link, bad = link_of(nodes.a), b"\0\1\0\0x"
+        server = gid_of(nodes.b, "/add", EndpointKind.SERVER)
+        asker = gid_of(nodes.a, "/add", EndpointKind.CLIENT)
+        link.send_data(int(Kind.DATA), 10_000, 0, gid_of(nodes.a, "/n"), bad)
+        link.send_data(int(Kind.REQUEST), 1, 0, asker, server + bad)
+        dropped = manager_of(nodes.b).drops.of(Drop.MALFORMED)
+        await until(lambda: len(dropped) == 2)
+
+        assert dropped == {"/n": 1, "/add": 1}
+        assert nodes.b.context.dropped == {"malformed": 2}
+        assert numbers.subscription.stats.errors == 1
+    assert sum("unknown form" in text for text in caplog.messages) == 2
+
+
+async def test_retransmissions_that_cannot_be_read_are_reported_a_few_times(
     folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Any process on the network may send any number of them."""
     async with quiet_node("one") as node:
         for _ in range(500):
             manager_of(node).on_retransmit(b"no frame at all" * 10)
-    assert sum("retransmitted" in text for text in caplog.messages) == 1
+    assert sum("retransmitted" in text for text in caplog.messages) == 3  # 1, 10 and 100
 
 
 async def test_unknown_clients_of_the_socket_get_no_link_and_stop_nothing(folder: Path) -> None:

@@ -8,6 +8,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Final
 
 from aionode.clock import MachineTime
+from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.link._connection import Connection, flush
 from aionode.engine.transport.link._continuation import STOPS, LinkSecrets, seal
 from aionode.engine.transport.link._endpoint_table import EndpointTable, communicate_by_link
@@ -98,6 +99,7 @@ class LinkManager:
 
     def __init__(self, participant: str, domain_id: int, peer_directory: PeerDirectory) -> None:
         self.participant = participant
+        self.drops = Drops(logger)
         self.pool = BufferPool()
         self.now_ns = MachineTime().system_ns
         # Endpoints: added when they are created, removed when they are closed.
@@ -129,7 +131,6 @@ class LinkManager:
         self._ending: dict[tuple[Connection, bytes], LinkSendQueue] = {}
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
-        self._malformed = 0  # retransmitted batches that could not be read
 
     # Lifetime
 
@@ -565,13 +566,7 @@ class LinkManager:
         try:
             sender, frames = self._secrets.unseal(data)
         except FrameError as error:
-            self._malformed += 1
-            if self._malformed == 1:
-                logger.warning(
-                    "a batch of retransmitted messages was ignored: %s; further ones are counted "
-                    "without a warning",
-                    error,
-                )
+            self.drops.note(Drop.MALFORMED, "links", f"a batch of retransmitted messages ({error})")
             return
         if any(frame.kind != Kind.STOP for frame in frames):  # the link has ended
             self._read_until_eof(sender)

@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.engine.transport.content_filters import ContentFilters
+    from aionode.engine.transport.drops import Drops
     from aionode.engine.transport.link._connection import Connection
     from aionode.engine.transport.link._send_queue import LinkSendQueue
     from aionode.engine.transport.link._shared_memory import BufferPool
@@ -20,10 +21,12 @@ class LinkRegistry(Protocol):
     """The links of one context, as its endpoints see them.
 
     Attributes:
+        drops: What is dropped of what others send.
         pool: Shared memory for large payloads.
         now_ns: Returns the system time, in nanoseconds since 1970.
     """
 
+    drops: Drops
     pool: BufferPool
     now_ns: Callable[[], int]
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.engine.transport.base import Registration, Request, Requester, SampleInfo
+from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.link._protocol import GID_SIZE, Cancel, End, Fail, Kind
 from aionode.engine.wire import cdr
 from aionode.errors import DecodeError, FrameError, ServiceError
@@ -71,6 +72,7 @@ class LinkServer(Registration):
         try:
             message = cdr.decode(self.srv_type.Request, payload)
         except DecodeError as error:
+            self._registry.drops.note(Drop.MALFORMED, self.endpoint.name, f"a request ({error})")
             connection.send(Fail(frame.gid, frame.sequence, "DecodeError", str(error)))
             return
         request = LinkRequest(message, sample_info, connection, self)
@@ -168,6 +170,10 @@ class LinkRequester(Requester):
         self._servers = 0
         self._connections: list[tuple[bytes, Connection]] = []
         self._reaches_all = False
+
+    def note_malformed(self, problem: str) -> None:
+        """Count a response that cannot be read."""
+        self._registry.drops.note(Drop.MALFORMED, self.endpoint.name, problem)
 
     @property
     def servers(self) -> int:
@@ -281,6 +287,7 @@ class LinkCall:
         try:
             response = cdr.decode(self._requester.srv_type.Response, payload)
         except DecodeError as error:
+            self._requester.note_malformed(f"a response ({error})")
             if self._finish():
                 self._reply_to.fail(ServiceError(service, f"the response is unreadable: {error}"))
             return

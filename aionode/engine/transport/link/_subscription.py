@@ -26,6 +26,7 @@ from collections import defaultdict, deque
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from aionode.engine.transport.base import NOT_INLINE_NS, ReaderRegistration, Registration
+from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.link._endpoint_table import can_link
 from aionode.engine.transport.link._protocol import Close, Credit, Kind, Open, Switched
 from aionode.engine.wire import cdr
@@ -261,7 +262,7 @@ class RemotePublisher:
         try:
             msg = self._decode(payload)
         except DecodeError as error:
-            self.reader.reject(error)
+            self._reject(error)
             return
         if self.route is LINK and not self._held and not self._keep_all:
             if sequence > self.last:
@@ -315,6 +316,10 @@ class RemotePublisher:
         if self.route is not before or self.waits:
             self._route_changed()
 
+    def _reject(self, error: DecodeError) -> None:
+        self._registry.drops.note(Drop.MALFORMED, self.reader.endpoint.name, str(error))
+        self.reader.reject(error)
+
     def from_other_route(self, payload: Data, frame: Frame) -> None:
         """Take what a link should have brought: its broken end left it, or the loop that writes."""
         if frame.kind not in (Kind.DATA, Kind.STOP):
@@ -322,7 +327,7 @@ class RemotePublisher:
         try:
             msg = self._decode(payload)
         except DecodeError as error:
-            self.reader.reject(error)
+            self._reject(error)
             return
         if frame.kind == Kind.STOP:
             self._stop(Message(msg, frame.sequence, frame.source_ns, 0))

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         Serve,
         Writer,
     )
+    from aionode.engine.transport.drops import Drops
     from aionode.engine.transport.link._registry import PeerDirectory
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
@@ -62,6 +63,7 @@ class LinkTransport(Transport):
     ) -> None:
         self.zenoh = zenoh
         self.manager = LinkManager(participant, domain_id, peer_directory)
+        self.manager.drops = zenoh.drops
         if time_base is not None:
             self.manager.now_ns = time_base.system_ns
         self._peer_directory = peer_directory
@@ -112,6 +114,11 @@ class LinkTransport(Transport):
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until every context that can be reached has announced its endpoints."""
         return await self.zenoh.all_known(quiet_s)
+
+    @property
+    def drops(self) -> Drops:
+        """What is dropped of what others send, over links or not."""
+        return self.manager.drops
 
     def silent_processes(self) -> list[str]:
         """Return who does not answer."""

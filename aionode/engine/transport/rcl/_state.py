@@ -8,6 +8,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.engine.transport.base import Registration
+from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.loop_waker import LoopWaker
 from aionode.engine.transport.rcl._bindings import load, middleware_problem
 from aionode.engine.transport.rcl._qos import to_rmw
@@ -59,8 +60,7 @@ class RclState:
         self.watcher: Any = None
         self.own_gids: set[bytes] = set()
         self.own_prefixes: set[bytes] = set()
-        self.malformed: Counter[str] = Counter()
-        self.refused: Counter[str] = Counter()
+        self.drops = Drops(logger)
         self._context: Any = None
         self._nodes: dict[NodeInfo, Any] = {}  # with their handles, None while it is closed
         self._declarations: dict[RclDeclaration, None] = {}
@@ -188,22 +188,13 @@ class RclState:
         return gid in self.own_gids or gid[:PREFIX_BYTES] in self.own_prefixes
 
     def note_refused(self, topic: str) -> None:
-        """Log why the last message on a topic was refused; only the first one of each topic."""
+        """Count a message that the middleware has not taken, and log its reason."""
         reason = "" if self.rcl is None else self.rcl.error()
-        self.refused[topic] += 1
-        if self.refused[topic] == 1:
-            logger.warning("%s: a message was not sent: %s", topic, reason)
+        self.drops.note(Drop.NOT_SENT, topic, reason)
 
     def note_malformed(self, name: str, problem: str) -> None:
-        """Count a malformed message; the first of each name is logged."""
-        self.malformed[name] += 1
-        if self.malformed[name] == 1:
-            logger.warning(
-                "%s: a message in an unknown form came: %s; it was left out, and more of it is "
-                "only counted",
-                name,
-                problem,
-            )
+        """Count a malformed message, and log it as `Drops` does."""
+        self.drops.note(Drop.MALFORMED, name, problem)
 
 
 class RclDeclaration(Registration):

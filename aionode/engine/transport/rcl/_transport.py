@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Registration, Transport
+from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.rcl._graph_watcher import RclGraphWatcher
 from aionode.engine.transport.rcl._participants import lacks_participants
 from aionode.engine.transport.rcl._services import RclRequester, RclServer
@@ -72,7 +73,12 @@ class RclTransport(Transport):
     @property
     def malformed(self) -> Counter[str]:
         """The number of messages in no known form, for each topic and service."""
-        return self._state.malformed
+        return self.drops.of(Drop.MALFORMED)
+
+    @property
+    def drops(self) -> Drops:
+        """What is dropped of what others send."""
+        return self._state.drops
 
     @property
     def middleware(self) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import asyncio
 import logging
 from abc import abstractmethod
-from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
@@ -15,6 +14,7 @@ import zenoh
 from aionode.clock import MachineTime, perf_ns
 from aionode.engine.transport.base import Registration
 from aionode.engine.transport.content_filters import ContentFilters
+from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 from aionode.engine.transport.network import GRAPH_BYTES, QUEUE_BYTES
 from aionode.engine.transport.send_thread import SendThread
@@ -31,7 +31,6 @@ from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
 from aionode.engine.transport.zenoh.session.settings import FLUSH_S
 from aionode.engine.wire._key_expression import data_key
 from aionode.engine.wire._liveliness import endpoint_token, gid_of
-from aionode.errors import escaped
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
@@ -113,8 +112,7 @@ class SessionState:
         burst: Limits what the loop puts at once for readers that do not acknowledge.
         acknowledgements: The acknowledgements between contexts of aionode.
         lingering: Destroyed publishers with messages that are not acknowledged; an ordered set.
-        malformed: How many malformed samples came on each key.
-        lies: How often something was said in the name of another, by topic or context.
+        drops: What is dropped of what others send.
         own_gids: The gids of this context's publishers, lingering ones included.
         cancellations: The requests that clients have given up.
         assertions: The liveliness that publishers assert.
@@ -140,6 +138,7 @@ class SessionState:
     ) -> None:
         self.queue_bytes = queue_bytes
         self.request_room = RequestRoom(queue_bytes)
+        self.drops = Drops(logger)
         self.participant = participant
         self.domain_id = domain_id
         # Threads that send read it, and only the loop sets it: each of them takes it once, and
@@ -148,7 +147,7 @@ class SessionState:
         self.graph: Graph | None = None
         self.waker = LoopWaker() if waker is None else waker
         self.connections = Connections(self.waker)
-        self.announced = AnnouncedLimit(graph_bytes, self.connections.kinds)
+        self.announced = AnnouncedLimit(graph_bytes, self.connections.kinds, self.drops)
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
         self.control_messages = ControlMessages(self.bulk, queue_bytes)
@@ -162,8 +161,6 @@ class SessionState:
             self.control_messages,
         )
         self.lingering: dict[LingeringWriter, None] = {}
-        self.malformed: Counter[str] = Counter()
-        self.lies: Counter[str] = Counter()
         self.own_gids: set[bytes] = set()
         self.cancellations = Cancellations(
             participant, domain_id, self.waker, self.note_malformed, self.control_messages
@@ -358,26 +355,12 @@ class SessionState:
             declaration.note_crowd()
 
     def note_malformed(self, key: str, problem: str) -> None:
-        """Count a malformed sample; the first on each key is logged."""
-        self.malformed[key] += 1
-        if self.malformed[key] == 1:
-            logger.warning(
-                "%s: something in an unknown form came from the network: %s; it was left out, and "
-                "more of it is only counted. Does the sender have another definition of the type?",
-                key,
-                escaped(problem),
-            )
+        """Count a malformed sample, and log it as `Drops` does."""
+        self.drops.note(Drop.MALFORMED, key, problem)
 
     def note_lie(self, subject: str, problem: str) -> None:
-        """Count what was said in the name of another; the first about each subject is logged."""
-        self.lies[subject] += 1
-        if self.lies[subject] == 1:
-            logger.warning(
-                "%s: someone speaks in the name of another: %s; more of it is only counted. Rules "
-                "of a router say who may speak for what: docs/howto/security.md",
-                subject,
-                problem,
-            )
+        """Count what was said in the name of another, and log it as `Drops` does."""
+        self.drops.note(Drop.FALSE_NAME, subject, problem)
 
 
 def size_of(arriving: zenoh.Sample | zenoh.Query) -> int:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Transport
+from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.zenoh._defects.closing import cut_stuck
 from aionode.engine.transport.zenoh._defects.forgotten_peers import Recovery, nodes_at_gossip_source
 from aionode.engine.transport.zenoh._defects.lingering import SocketOptions
@@ -116,7 +117,12 @@ class ZenohTransport(Transport):
     @property
     def malformed(self) -> Counter[str]:
         """Number of samples in no known form that came from the network, for each key."""
-        return self._state.malformed
+        return self.drops.of(Drop.MALFORMED)
+
+    @property
+    def drops(self) -> Drops:
+        """What is dropped of what others send."""
+        return self._state.drops
 
     @property
     def other_domains(self) -> frozenset[int]:

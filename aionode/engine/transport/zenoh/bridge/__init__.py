@@ -64,6 +64,7 @@ class BridgeTransport(Transport):
             session_state.participant, session_state.domain_id, time_base, session_state.waker
         )
         self._state.follow(session_state.announced)
+        self._state.drops = session_state.drops
         self._watcher = BridgeWatcher(session_state, self._state)
 
     def __repr__(self) -> str:

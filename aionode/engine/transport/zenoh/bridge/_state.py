@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.zenoh._session_state import Declaration, EndpointNames, SessionState
 from aionode.engine.transport.zenoh.delivery.acknowledgements import Acknowledgements
 from aionode.engine.wire._bridge import bridge_key, takes_for_its_own, token_of
@@ -89,7 +90,6 @@ class BridgeState(SessionState):
         self._served: set[str] = set()  # all prefixes that there were; what is declared stays
         self._tokens: dict[str, SharedToken] = {}
         self._warned_of: set[str] = set()
-        self._is_full = False  # whether a bridge was left out
 
     def follow(self, announced: AnnouncedLimit) -> None:
         """Count what others announce together with the other endpoints of the session."""
@@ -149,13 +149,7 @@ class BridgeState(SessionState):
     def add_bridge(self, zid: str, prefix: str) -> None:
         """Note a bridge, and declare what passes it. The state is connected."""
         if prefix not in self._served and len(self._served) >= MOST_NAMESPACES:
-            if not self._is_full:
-                self._is_full = True
-                logger.warning(
-                    "bridges to DDS with more than %d namespaces were announced; those of others "
-                    "are left out, from now on without a word",
-                    MOST_NAMESPACES,
-                )
+            self.drops.note(Drop.BRIDGES, "bridges to DDS", str(MOST_NAMESPACES))
             return
         self.prefixes[zid] = prefix
         if prefix not in self._served:

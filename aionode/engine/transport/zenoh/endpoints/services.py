@@ -12,6 +12,7 @@ import zenoh
 
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Request, Requester, SampleInfo
+from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.zenoh._session_state import Declaration, size_of
 from aionode.engine.transport.zenoh.connections.handlers import CALL_PRIORITY, direct, translated
 from aionode.engine.transport.zenoh.delivery.delivery import UNKNOWN_GID, sample_info_of
@@ -106,8 +107,7 @@ class ZenohServer(Declaration):
         self._serve = serve
         self._queryable: zenoh.Queryable[None] | None = None
         self._queue = state.queue(self._receive)
-        self._refused = 0
-        self._note_refused = state.queue(self._report_refused, limit=1)
+        self._note_refused = state.queue(self._report_refused, limit=ARRIVING_REQUESTS)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
         # The context of each client that has a token. The loop writes, and Zenoh's threads look a
         # client up: a request of one that has just come or gone counts as one without a token.
@@ -176,16 +176,9 @@ class ZenohServer(Declaration):
         answer(query, lambda: query.reply_err(problem))
 
     def _report_refused(self, _: None) -> None:
-        """Log the first time that requests are refused before they reach the loop."""
-        self._refused += 1
-        if self._refused == 1:
-            logger.warning(
-                "%s: requests are refused, as more than %.3g MiB of them wait in this process for "
-                "its event loop, or until their answers are sent. AIONODE_QUEUE_BYTES, or "
-                "Context(queue_bytes=…), sets the limit",
-                self.endpoint.name,
-                self.state.queue_bytes / 2**20,
-            )
+        """Count a request that was refused before it reached the loop."""
+        limit = f"{self.state.queue_bytes / 2**20:.3g} MiB"
+        self.state.drops.note(Drop.REQUESTS, self.endpoint.name, limit)
 
     def _receive(self, query: zenoh.Query) -> None:
         sample_info = sample_info_of(query.attachment)

@@ -12,6 +12,7 @@ from zenoh import ext
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import NOT_INLINE_NS, ReaderRegistration, SampleInfo
 from aionode.engine.transport.content_filters import filter_token, text_of_filter
+from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.reliability.limits import NEVER, OVERHEAD_BYTES
 from aionode.engine.transport.reliability.stateful_reader import StatefulReader
 from aionode.engine.transport.zenoh._session_state import Declaration
@@ -94,7 +95,6 @@ class ZenohReader(Declaration, ReaderRegistration):
             self._receive, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
         )
         self._numbers = TargetNumbers(self._count_targets) if self._second_key else None
-        self._dropped = 0
         self._stateful: StatefulReader | None = None
         if reliable and token and self.recovers:
             span = NEVER if self._keep_all else depth if self._buffers else max(depth, SPAN)
@@ -108,7 +108,6 @@ class ZenohReader(Declaration, ReaderRegistration):
         # The largest message of those that a KEEP_ALL subscription has not taken.
         self._largest_bytes = 0
         self._waits_for_room = False
-        self._refused = 0
         self._filter_text = ""  # of the content filter, if it is announced
         self._filter_token: zenoh.LivelinessToken | None = None
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
@@ -246,15 +245,8 @@ class ZenohReader(Declaration, ReaderRegistration):
 
     def _note_dropped(self, count: int) -> None:
         """Count messages that were dropped as too many bytes of them waited for the loop."""
-        if not self._dropped:
-            logger.warning(
-                "%s: messages were dropped before they reached the event loop, which was busy "
-                "while more than %.3g MiB of them came; more of them are only counted, in "
-                "stats.lost. AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit",
-                self.endpoint.name,
-                self.state.queue_bytes / 2**20,
-            )
-        self._dropped += count
+        limit = f"{self.state.queue_bytes / 2**20:.3g} MiB"
+        self.state.drops.note(Drop.BUSY_LOOP, self.endpoint.name, limit, count)
 
     def _has_room(self, size_bytes: int) -> bool:
         """Return whether a KEEP_ALL subscription can take one more message of this size.
@@ -307,15 +299,7 @@ class ZenohReader(Declaration, ReaderRegistration):
         return False
 
     def _refuse(self, limit_bytes: int) -> None:
-        if not self._refused:
-            logger.warning(
-                "%s: messages are lost although the subscription keeps all: %.3g MiB wait already, "
-                "and their publisher cannot be held back. AIONODE_QUEUE_BYTES, or "
-                "Context(queue_bytes=…), sets the limit",
-                self.endpoint.name,
-                limit_bytes / 2**20,
-            )
-        self._refused += 1
+        self.state.drops.note(Drop.KEEP_ALL, self.endpoint.name, f"{limit_bytes / 2**20:.3g} MiB")
 
     def _wait_for_room(self) -> None:
         if not self._waits_for_room:

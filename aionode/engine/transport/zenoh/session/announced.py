@@ -6,6 +6,7 @@ import logging
 from collections import Counter
 from typing import TYPE_CHECKING, Final
 
+from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.zenoh._defects.crowd import is_crowd
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ class AnnouncedLimit:
         limit_bytes: The limit in all; a token counts its text, and `TOKEN_BYTES`.
         connected: The participants that are connected now; the others may be behind routers, or
             invented.
+        drops: Where it is counted what is left out.
 
     Attributes:
         left_out: How many tokens were left out since the graph was last filled up; those that come
@@ -44,12 +46,14 @@ class AnnouncedLimit:
         on_crowded: Called when that has changed.
     """
 
-    def __init__(self, limit_bytes: int, connected: Container[str] = ()) -> None:
+    def __init__(
+        self, limit_bytes: int, connected: Container[str] = (), drops: Drops | None = None
+    ) -> None:
         self.left_out = 0
         self.is_crowded = False
         self.on_crowded: list[Callable[[], None]] = []
         self._count = 0
-        self._is_told = False
+        self._drops = Drops(logger) if drops is None else drops
         self._connected = connected
         self._limit_bytes = limit_bytes
         self._used_bytes = 0
@@ -106,13 +110,9 @@ class AnnouncedLimit:
             del self._of[participant]  # it was asked for only
         self.left_out += 1
         self._judge()
-        if not self._is_told:
-            self._is_told = True
-            logger.warning(
-                "the graph is full: nodes or endpoints that other processes announce are left out, "
-                "from now on without a word. It keeps %.3g MiB, about %d endpoints, and an eighth "
-                "of that from one process. AIONODE_GRAPH_BYTES, or Context(graph_bytes=…), sets "
-                "the limit",
-                self._limit_bytes / 2**20,
-                self._limit_bytes // (TOKEN_BYTES + 200),
-            )
+        kept = (
+            f"it keeps {self._limit_bytes / 2**20:.3g} MiB, about "
+            f"{self._limit_bytes // (TOKEN_BYTES + 200)} endpoints, and an eighth of that from one "
+            "process"
+        )
+        self._drops.note(Drop.GRAPH, "the graph", kept)

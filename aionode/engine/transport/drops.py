@@ -1,0 +1,94 @@
+"""What a context drops or refuses of what others send: each kind has a number and a log line.
+
+Limits of queues that a QoS asks for are none of these: subscriptions count them in their `stats`.
+"""
+
+from __future__ import annotations
+
+import enum
+import logging
+from collections import Counter
+from typing import Final
+
+from aionode.errors import escaped
+
+__all__ = ["Drop", "Drops"]
+
+logger = logging.getLogger("aionode.transport")
+
+SUBJECTS: Final = 1_000
+"""Of so many topics, services and keys each kind is counted by itself: others may invent any."""
+
+LIMIT: Final = "AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
+
+
+class Drop(enum.Enum):
+    """Why something was dropped or refused; the value is the sentence of the log."""
+
+    MALFORMED = (
+        "something in an unknown form came from another process: {}; it was left out. Does the "
+        "sender have another definition of the type?"
+    )
+    FALSE_NAME = (
+        "someone speaks in the name of another: {}. Rules of a router say who may speak for what: "
+        "docs/howto/security.md"
+    )
+    BUSY_LOOP = (
+        "messages were dropped before they reached the event loop, which was busy while more than "
+        f"{{}} of them came; stats.lost counts them, too. {LIMIT}"
+    )
+    KEEP_ALL = (
+        "messages are lost although the subscription keeps all: {} wait already, and their "
+        f"publisher cannot be held back. {LIMIT}"
+    )
+    REQUESTS = (
+        "requests are refused, as more than {} of them wait in this process for its event loop, or "
+        f"until their answers are sent. {LIMIT}"
+    )
+    GRAPH = (
+        "nodes or endpoints that other processes announce are left out, as the graph is full: {}. "
+        "AIONODE_GRAPH_BYTES, or Context(graph_bytes=…), sets the limit"
+    )
+    BRIDGES = "there are more than {} namespaces of bridges; the bridges of others are left out"
+    NOT_SENT = "a message was not sent: {}"
+
+
+class Drops:
+    """Counts what is dropped by its kind and subject, and logs the first, the tenth and so on.
+
+    Args:
+        log: Where it is said.
+    """
+
+    def __init__(self, log: logging.Logger = logger) -> None:
+        self._log = log
+        self._counts: dict[Drop, Counter[str]] = {drop: Counter() for drop in Drop}
+
+    def note(self, drop: Drop, subject: str, detail: str = "", count: int = 1) -> None:
+        """Count something, and log it when its number reaches 1, 10, 100 and so on.
+
+        Args:
+            drop: Why it was dropped.
+            subject: The topic, service or key.
+            detail: What the sentence lacks.
+            count: How many there were.
+        """
+        counts = self._counts[drop]
+        if subject not in counts and len(counts) >= SUBJECTS:
+            subject = "other names"
+        before = counts[subject]
+        counts[subject] = after = before + count
+        if not before or len(str(after)) > len(str(before)):
+            number = "more are only counted" if after == 1 else f"{after} so far"
+            text = drop.value.format(escaped(detail))
+            self._log.warning("%s: %s (%s)", escaped(subject), text, number)
+
+    def of(self, drop: Drop) -> Counter[str]:
+        """Return how many were dropped for a reason, by subject."""
+        return self._counts[drop]
+
+    def totals(self) -> Counter[str]:
+        """Return how many were dropped, by the reason in lower case; none that is 0."""
+        return Counter(
+            {drop.name.lower(): total for drop in Drop if (total := self.of(drop).total())}
+        )

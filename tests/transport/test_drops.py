@@ -1,0 +1,143 @@
+"""What is dropped of what others send: nothing without a number and a line in the log."""
+
+from __future__ import annotations
+
+import ast
+import logging
+from pathlib import Path
+
+import pytest
+
+from aionode.engine import transport
+from aionode.engine.context import Context
+from aionode.engine.transport.drops import SUBJECTS, Drop, Drops
+from aionode.engine.transport.local import LocalTransport
+
+FOLDER = Path(str(transport.__file__)).parent
+SOURCES = {
+    str(path.relative_to(FOLDER)): ast.parse(path.read_text())
+    for path in sorted(FOLDER.rglob("*.py"))
+    if "_defects" not in path.parts
+}
+
+OTHER_WARNINGS = {
+    "rcl/_services.py": "our requests: the middleware never takes one of that size",
+    "link/_connection.py": "a link ends, and Zenoh takes over; what our publishers lose by that",
+    "link/_manager.py": "no link to another context, and Zenoh is used instead",
+    "link/_transport.py": "no links at all, and Zenoh is used instead",
+    "zenoh/session/session.py": "no port to meet others on",
+    "zenoh/bridge/_state.py": "our endpoint whose name a bridge does not survive",
+    "zenoh/endpoints/publisher.py": "our messages that were not delivered, in stats.dropped",
+}
+"""Files that warn of something else than what others send, and of what."""
+
+UNREADABLE = {"DecodeError", "FrameError"}
+TOLD_BY = {"note", "note_malformed", "_reject", "refuse", "reject", "close", "fail"}
+
+
+@pytest.mark.parametrize("drop", Drop)
+def test_each_drop_has_a_number_and_a_line_limited_in_rate(
+    drop: Drop, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Whoever drops a thousand things a second says so four times."""
+    drops = Drops()
+    for _ in range(1000):
+        drops.note(drop, "/scan", "a \x1b[31m detail")
+
+    assert drops.of(drop) == {"/scan": 1000}
+    assert drops.totals() == {drop.name.lower(): 1000}
+    lines = [record.getMessage() for record in caplog.records]
+    assert [line.rpartition(" (")[2] for line in lines] == [
+        "more are only counted)", "10 so far)", "100 so far)", "1000 so far)",
+    ]  # fmt: skip
+    assert all(line.startswith("/scan: ") and "\x1b" not in line for line in lines)
+
+
+def test_a_number_that_comes_at_once_is_said(caplog: pytest.LogCaptureFixture) -> None:
+    """A queue tells of a hundred at a time."""
+    Drops().note(Drop.BUSY_LOOP, "/image", "32 MiB", count=150)
+
+    assert "(150 so far)" in caplog.text
+
+
+def test_only_so_many_subjects_are_told_apart(caplog: pytest.LogCaptureFixture) -> None:
+    """Others may invent any number of names."""
+    drops = Drops()
+    caplog.set_level(logging.CRITICAL)
+    for number in range(2 * SUBJECTS):
+        drops.note(Drop.MALFORMED, f"/t{number}")
+
+    assert len(drops.of(Drop.MALFORMED)) == SUBJECTS + 1
+    assert drops.of(Drop.MALFORMED).total() == 2 * SUBJECTS
+
+
+@pytest.mark.parametrize("drop", Drop)
+def test_each_drop_happens_somewhere(drop: Drop) -> None:
+    """A kind that nobody notes is no kind."""
+    named = {
+        node.attr
+        for name, tree in SOURCES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and name != "drops.py"
+    }
+
+    assert drop.name in named
+
+
+def test_nothing_unreadable_is_left_out_without_a_word() -> None:
+    """Each place that catches it notes it, or tells the sender or the caller."""
+    silent = [
+        f"{name}:{handler.lineno}"
+        for name, tree in SOURCES.items()
+        for handler in ast.walk(tree)
+        if isinstance(handler, ast.ExceptHandler)
+        and handler.type is not None
+        and UNREADABLE & names_in(handler.type)
+        and not TOLD_BY & called_in(handler)
+        and not any(isinstance(node, ast.Raise) for node in ast.walk(handler))
+    ]
+
+    assert silent == []
+
+
+def test_every_other_warning_of_the_transports_is_known() -> None:
+    """A new place that drops something of others goes through `Drops`."""
+    warning = {
+        name
+        for name, tree in SOURCES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute) and node.attr == "warning" and name != "drops.py"
+    }
+
+    assert warning == set(OTHER_WARNINGS)
+
+
+def test_a_context_tells_what_all_of_its_transports_dropped() -> None:
+    """Several may share what counts, and it counts once."""
+    drops = Drops()
+
+    class Shared(LocalTransport):
+        @property
+        def drops(self) -> Drops:
+            return drops
+
+    context = Context(transport=[Shared(), Shared(), LocalTransport()])
+    assert context.dropped == {}
+    drops.note(Drop.MALFORMED, "/scan")
+    drops.note(Drop.REQUESTS, "/add", "32 MiB", count=2)
+
+    assert context.dropped == {"malformed": 1, "requests": 2}
+
+
+def names_in(node: ast.AST) -> set[str]:
+    """Return the names in an expression."""
+    return {each.id for each in ast.walk(node) if isinstance(each, ast.Name)}
+
+
+def called_in(node: ast.AST) -> set[str]:
+    """Return the names of the methods that are called in some code."""
+    return {
+        each.func.attr
+        for each in ast.walk(node)
+        if isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute)
+    }
