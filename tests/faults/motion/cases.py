@@ -462,6 +462,16 @@ def gateways() -> Iterator[Motion]:
             lasts_s=4.0,
             **by_lease,
         )
+    yield case(
+        together,
+        "a page with a goal over rosbridge",
+        "is killed",
+        "the gateway, at a server that rejects to cancel, as rclpy's by default",
+        mover=mover(program="page", asks="goal"),
+        wheel=Wheel("", action=True, accepts=False, continues=True),
+        strike=killed,
+        ends=True,
+    )
     rival = mover(topic="/motion0", program="page", asks="publisher", way="http")
     yield case(
         place("gateway with two", msgspec.structs.replace(rival, name="rival")),
