@@ -46,6 +46,9 @@ Unlike a message, a request has a client that waits for the answer, so none is s
 because of the depth of the profile.
 """
 
+REFUSED_SEC = 10.0
+"""So often at most the log says that requests are refused."""
+
 ServiceCallback = (
     Callable[[RequestT, ResponseT], ResponseT | Coroutine[Any, Any, ResponseT]]
     | Callable[[RequestT], ResponseT | Coroutine[Any, Any, ResponseT]]
@@ -120,6 +123,10 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             problem = f"{waiting} requests are waiting already"
             if waiting < WAITING_REQUESTS:
                 problem += ", which take as many bytes as may wait (AIONODE_QUEUE_BYTES)"
+            self._callbacks.logger.warning(
+                f"{self._subject}: refused a request, as {problem}; stats.dropped counts them",
+                throttle_duration_sec=REFUSED_SEC,
+            )
             request.fail("QueueFullError", problem)
 
     def _run(self) -> Coroutine[Any, Any, None]:

@@ -533,19 +533,26 @@ async def test_nothing_is_left_of_calls_that_ended(node: Node) -> None:
 
 
 async def test_too_many_waiting_requests_are_refused_with_an_error(
-    node: Node, monkeypatch: pytest.MonkeyPatch
+    node: Node, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """The queue is bounded, and no client waits for an answer that cannot come."""
+    """The queue is bounded, and no client waits for an answer that cannot come.
+
+    The log of the server says it, too, but not for each request.
+    """
     monkeypatch.setattr("aionode.endpoints.service.WAITING_REQUESTS", 2)
     gate = Gate()
-    node.create_service(AddTwoInts, "add", gate)
+    service = node.create_service(AddTwoInts, "add", gate)
     client = node.create_client(AddTwoInts, "add")
-    waiting = [asyncio.get_running_loop().create_task(client.call(Request(a=n))) for n in range(3)]
+    waiting = [asyncio.get_running_loop().create_task(client.call(Request(a=n))) for n in range(9)]
     await settle()
     gate.opened.set()
     with pytest.raises(ServiceError, match="2 requests are waiting already"):
-        await waiting[2]
-    await asyncio.gather(*waiting[:2])
+        await waiting[3]
+    ends = await asyncio.gather(*waiting, return_exceptions=True)
+    refused = sum(isinstance(end, ServiceError) for end in ends)
+    assert service.stats.dropped == refused > 1
+    (said,) = [text for text in caplog.messages if "refused a request" in text]
+    assert "service /add" in said
 
 
 async def test_a_destroyed_client_says_so(node: Node) -> None:
