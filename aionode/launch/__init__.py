@@ -153,7 +153,10 @@ class Plan:
 async def run_plan(
     plan: Plan, system: System, *, watch: bool = False, once_ready: str | None = None
 ) -> None:
-    """Start what a plan says, and return when nothing of it runs any more, or it asks to end.
+    """Start what a plan says, and return when nothing of it runs any more, or the end is asked for.
+
+    The plan may ask for it, and so may others, such as ``aionode system stop --all``; without the
+    guardian, which would stop the processes if this one were killed, the system ends as well.
 
     The processes and nodes are added to `system`, which has been entered, and stops them at its
     end. Cancelling is safe.
@@ -180,8 +183,7 @@ async def run_plan(
             if plan.main is None:
                 await running.run(plan.steps)
             else:
-                await plan.main(system)
-                await system.wait()
+                await system.run_main(plan.main)
             for task in beside:
                 task.cancel()
     except BaseExceptionGroup as group:

@@ -105,12 +105,16 @@ class RunningLaunch:
             self._folder = Path(folder)
             try:
                 async with asyncio.TaskGroup() as self._tasks:
-                    handling = self._tasks.create_task(self._handle_events())
+                    beside = [
+                        self._tasks.create_task(self._handle_events()),
+                        self._tasks.create_task(self._end_with_system()),
+                    ]
                     self.carry_out(steps)
                     self.begun.set()
                     self._note_idle()
                     await self._idle.wait()
-                    handling.cancel()
+                    for task in beside:
+                        task.cancel()
                     for task in self._work:
                         task.cancel()
             except BaseExceptionGroup as group:
@@ -118,6 +122,11 @@ class RunningLaunch:
             finally:
                 if not self._is_shutdown:
                     self._dispatch(Shutdown(reason="the launch ends"))
+
+    async def _end_with_system(self) -> None:
+        """Shut down when the system is to end."""
+        await self.system.end_requested()
+        self._events.put_nowait(Shutdown(reason="the system ends"))
 
     def _spawn(self, work: Coroutine[Any, Any, None], action: Any = None) -> None:
         if self._is_shutdown:

@@ -47,8 +47,7 @@ def run(
     async def work() -> None:
         nonlocal system
         async with System(name, log=log) as system:
-            await main(system)
-            await system.wait()
+            await system.run_main(main)
 
     status = 0
     try:

@@ -39,7 +39,7 @@ from aionode.system._status import (
 from aionode.system._usage import UsageMeter
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Awaitable, Callable, Mapping, Sequence
     from types import TracebackType
 
 __all__ = ["System"]
@@ -398,6 +398,36 @@ class System:
                 return
             await self.changed()
 
+    async def end_requested(self) -> None:
+        """Return when the system is asked to end.
+
+        `request_end` asks for it, a request from outside does, such as ``aionode system stop
+        --all``, and so does the end of a `required` member or of the guardian. Cancelling is safe.
+        """
+        await self._over.wait()
+
+    async def run_main(self, main: Callable[[Self], Awaitable[object]]) -> None:
+        """Call `main` with the system, then return when the system is over, as `wait` does.
+
+        A request to end the system cancels `main`, which may not wait for it. Cancelling is safe.
+
+        Args:
+            main: What adds members, and may wait, such as for `ready`.
+        """
+
+        async def work() -> None:
+            await main(self)
+
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                ways = [tasks.create_task(work()), tasks.create_task(self._over.wait())]
+                await asyncio.wait(ways, return_when=asyncio.FIRST_COMPLETED)
+                for way in ways:
+                    way.cancel()
+        except BaseExceptionGroup as group:
+            raise group.exceptions[0] from None  # that of `main`: nothing else can fail
+        await self.wait()
+
     async def changed(self) -> None:
         """Return when the state of a member changes next, or `request_end` is called.
 
@@ -409,7 +439,10 @@ class System:
         await self._changed.wait()
 
     def request_end(self) -> None:
-        """Make `wait` return; may be called at any time, and more than once."""
+        """Make `wait`, `end_requested` and `run_main` return.
+
+        It may be called at any time, and more than once.
+        """
         self._over.set()
         self.note_change()
 

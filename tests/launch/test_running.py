@@ -23,6 +23,7 @@ from aionode.system import System, SystemLog
 from tests.launch.conftest import BODY, HEAD
 from tests.support import fork_server
 from tests.support.waiting import until
+from tests.system.left import guardian
 
 if TYPE_CHECKING:
     from tests.launch.conftest import Files
@@ -92,6 +93,45 @@ async def test_a_launch_is_over_when_nothing_can_start_any_more(robot: Robot) ->
     )
 
     assert "later" in lines
+
+
+SLEEPER = "ExecuteProcess(cmd=['sleep', '1000'], name='sleeper'),"
+
+
+async def test_a_launch_ends_when_its_guardian_is_killed(robot: Robot) -> None:
+    """Nobody would stop its processes any more if it were killed itself."""
+    async with robot.system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(robot.plan(SLEEPER), robot.system))
+        await until(lambda: bool(robot.system.status()))
+        await robot.system.ready()
+
+        guardian().kill()
+
+        await running
+    assert robot.system.exit_status == 128 + signal.SIGKILL
+
+
+async def test_a_launch_ends_when_its_system_is_asked_to(robot: Robot) -> None:
+    """``aionode system stop --all`` says that it ends."""
+    async with robot.system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(robot.plan(SLEEPER), robot.system))
+        await until(lambda: bool(robot.system.status()))
+
+        robot.system.request_end()
+
+        await running
+    assert robot.system.exit_status == 0
+
+
+async def test_a_main_function_of_a_system_ends_with_it() -> None:
+    """It may wait for something that will not come any more."""
+    async with System("tested", context=Context(transport="local")) as system:
+
+        async def main(system: System) -> None:
+            system.request_end()
+            await asyncio.Event().wait()
+
+        await system.run_main(main)
 
 
 async def test_a_start_is_an_event(robot: Robot) -> None:
