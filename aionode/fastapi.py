@@ -1,8 +1,15 @@
-"""For routes of FastAPI and Starlette: end with the browser that asked.
+"""For applications of FastAPI and Starlette: routes end with their browser, motion with a signal.
 
 It needs ``pip install fastapi``, or Starlette alone::
 
-    from aionode.fastapi import until_disconnected
+    from aionode.fastapi import stopping_at_signals, until_disconnected
+
+
+    @contextlib.asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        async with Node("web") as node, stopping_at_signals(node):
+            app.state.node = node
+            yield
 
 
     @app.post("/drive")
@@ -16,20 +23,183 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from typing import TYPE_CHECKING
+import signal
+import threading
+from typing import TYPE_CHECKING, Any, Final
 
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
+from aionode._process.sudden_end import is_sending
+from aionode.endpoints.lease import send_stops
+from aionode.supervisor import Supervisor
+
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Awaitable, Callable
+    from types import FrameType
 
     from starlette.requests import Request
 
-__all__ = ["until_disconnected"]
+    from aionode.node import Node
 
-CLIENT_CLOSED_REQUEST = 499
+__all__ = ["stopping_at_signals", "until_disconnected"]
+
+CLIENT_CLOSED_REQUEST: Final = 499
 """The HTTP status of a request whose client has gone, as nginx logs it."""
+
+SIGQUIT: Final[int | None] = getattr(signal, "SIGQUIT", None)
+SIGNALS: Final[tuple[int, ...]] = (signal.SIGINT, signal.SIGTERM, *([SIGQUIT] if SIGQUIT else []))
+"""The signals that end web servers; gunicorn's workers get SIGQUIT when somebody presses Ctrl-C."""
+
+LATER_SEC: Final = 1.0
+"""When the handlers are looked at again after the start of the application, in seconds."""
+
+CLEANUP_SEC: Final = 0.15
+"""How long routes may clean up after a signal before the nodes end, in seconds."""
+
+
+class Routes:
+    """The blocks of `until_disconnected` that are open in this process.
+
+    Attributes:
+        all_done: Set while there is none.
+        begun: Called when a block begins.
+    """
+
+    def __init__(self) -> None:
+        self._scopes: set[asyncio.Timeout] = set()
+        self._is_ending = False
+        self.begun: Callable[[], None] | None = None
+        self.all_done = asyncio.Event()
+        self.all_done.set()
+
+    def add(self, scope: asyncio.Timeout) -> None:
+        """Note a block that begins."""
+        if self.begun is not None:
+            self.begun()
+        self._scopes.add(scope)
+        self.all_done.clear()
+
+    def remove(self, scope: asyncio.Timeout) -> None:
+        """Note that a block has ended."""
+        self._scopes.discard(scope)
+        if not self._scopes:
+            self.all_done.set()
+
+    def is_ending(self) -> bool:
+        """Return whether a signal has ended them, and ends those that begin now."""
+        return self._is_ending
+
+    def reset(self) -> None:
+        """Let blocks of another application in this process go on again."""
+        self.begun = None
+        self._is_ending = False
+
+    def end(self) -> None:
+        """Cancel all blocks."""
+        self._is_ending = True
+        for scope in self._scopes:
+            scope.reschedule(0.0)
+
+
+routes = Routes()
+
+
+@contextlib.asynccontextmanager
+async def stopping_at_signals(*nodes: Node | Supervisor[Any]) -> AsyncIterator[None]:
+    """End motion and open routes at the first signal that ends the server, before the server does.
+
+    A web server tells the application of a signal only when all its connections have closed, which
+    an open route or a stream of events may put off for ever. Within this block, for the lifespan of
+    the application, the first signal does at once what the end of the lifespan would do later: the
+    stop of each open lease is sent, also while a callback blocks the event loop; each block of
+    `until_disconnected` is cancelled, and with it the goals and calls that it awaits, and its route
+    answers with status 503; then `nodes` are destroyed, which ends the streams of their
+    subscriptions. The server's own handler is called as well, and stays what it was.
+
+    In a thread other than the main one, where no signals arrive, as in Starlette's `TestClient`, it
+    does nothing.
+
+    Args:
+        nodes: The nodes of the application; a `Supervisor` stands for its node.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    signalled = asyncio.Event()
+
+    async def end() -> None:
+        await signalled.wait()
+        routes.end()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(CLEANUP_SEC):
+                await routes.all_done.wait()
+        for node in nodes:
+            (node.node if isinstance(node, Supervisor) else node).destroy_node()
+
+    listener = Listener(asyncio.get_running_loop(), signalled)
+    routes.begun = listener.install
+    listener.install()
+    # Some servers set their handlers after the application has started.
+    later = asyncio.get_running_loop().call_later(LATER_SEC, listener.install)
+    try:
+        async with asyncio.TaskGroup() as tasks:
+            ending = tasks.create_task(end(), name="stopping_at_signals")
+            yield
+            if not signalled.is_set():
+                ending.cancel()
+    finally:
+        later.cancel()
+        listener.remove()
+        routes.reset()
+
+
+class Listener:
+    """Sends the stops of leases at the signals that end a server, and tells the loop of them.
+
+    The handlers that were there are called as well. Those of an event loop need no call: it hears
+    of each signal that has any handler by a descriptor.
+
+    Args:
+        loop: The event loop of the application.
+        signalled: Set by the first signal.
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop, signalled: asyncio.Event) -> None:
+        self._loop = loop
+        self._signalled = signalled
+        self._before: dict[int, Any] = {}
+
+    def install(self) -> None:
+        """Handle the signals from now on, also those whose handler somebody has set meanwhile."""
+        for number in SIGNALS:
+            current: object = signal.getsignal(number)
+            is_left_alone = number == SIGQUIT and current is signal.SIG_DFL
+            if current is not self and not is_left_alone:
+                self._before[number] = signal.signal(number, self)
+
+    def remove(self) -> None:
+        """Set the handlers again that were there, unless somebody has set others."""
+        for number, handler in self._before.items():
+            current: object = signal.getsignal(number)
+            if current is self:
+                signal.signal(number, signal.SIG_DFL if handler is None else handler)
+
+    def __call__(self, number: int, frame: FrameType | None) -> None:
+        """Handle a signal."""
+        if not is_sending(frame):  # else the loop does, which is not blocked then
+            send_stops(0.0)
+        self._loop.call_soon_threadsafe(self._note)
+        handler: object = self._before[number]
+        if callable(handler):
+            handler(number, frame)
+        elif handler is signal.SIG_DFL:
+            signal.signal(number, signal.SIG_DFL)
+            signal.raise_signal(number)
+
+    def _note(self) -> None:
+        send_stops(0.0)
+        self._signalled.set()
 
 
 @contextlib.asynccontextmanager
@@ -50,8 +220,10 @@ async def until_disconnected(request: Request) -> AsyncIterator[None]:
 
     Raises:
         HTTPException: the client has disconnected; its status is 499. Nobody gets the response, and
-            nothing is logged.
+            nothing is logged. Or the application ends (see `stopping_at_signals`): the status is
+            503, with which clients know that they may ask again.
     """
+    ending = HTTPException(503, "the server is shutting down", {"Retry-After": "1"})
     gone = HTTPException(CLIENT_CLOSED_REQUEST, "the client has disconnected")
     # The server tells of the disconnection in the place of the next part of the body.
     try:
@@ -60,14 +232,19 @@ async def until_disconnected(request: Request) -> AsyncIterator[None]:
         raise gone from None
     except RuntimeError:
         pass  # the route has read the body as a stream
+    if routes.is_ending():
+        raise ending
     scope = asyncio.timeout(None)
+    routes.add(scope)
     try:
         async with scope, watching(lambda: disconnected(request), scope):
             yield
     except TimeoutError:
         if not scope.expired():
             raise
-        raise gone from None
+        raise (ending if routes.is_ending() else gone) from None
+    finally:
+        routes.remove(scope)
 
 
 async def disconnected(request: Request) -> None:

@@ -17,7 +17,7 @@ from fastapi.responses import HTMLResponse, StreamingResponse
 
 import aionode
 from aionode import Context, Node
-from aionode.fastapi import until_disconnected
+from aionode.fastapi import stopping_at_signals, until_disconnected
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import to_json
@@ -44,7 +44,7 @@ def make_app(context: Context | None = None) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncGenerator[None, None]:
-        async with Node("web", context=context) as node:
+        async with Node("web", context=context) as node, stopping_at_signals(node):
             app.state.node = node
             app.state.adder = node.create_client(AddTwoInts, "/add_two_ints")
             yield
@@ -84,7 +84,7 @@ async def events(node: Node) -> AsyncIterator[str]:
 
 async def serve() -> None:
     """Serve the application on port 8000."""
-    config = uvicorn.Config(make_app(), port=8000, timeout_graceful_shutdown=1)
+    config = uvicorn.Config(make_app(), port=8000)
     await uvicorn.Server(config).serve()
 
 

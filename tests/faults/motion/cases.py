@@ -158,16 +158,18 @@ def leases(place: Place) -> Iterator[Motion]:
             strike=browser_leaves,
             **promised,
         )
-    yield case(
-        place,
-        "a route of FastAPI that holds a lease",
-        "gets SIGTERM, and uvicorn waits 1 s for its browser",
-        lease,
-        mover=mover(program="uvicorn", ttl_sec=LONG_TTL_S),
-        strike=signalled(TERM),
-        ends=True,
-        **{**promised, "limit_s": 1.0},
-    )
+    for route in ("awaited", "streamed"):
+        for number, name in ((INT, "Ctrl-C"), (TERM, "SIGTERM")):
+            yield case(
+                place,
+                f"a route of FastAPI that holds a lease, {route},",
+                f"gets {name}, and uvicorn waits for its browser without a limit",
+                lease,
+                mover=mover(program="uvicorn", route=route, ttl_sec=LONG_TTL_S, graceful_s=None),
+                strike=signalled(number),
+                ends=True,
+                **{**promised, "limit_s": 0.2},
+            )
     yield case(
         place,
         "a holder of a lease",

@@ -12,7 +12,7 @@ from fastapi import FastAPI, Request
 from fastapi.responses import StreamingResponse
 
 from aionode import Context, Supervisor
-from aionode.fastapi import until_disconnected
+from aionode.fastapi import stopping_at_signals, until_disconnected
 from tests.faults.motion.words import Mover
 
 __all__ = ["serve"]
@@ -35,7 +35,8 @@ def serve(
             task = tasks.create_task(reporting)
             async with Context() as context, Supervisor(lambda: make_node(context)) as supervisor:
                 app.state.supervisor = supervisor
-                yield
+                async with stopping_at_signals(supervisor):
+                    yield
             task.cancel()
 
     app = FastAPI(lifespan=lifespan)
