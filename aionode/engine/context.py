@@ -29,6 +29,7 @@ from aionode.engine.loop_affinity import LoopAffinity
 from aionode.engine.reports.duplicates import DuplicateReport
 from aionode.engine.reports.mismatches import MismatchReport
 from aionode.engine.transport.base import Registration, Transport
+from aionode.engine.transport.drops import Drops
 from aionode.engine.transport.local import LocalTransport
 from aionode.engine.transport.network import network_from, new_participant, unheard_middleware
 from aionode.engine.wire._liveliness import endpoint_token, gid_of
@@ -141,6 +142,7 @@ class Context:
         ros_distro: The distribution of ROS 2 that it belongs to.
         network: Domain, discovery and peers, from the arguments and the environment.
         graph: The nodes and endpoints known now.
+        drops: What programs of rclpy's API drop of what others send; `dropped` has it all.
         time_base: Where the time comes from.
         participant: Id of this context in the graph, in hexadecimal.
         seed: The seed of its ids; None if they are unique.
@@ -190,6 +192,7 @@ class Context:
             new_participant() if self._random is None else f"f{self._random.getrandbits(124):031x}"
         )
         self.graph = Graph(self.participant)
+        self.drops = Drops()
         MismatchReport(self.graph, self.participant)
         DuplicateReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()
@@ -533,7 +536,9 @@ class Context:
         Such as ``malformed``; the log has said what they were. What the QoS of a subscription lets
         go is in its `stats`.
         """
-        drops = {id(drops): drops for drops in (each.drops for each in self._transports)}
+        drops = {
+            id(drops): drops for drops in (self.drops, *(each.drops for each in self._transports))
+        }
         return sum((each.totals() for each in drops.values()), Counter())
 
     @property

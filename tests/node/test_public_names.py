@@ -47,8 +47,8 @@ report_progress trigger_activate trigger_cleanup trigger_configure trigger_deact
 trigger_shutdown
 """
 CONTEXT = """
-arguments as_default default domain_id dropped graph network new_uuid ok participant ros_distro seed
-shutdown time_base transports
+arguments as_default default domain_id dropped drops graph network new_uuid ok participant
+ros_distro seed shutdown time_base transports
 """
 TRANSPORT = """
 abandon all_known close create_node create_reader create_requester create_server create_writer

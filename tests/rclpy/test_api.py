@@ -24,6 +24,7 @@ from aionode.interfaces.std_msgs.msg import String as OwnString
 from aionode.message import SerializedMessage
 from aionode.rclpy._impl.errors import RCLError
 from aionode.rclpy._impl.topics import SubscriptionHandle
+from aionode.rclpy._impl.typesupport import service_support
 from aionode.rclpy._rosidl import action_class, message_class, service_class
 from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
 from aionode.rclpy.duration import Duration
@@ -149,6 +150,28 @@ def test_a_content_filter_lets_malformed_messages_pass(caplog: pytest.LogCapture
 
     assert subscription.handle.take_message(String, raw=False) is None
     assert "not a message of this type" in caplog.text
+
+
+@pytest.mark.usefixtures("initialised")
+def test_what_cannot_be_read_is_counted_and_said(caplog: pytest.LogCaptureFixture) -> None:
+    """A request with another definition was refused without a word in the server's log."""
+    node = rclpy.create_node("reader")
+    subscription = node.create_subscription(String, "words", print, 10)
+    server = node.create_service(AddTwoInts, "add", lambda request, response: response)
+    for _ in range(20):
+        subscription.handle.inbox.deliver(SerializedMessage(b"\0"), bytes(16), 1, 0)
+        assert subscription.handle.take_message(String, raw=False) is None
+    client = node.create_client(AddTwoInts, "add")
+    assert client.wait_for_service(LIMIT_S)
+    request = service_support(AddTwoInts).wire_type.Request(b"\0\1\0\0x")  # type: ignore[arg-type]  # a class is hashable
+    client.handle.io.call(client.handle.bare.send, request, 0, print, print)
+    wait_for = perf_ns() + int(LIMIT_S * 1e9)
+    while server.handle.io.context.dropped != {"malformed": 21}:
+        assert perf_ns() < wait_for
+        rclpy.spin_once(node, timeout_sec=0.01)
+
+    said = [text for text in caplog.messages if "unknown form" in text]
+    assert [text.partition(":")[0] for text in said] == ["/words", "/words", "/add"]
 
 
 @pytest.mark.usefixtures("initialised")

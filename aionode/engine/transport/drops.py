@@ -56,6 +56,9 @@ class Drop(enum.Enum):
 class Drops:
     """Counts what is dropped by its kind and subject, and logs the first, the tenth and so on.
 
+    Any thread may note something: of two at the same moment one may not be counted, which does no
+    harm.
+
     Args:
         log: Where it is said.
     """

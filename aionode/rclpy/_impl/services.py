@@ -17,6 +17,7 @@ from aionode.endpoints.service_introspection import (
     RESPONSE_SENT,
 )
 from aionode.engine.bare_node import BareClient, BareEndpoint
+from aionode.engine.transport.drops import Drop
 from aionode.errors import DecodeError
 from aionode.rclpy._impl.endpoint import BareT, EndpointHandle
 from aionode.rclpy._impl.introspection import Introspection
@@ -164,6 +165,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             try:
                 message = self._support.request.decode(request.message.data)
             except DecodeError as error:
+                self.io.context.drops.note(Drop.MALFORMED, self.name, f"a request ({error})")
                 self.io.send(partial(request.fail, "DecodeError", str(error)))
                 continue
             info = request.sample_info
@@ -300,7 +302,7 @@ class ClientHandle(CallHandle[BareClient]):
             try:
                 response = self.receive(sequence, data)
             except DecodeError as error:
-                logger.warning("%s: the response is unreadable: %s", self.name, error)
+                self.io.context.drops.note(Drop.MALFORMED, self.name, f"a response ({error})")
                 continue
             request_id = rmw_request_id_t(sequence, self.endpoint.gid)
             return rmw_service_info_t(request_id, 0, received_ns), response

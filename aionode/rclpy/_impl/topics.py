@@ -14,6 +14,7 @@ from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.engine.bare_node import BareEndpoint, BarePublisher
 from aionode.engine.rules.lifespan import expires_ns
 from aionode.engine.transport.base import SampleInfo
+from aionode.engine.transport.drops import Drop
 from aionode.errors import DecodeError, MessageError, QueueFullError
 from aionode.qos import DEFAULT_DEPTH, KEEP_ALL_DEPTH, is_unlimited
 from aionode.rclpy._impl.endpoint import EndpointHandle
@@ -291,7 +292,6 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         # several, two messages may get the same number, or a publisher be looked up twice.
         self._lifespans: dict[bytes, int] = {}
         self._received = 0
-        self._complained = False
         self._announce(node.bare.create_subscription, self._support.wire_type, self.inbox)
 
     def ready(self) -> bool:
@@ -345,9 +345,9 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         }
 
     def _complain(self, error: DecodeError) -> None:
-        if not self._complained:
-            self._complained = True
-            logger.warning("%s: not a message of this type: %s", self.name, error)
+        self.io.context.drops.note(
+            Drop.MALFORMED, self.name, f"not a message of this type ({error})"
+        )
 
     def _has_expired(self, sample_info: SampleInfo, arrived_ns: int) -> bool:
         """Whether the lifespan that the publisher gave its messages has passed."""
