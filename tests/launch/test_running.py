@@ -580,3 +580,26 @@ def test_the_robot_of_the_examples_starts_and_leaves_nothing() -> None:
     pids = [pid for pid in running if pid]
     assert len(pids) == 4, lines
     assert not [pid for pid in pids if Path(f"/proc/{pid}").exists()]
+
+
+@pytest.mark.parametrize("watch", [False, True])
+async def test_nothing_holds_a_launch_whose_guardian_is_killed(robot: Robot, watch: bool) -> None:
+    """Neither a timer that is due in an hour nor a process that starts again.
+
+    Processes end by the usual signals, and event handlers see the shutdown.
+    """
+    plan = robot.plan(
+        """
+        ExecuteProcess(cmd=['sh', '-c', 'trap "echo good bye; exit" INT; echo up; while :; do '
+            'sleep 0.01; done'], respawn=True, name='driver'),
+        TimerAction(period=3600.0, actions=[LogInfo(msg='late')]),
+        RegisterEventHandler(OnShutdown(on_shutdown=[LogInfo(msg='seen')])),
+        """
+    )
+    async with asyncio.timeout(30.0), robot.system, asyncio.TaskGroup() as tasks:
+        work = tasks.create_task(run_plan(plan, robot.system, watch=watch))
+        await until(lambda: "up" in robot.lines())
+        guardian().kill()
+        await work
+
+    assert {"seen", "good bye"} <= set(robot.lines())

@@ -152,7 +152,11 @@ class Motion(msgspec.Struct, frozen=True):
     def without(self, switch: Switch) -> Motion:
         """Return the same case with one of its mechanisms switched off."""
         mover, wheel = self.mover.mover, self.wheel
-        assert mover is not None
+        if mover is None:  # a command, which only its wheels can stop
+            assert switch == "silence"
+            return msgspec.structs.replace(
+                self, wheel=msgspec.structs.replace(wheel, silence_sec=0.0), off=switch
+            )
         match switch:
             case "lease":
                 mover = msgspec.structs.replace(mover, asks="publisher")

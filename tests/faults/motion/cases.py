@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import signal
+import sys
 from collections.abc import Iterator
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -18,6 +20,7 @@ from tests.faults.motion.goings import (
     browser_leaves,
     drives_into_standstill,
     frozen,
+    guardian_killed,
     hung_up,
     interrupted_twice,
     killed,
@@ -297,6 +300,27 @@ def last_messages(place: Place) -> Iterator[Motion]:
         )
 
 
+def launches(place: Place) -> Iterator[Motion]:
+    """Yield what happens to the wheels of a publisher that a launch file has started."""
+    for goes, strike in (
+        ("has its guardian killed", guardian_killed),
+        ("is killed", killed),
+        ("gets SIGTERM", signalled(TERM)),
+    ):
+        yield case(
+            place,
+            "aionode launch of a publisher",
+            goes,
+            "on_silence at the wheels",
+            mover=LAUNCH,
+            wheel=WATCHFUL,
+            switches=("silence",),
+            limit_s=SILENCE_S,
+            strike=strike,
+            ends=True,
+        )
+
+
 def goals(place: Place) -> Iterator[Motion]:
     """Yield what happens to the goal of a client."""
     lost: tuple[tuple[str, dict[str, Any]], ...] = (
@@ -512,6 +536,20 @@ PUB = Role(
 """A command from a shell, which is one message a second, and no sender in it."""
 
 
+LAUNCH = Role(
+    "",
+    command=(
+        "-m",
+        "aionode",
+        "launch",
+        str(Path(__file__).with_name("mover.launch.xml")),
+        f"python:={sys.executable}",
+        "topic:=TOPIC",
+    ),
+)
+"""A launch that starts such a command."""
+
+
 def motions() -> list[Motion]:
     """Return every case."""
     kinds = (leases, leases_and_silence, publishers, last_messages, goals)
@@ -520,6 +558,7 @@ def motions() -> list[Motion]:
         *(motion for place in places for kind in kinds for motion in kind(place)),
         *limits(places[0]),
         *gateways(),
+        *launches(places[0]),
         *cables(),
         *ros_motions(),
     ]

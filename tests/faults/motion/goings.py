@@ -6,6 +6,8 @@ import asyncio
 import signal
 from collections.abc import Awaitable, Callable
 
+import psutil
+
 from tests.faults.faults import Fault
 from tests.faults.harness import Stage
 from tests.faults.motion.scene import Play
@@ -16,6 +18,7 @@ __all__ = [
     "browser_leaves",
     "drives_into_standstill",
     "frozen",
+    "guardian_killed",
     "hung_up",
     "interrupted_twice",
     "killed",
@@ -34,6 +37,14 @@ async def killed(play: Play) -> None:
     """Kill it."""
     play.struck()
     play.child.send(signal.SIGKILL)
+
+
+async def guardian_killed(play: Play) -> None:
+    """Kill the guardian of the system that it is, which would stop its processes without it."""
+    children = psutil.Process(play.child.pid).children()
+    (guardian,) = (each for each in children if "_guardian.py" in " ".join(each.cmdline()))
+    play.struck()
+    guardian.kill()
 
 
 def frozen(seconds: float, number: int = signal.SIGSTOP) -> Strike:

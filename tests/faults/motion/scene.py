@@ -153,7 +153,7 @@ class Play:
 
     def struck(self) -> None:
         """Note that the fault strikes now."""
-        self._by = self.child.pid
+        self._by = 0 if self.child.role.command else self.child.pid
         self._waits = [(child, child.core_waits()) for child in (self.child, self.wheels)]
         self._struck_s = time.monotonic()
 
