@@ -26,6 +26,7 @@ from aionode.gateway.session.frames import (
 from aionode.gateway.session.values import from_json, json_of
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.geometry_msgs.msg import PointStamped, Twist
+from aionode.interfaces.nav_msgs.msg import Path
 from aionode.interfaces.sensor_msgs.msg import CameraInfo, Image, LaserScan
 from aionode.interfaces.std_msgs.msg import (
     Bool,
@@ -192,6 +193,30 @@ def test_a_header_without_a_stamp_is_stamped() -> None:
     header = from_json(PointStamped, sent, NOW_NS).header
     assert header == Header(stamp=Time(sec=12, nanosec=34), frame_id="map")
     assert from_json(PointStamped, {}, NOW_NS).header == Header()
+
+
+def test_each_header_without_a_stamp_is_stamped() -> None:
+    """The headers of a goal's pose and of a path's poses count, as in rosbridge."""
+    sent = {
+        "header": {"frame_id": "map"},
+        "poses": [
+            {"header": {"frame_id": "map"}},
+            {"header": {"stamp": {"sec": 1}}},
+            {"header": []},
+            {},
+        ],
+    }
+
+    path = from_json(Path, sent, NOW_NS)
+
+    now = Time(sec=12, nanosec=34)
+    assert path.header.stamp == now
+    assert [pose.header.stamp for pose in path.poses] == [now, Time(sec=1), now, Time()]
+
+
+def test_a_header_that_is_the_message_is_stamped() -> None:
+    """Its type decides, not the name of a field."""
+    assert from_json(Header, {"frame_id": "map"}, NOW_NS).stamp == Time(sec=12, nanosec=34)
 
 
 def test_null_is_no_number() -> None:

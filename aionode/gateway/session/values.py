@@ -26,6 +26,8 @@ MessageT = TypeVar("MessageT", bound=Message)
 
 TIMES: Final = frozenset({"builtin_interfaces/msg/Time", "builtin_interfaces/msg/Duration"})
 
+HEADER: Final = "std_msgs/msg/Header"
+
 TIME_WORDS: Final = {"secs": "sec", "nsecs": "nanosec"}
 """The field names of times in ROS 1, which clients still send."""
 
@@ -123,8 +125,8 @@ def from_json(cls: type[MessageT], values: object, now_ns: int) -> MessageT:
     """Return the message that a client of rosbridge describes.
 
     Bytes are base64 text or a list of numbers, and a time may be ``"now"`` or have ``secs`` and
-    ``nsecs``. A list has the values of the fields in their order. A
-    ``header`` of the message that has no stamp is stamped with the present time.
+    ``nsecs``. A list has the values of the fields in their order. Each header that comes without a
+    stamp is stamped with the present time, at any depth, as rosbridge does.
 
     Args:
         cls: The class of the message.
@@ -134,19 +136,7 @@ def from_json(cls: type[MessageT], values: object, now_ns: int) -> MessageT:
     Raises:
         MessageError: a value does not fit its field, or a field does not exist.
     """
-    path = type_name(cls)
-    data = reworded(cls, values, now_ns, path)
-    header = data.get("header") if isinstance(data, Mapping) else None
-    if isinstance(header, Mapping) and "stamp" not in header and has_header(cls):
-        data = {**data, "header": {**header, "stamp": stamp(now_ns)}}  # type: ignore[dict-item] # a Mapping
-    return from_builtins(cls, data)
-
-
-def has_header(cls: type[Message]) -> bool:
-    """Return whether the field ``header`` of a message is a header of ROS."""
-    types = {field.name: field.type for field in fields(cls)}
-    header = types.get("header")
-    return header is not None and str(header) == "std_msgs/Header"
+    return from_builtins(cls, reworded(cls, values, now_ns, type_name(cls)))
 
 
 def stamp(time_ns: int) -> dict[str, int]:
@@ -170,6 +160,8 @@ def reworded(cls: type[Message], values: object, now_ns: int, path: str) -> obje
             return {TIME_WORDS.get(name, name): value for name, value in values.items()}
     if not isinstance(values, Mapping):
         return values
+    if cls.__ros_type__ == HEADER and "stamp" not in values:
+        values = {**values, "stamp": stamp(now_ns)}
     return {
         name: value
         if (type_ := types.get(name)) is None
