@@ -530,3 +530,44 @@ def test_names_of_launch_are_found_by_programs(tmp_path: Path) -> None:
     )
 
     assert done.stdout.strip() == "aionode.launch._launch", done.stderr
+
+
+@pytest.mark.parametrize(
+    "later",
+    [
+        "TimerAction(period=1.0, actions=[{}])",
+        "RegisterEventHandler(OnProcessExit(on_exit=[{}]))",
+        "RegisterEventHandler(OnProcessStart(on_start=[{}]))",
+        "RegisterEventHandler(OnShutdown(on_shutdown=[{}]))",
+        "GroupAction(scoped=False, actions=[TimerAction(period=1.0, actions=[{}])])",
+        "TimerAction(period=1.0, actions=[TimerAction(period=1.0, actions=[{}])])",
+    ],
+)
+def test_what_is_done_later_sees_arguments_that_are_declared_after_it(
+    files: Files, later: str
+) -> None:
+    """It is evaluated when it happens, and in its own scope."""
+    log = "LogInfo(msg=[LaunchConfiguration('speed'), EnvironmentVariable('COLOR')])"
+    plan = files.python(
+        f"""
+        {later.format(log)},
+        GroupAction([SetLaunchConfiguration('speed', 'of a group')]),
+        SetEnvironmentVariable('COLOR', 'red'),
+        DeclareLaunchArgument('speed', default_value='0.5 '),
+        """
+    )
+
+    assert [record["log"] for record in plan if "log" in record] == ["0.5 red"]
+
+
+def test_what_a_group_does_later_keeps_what_the_group_has_set(files: Files) -> None:
+    """What the file sets afterwards is outside of its scope."""
+    plan = files.python(
+        """
+        GroupAction([SetLaunchConfiguration('side', 'left'), TimerAction(period=1.0, actions=[
+            LogInfo(msg=LaunchConfiguration('side'))])]),
+        SetLaunchConfiguration('side', 'right'),
+        """
+    )
+
+    assert [record["log"] for record in plan] == ["left"]

@@ -66,21 +66,26 @@ class LaunchContext:
         self._locals: list[dict[str, Any]] = []
 
     def fork(self, *, ahead: bool = False) -> Self:
-        """Return a context with the same state and no steps, for what is done later.
+        """Return a context with no steps, for what is done later.
+
+        It has its state in common with this one, so that it sees what is declared and set in the
+        same scope meanwhile.
 
         Args:
             ahead: Whether that is evaluated before its time, to find what is wrong with it.
         """
         later = type(self)(argv=self.argv, noninteractive=self.noninteractive)
-        later.launch_configurations = dict(self.launch_configurations)
-        later.environment = dict(self.environment)
+        later.launch_configurations = self.launch_configurations
+        later.environment = self.environment
         later.locals = SimpleNamespace(**vars(self.locals))
         later.load_file = self.load_file
         later.packages = self.packages
         later.names = self.names  # one count for the whole description
         later.declared = self.declared
         later.ahead = ahead or self.ahead
-        if ahead:
+        if ahead:  # it changes nothing for those that are done
+            later.launch_configurations = dict(self.launch_configurations)
+            later.environment = dict(self.environment)
             later.locals.event = Unknown("event")
         return later
 
@@ -124,7 +129,8 @@ class LaunchContext:
 
     def push_launch_configurations(self) -> None:
         """Remember the launch configurations until the matching pop."""
-        self._configurations.append(dict(self.launch_configurations))
+        self._configurations.append(self.launch_configurations)
+        self.launch_configurations = dict(self.launch_configurations)
 
     def pop_launch_configurations(self) -> None:
         """Restore what the matching push remembered."""
@@ -132,7 +138,8 @@ class LaunchContext:
 
     def push_environment(self) -> None:
         """Remember the environment until the matching pop."""
-        self._environments.append(dict(self.environment))
+        self._environments.append(self.environment)
+        self.environment = dict(self.environment)
 
     def pop_environment(self) -> None:
         """Restore what the matching push remembered."""
@@ -140,7 +147,8 @@ class LaunchContext:
 
     def reset_environment(self) -> None:
         """Make the environment that of this process again."""
-        self.environment = dict(os.environ)
+        self.environment.clear()
+        self.environment.update(os.environ)
 
     def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
         """Have a handler called from now on."""
