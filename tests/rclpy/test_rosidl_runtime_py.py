@@ -9,14 +9,17 @@ from pathlib import Path
 import pytest
 
 import aionode.rclpy
-from aionode.rclpy import _finder
+from aionode.rclpy import _finder, _workspace
 from aionode.rclpy import _rosidl_runtime_py as runtime
 from aionode.rclpy._ament_index_python import (
     PackageNotFoundError,
+    get_package_prefix,
     get_package_share_directory,
     get_packages_with_prefixes,
     get_resource,
     get_resource_types,
+    get_resources,
+    has_resource,
 )
 from aionode.rclpy._rosidl import action_class, message_class, service_class
 from aionode.rclpy._rosidl_runtime_py.utilities import get_action, get_message, get_service
@@ -172,12 +175,24 @@ def test_installed_packages_are_found(tmp_path: Path, monkeypatch: pytest.Monkey
         runtime.get_interface_path("std_msgs/msg/String")
 
 
-def test_without_a_prefix_path_there_is_no_index(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The error names the variable."""
+def test_without_a_prefix_path_resources_are_those_of_the_workspace(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Launch files ask whether a package is there, and do without it otherwise."""
+    folder = tmp_path / "src" / "my_robot"
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    monkeypatch.setattr(_workspace, "GIVEN", [tmp_path])
 
-    with pytest.raises(OSError, match="'AMENT_PREFIX_PATH' is not set or empty"):
-        get_resource("packages", "my_robot")
+    assert has_resource("packages", "my_robot") == get_package_prefix("my_robot")
+    assert get_resource("packages", "my_robot") == ("", str(folder))
+    assert get_resources("packages")["my_robot"] == str(folder)
+    assert get_packages_with_prefixes()["my_robot"] == str(folder)
+    assert "packages" in get_resource_types()
+    assert has_resource("packages", "other") is False
+    with pytest.raises(LookupError, match="Could not find the resource 'other'"):
+        get_resource("packages", "other")
 
 
 def test_without_a_prefix_path_a_package_is_not_found(monkeypatch: pytest.MonkeyPatch) -> None:

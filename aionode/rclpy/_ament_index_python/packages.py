@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 import warnings
 from pathlib import Path
 
 from aionode import errors
 from aionode._packages import Packages
-from aionode.rclpy._ament_index_python.constants import AMENT_PREFIX_PATH_ENV_VAR
-from aionode.rclpy._ament_index_python.resources import get_resources
+from aionode.rclpy._ament_index_python.resources import PACKAGES, get_resources
 from aionode.rclpy._workspace import here
 
 __all__ = [
@@ -31,9 +29,7 @@ class PackageNotFoundError(KeyError):
 
 def get_packages_with_prefixes() -> dict[str, str]:
     """Return the prefix of each package, by its name; see `get_package_prefix`."""
-    packages = here()
-    installed = get_resources("packages") if AMENT_PREFIX_PATH_ENV_VAR in os.environ else {}
-    return installed | {name: str(folder) for name, folder in packages.sources().items()}
+    return get_resources(PACKAGES)
 
 
 def get_package_prefix(package_name: str) -> str:

@@ -1,12 +1,22 @@
-"""The resources of installed packages: files of which only the names count."""
+"""The resources of packages: files of which only the names count.
+
+A package of the workspace has the resource that says that it is there, as if it were installed into
+its source folder. After the folders of AMENT_PREFIX_PATH comes Python's own, for what pip installs.
+"""
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
-from typing import Literal
+from typing import Final, Literal
 
-from aionode.rclpy._ament_index_python.constants import RESOURCE_INDEX_SUBFOLDER
+from aionode.rclpy._ament_index_python.constants import (
+    AMENT_PREFIX_PATH_ENV_VAR,
+    RESOURCE_INDEX_SUBFOLDER,
+)
 from aionode.rclpy._ament_index_python.search_paths import get_search_paths
+from aionode.rclpy._workspace import here
 
 __all__ = [
     "InvalidResourceNameError",
@@ -18,12 +28,21 @@ __all__ = [
 ]
 
 
+PACKAGES: Final = "packages"
+"""The type of the resource that each package has: a file of its name."""
+
+
 class InvalidResourceTypeNameError(ValueError):
     """The type of a resource has a slash in its name."""
 
 
 class InvalidResourceNameError(ValueError):
     """A resource has a slash in its name."""
+
+
+def searched() -> list[str]:
+    """Return the folders that may have an index: those of ROS, if any, then Python's own."""
+    return [*(get_search_paths() if os.environ.get(AMENT_PREFIX_PATH_ENV_VAR) else ()), sys.prefix]
 
 
 def folders(resource_type: str) -> list[tuple[str, Path]]:
@@ -33,18 +52,19 @@ def folders(resource_type: str) -> list[tuple[str, Path]]:
     if "/" in resource_type or "\\" in resource_type:
         raise InvalidResourceTypeNameError(f"Resource type '{resource_type}' is invalid")
     return [
-        (prefix, Path(prefix, RESOURCE_INDEX_SUBFOLDER, resource_type))
-        for prefix in get_search_paths()
+        (prefix, Path(prefix, RESOURCE_INDEX_SUBFOLDER, resource_type)) for prefix in searched()
     ]
 
 
-def find(resource_type: str, resource_name: str) -> tuple[str, Path] | None:
-    """Return the prefix and the file of a resource."""
+def find(resource_type: str, resource_name: str) -> tuple[str, Path | None] | None:
+    """Return the prefix and the file of a resource; a package of the workspace has no file."""
     places = folders(resource_type)
     if not resource_name:
         raise AssertionError("The resource name must not be empty")
     if "/" in resource_name or "\\" in resource_name:
         raise InvalidResourceNameError(f"Resource name '{resource_name}' is invalid")
+    if resource_type == PACKAGES and (source := here().sources().get(resource_name)):
+        return str(source), None
     for prefix, folder in places:
         if (folder / resource_name).is_file():
             return prefix, folder / resource_name
@@ -56,7 +76,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
 
     Raises:
         LookupError: There is no such resource.
-        OSError: AMENT_PREFIX_PATH is not set, or the file cannot be read.
+        OSError: The file cannot be read.
     """
     resource = find(resource_type, resource_name)
     if resource is None:
@@ -64,7 +84,7 @@ def get_resource(resource_type: str, resource_name: str) -> tuple[str, str]:
             f"Could not find the resource '{resource_name}' of type '{resource_type}'"
         )
     prefix, file = resource
-    return file.read_text(), prefix
+    return "" if file is None else file.read_text(), prefix
 
 
 def has_resource(resource_type: str, resource_name: str) -> str | Literal[False]:
@@ -80,13 +100,16 @@ def get_resources(resource_type: str) -> dict[str, str]:
         for file in folder.iterdir() if folder.is_dir() else ():
             if not file.is_dir() and not file.name.startswith("."):
                 prefixes.setdefault(file.name, prefix)
+    if resource_type == PACKAGES:
+        prefixes |= {name: str(folder) for name, folder in here().sources().items()}
     return prefixes
 
 
 def get_resource_types() -> set[str]:
     """Return the types of all resources."""
-    indexes = [Path(prefix, RESOURCE_INDEX_SUBFOLDER) for prefix in get_search_paths()]
-    return {
+    indexes = [Path(prefix, RESOURCE_INDEX_SUBFOLDER) for prefix in searched()]
+    known = {PACKAGES} if here().sources() else set()
+    return known | {
         folder.name
         for index in indexes
         if index.is_dir()
