@@ -113,6 +113,36 @@ def test_a_class_made_of_a_description_has_the_same_hash(cls: Any) -> None:
     assert type_hash(made) == type_hash(cls)
 
 
+@pytest.mark.parametrize("name", ["Defaults", "Arrays", "BoundedSequences", "Strings", "WStrings"])
+def test_a_class_made_of_a_description_has_the_same_defaults(name: str) -> None:
+    """A message of defaults commands the same, whoever makes it."""
+    cls: Any = get_interface(f"test_msgs/msg/{name}")
+    made = type_from_description(description_message(cls))
+
+    assert cdr.encode(made()) == cdr.encode(cls())
+
+
+@pytest.mark.parametrize(
+    ("kind", "text"),
+    [
+        (INT32, "many"),
+        (INT32, "2147483648"),
+        (11, "0.05 m"),
+        (15, "maybe"),
+        (INT32 + 144, "5"),
+        (INT32 + 144, "(1, 'x')"),
+        (INT32 + 144, "[" * 10_000),
+    ],
+)
+def test_a_default_that_does_not_fit_is_an_error(kind: int, text: str) -> None:
+    """To leave it out would send another value than the node expects."""
+    description = one_field(kind, 0)
+    description.type_description.fields[0].default_value = text
+
+    with pytest.raises(TypeDescriptionError):
+        type_from_description(description)
+
+
 def test_an_action_is_made_of_the_descriptions_of_its_parts() -> None:
     """Nodes describe the services and the feedback of an action, not the action itself."""
     impl = Fibonacci.Impl

@@ -6,6 +6,7 @@ are made; what a class would cost is checked here, before the first message of i
 
 from __future__ import annotations
 
+import ast
 from types import new_class
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
@@ -54,6 +55,9 @@ LARGEST_BOUND: Final = 2**32 - 1
 
 LARGEST_MESSAGE: Final = 2**26
 """Largest size of a new message in bytes, estimated: all elements of its arrays included."""
+
+LONGEST_DEFAULT: Final = 2**20
+"""Largest number of characters of a default value."""
 
 VALUE_SIZE: Final = 64
 """About what one value of a message takes in memory, in bytes: a Python object and its place."""
@@ -125,6 +129,33 @@ def new_type(base: type[Any], name: str, body: dict[str, Any]) -> Any:
         raise TypeDescriptionError(name, brief(str(error))) from error
 
 
+def default_of(type_: FieldType, text: str) -> object:
+    """Return the default value that a text describes.
+
+    Raises:
+        ValueError: it is none of that type; or another exception of `ast.literal_eval`.
+        TypeError: it is no list.
+    """
+    if len(text) > LONGEST_DEFAULT:
+        raise ValueError("it is too long")
+    kind = type_.kind
+    if type_.container != "single":
+        value = ast.literal_eval(text)
+        if not isinstance(value, list | tuple):
+            raise TypeError("it is no list")
+        return tuple(value)
+    if kind in {"string", "wstring"}:
+        return text
+    if kind == "bool":
+        if text.lower() not in {"true", "false", "1", "0"}:
+            raise ValueError("use True or False")
+        return text.lower() in {"true", "1"}
+    if kind in {"float32", "float64"}:
+        return float(text)
+    number = int(text, 0)
+    return bytes((number,)) if kind == "byte" else number
+
+
 class DescribedTypes:
     """Makes the classes of one description, each on the first call.
 
@@ -180,10 +211,13 @@ class DescribedTypes:
 
     def _make(self, name: str) -> type[Message]:
         types: dict[str, FieldType] = {}
+        defaults: dict[str, object] = {}
         size_bytes = VALUE_SIZE
         for field in self.parts[name].fields:
             if field.name != PLACEHOLDER:
                 types[field.name] = self._field_type(field)
+                if field.default_value:
+                    defaults[field.name] = self._default(field, types[field.name])
                 size_bytes += self._size_of(types[field.name])
         if size_bytes > LARGEST_MESSAGE:
             raise self._error(
@@ -194,6 +228,7 @@ class DescribedTypes:
         body = {
             "__annotations__": {field: Annotated[Any, type_] for field, type_ in types.items()},
             "__doc__": f"{name}, as a node describes it.",
+            **defaults,
         }
         cls: type[Message] = new_type(Message, name, body)
         return cls
@@ -221,6 +256,17 @@ class DescribedTypes:
             CONTAINERS[container],
             described.capacity if sized else 0,
         )
+
+    def _default(self, field: Any, type_: FieldType) -> object:
+        """Return the default of a field, which ROS describes as Python writes it."""
+        text: str = field.default_value
+        try:
+            return default_of(type_, text)
+        except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError) as error:
+            raise self._error(
+                f"{brief(field.name)} has the default {brief(text)}, which is no {type_}: "
+                f"{brief(str(error))}"
+            ) from error
 
     def _size_of(self, type_: FieldType) -> int:
         """Return about how many bytes the field takes in a new message."""
