@@ -64,6 +64,7 @@ LONGEST_INTEGER = 100  # digits: far more than 64 bits need, far fewer than Pyth
 INTEGER = r"[+-]?(?:0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)"
 DECIMAL = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 HEXADECIMAL = r"[+-]?0[xX](?:[0-9a-fA-F]+(?:\.[0-9a-fA-F]*)?|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
+SIGNIFICANT = r"(?i)^[+-]?(?:0x[0.]*[1-9a-f]|[0.]*[1-9])"
 WORDS = r"(?ai)[+-]?(?:inf|infinity|nan)"
 
 DEEPEST = 100  # nested mappings: more parts than any name has, few enough for Python's stack
@@ -131,7 +132,7 @@ def is_octal(text: str) -> bool:
 
 
 def parse_double(text: str) -> float | str:
-    """Return the number that strtod parses, or the text if there is none, or it is too large."""
+    """Return the number that strtod parses; the text if there is none, or it has no room for it."""
     if re.fullmatch(WORDS, text):
         return float(text)
     number = None
@@ -142,7 +143,10 @@ def parse_double(text: str) -> float | str:
             number = float.fromhex(text)
         except OverflowError:
             return text
-    return text if number is None or abs(number) == float("inf") else number
+    if number is None or abs(number) == float("inf"):
+        return text
+    is_lost = number == 0 and re.search(SIGNIFICANT, text) is not None  # too small for a double
+    return text if is_lost else number
 
 
 def parse_value(text: str, source: str = "value") -> ParameterValueType:
@@ -326,14 +330,14 @@ def read_parameters(events: Events, prefix: str) -> Iterator[tuple[str, Paramete
 def read_value(events: Events) -> ParameterValueType:
     """Read a scalar or a sequence of scalars of one type."""
     if not events.at("SequenceStart"):
-        return read_scalar(events)
+        return read_scalar(events, bytes_too=False)
     events.take("SequenceStart")
     values: list[Any] = []
     while not events.at("SequenceEnd"):
         if not events.at("Scalar"):
             events.fail(f"{describe(events.next)} in a sequence; only scalars may stand there")
         text = events.next.value
-        value = read_scalar(events)
+        value = read_scalar(events, bytes_too=True)
         if values and type(value) is not type(values[0]):
             kinds = {bool: "bool", int: "integer", float: "double", str: "string", bytes: "byte"}
             events.fail(
@@ -345,8 +349,14 @@ def read_value(events: Events) -> ParameterValueType:
     return values
 
 
-def read_scalar(events: Events) -> bool | int | float | str | bytes:
-    """Read one scalar; ``!!binary`` stands for bytes, as ``ros2 param dump`` writes them."""
+def read_scalar(events: Events, *, bytes_too: bool) -> bool | int | float | str | bytes:
+    """Read one scalar.
+
+    Args:
+        events: What follows in the file.
+        bytes_too: Whether ``!!binary`` stands for bytes, as ``ros2 param dump`` writes the elements
+            of a list of bytes; else for its text, as for rcl, which has no parameter of one byte.
+    """
     if events.is_empty_scalar():
         events.fail("no value; for an empty string write ''")
     event = events.take("Scalar")
@@ -354,6 +364,8 @@ def read_scalar(events: Events) -> bool | int | float | str | bytes:
     if event.style in {"'", '"'} or event.tag == "tag:yaml.org,2002:str":
         return text
     if event.tag == "tag:yaml.org,2002:binary":
+        if not bytes_too:
+            return text
         try:
             return base64.b64decode(text)
         except ValueError as error:

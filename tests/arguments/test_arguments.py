@@ -364,6 +364,10 @@ def test_a_key_that_is_no_nodes_name_is_refused(key: str) -> None:
         ("-1E-3", -0.001),
         ("0x1p4", 16.0),
         ("1e999", "1e999"),
+        ("1e-400", "1e-400"),
+        ("-4.9e-325", "-4.9e-325"),
+        ("0x1p-1080", "0x1p-1080"),
+        ("0e-400", 0.0),
         (".inf", math.inf),
         ("+.Inf", math.inf),
         ("-.INF", -math.inf),
@@ -399,6 +403,8 @@ def test_not_a_number_is_a_number(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "value"),
     [
+        ("!!binary aGk=", "aGk="),
+        ("[!!binary aGk=]", [b"hi"]),
         ('"7"', "7"),
         ("'true'", "true"),
         ("!!str 12.5", "12.5"),
