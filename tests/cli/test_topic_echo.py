@@ -106,6 +106,17 @@ async def test_json_is_one_line_in_full(
     assert screen.records == [{"data": "x" * 200}]
 
 
+async def test_several_fields_are_printed_in_order(
+    running: Any, tool: Node, talker: Node, screen: Any
+) -> None:
+    """A plot of one against the other needs both of the same message."""
+    state = JointState(name=["a", "b"], position=[1.0, 2.0])
+
+    text = await echoed(running, tool, screen, talker, state, fields=("position", "name"))
+
+    assert text == "[1.0, 2.0]\n['a', 'b']\n---\n"
+
+
 async def test_long_arrays_and_strings_are_cut(
     running: Any, tool: Node, talker: Node, screen: Any
 ) -> None:
@@ -147,7 +158,7 @@ async def test_no_arr_and_no_str_describe_what_they_leave_out(
         ({"truncate_length": 1, "flow_style": True}, "data: [\"\\x01\", '...']\n---\n"),
         ({"no_arr": True}, "data: '<sequence type: octet, length: 3>'\n---\n"),
         ({"csv": True}, "b'\\x01',b'a',b'\\xff'\n"),
-        ({"field": "data"}, "[b'\\x01', b'a', b'\\xff']\n---\n"),
+        ({"fields": ("data",)}, "[b'\\x01', b'a', b'\\xff']\n---\n"),
     ],
 )
 async def test_bytes_are_characters(
@@ -193,7 +204,7 @@ async def test_field_prints_a_part(
     """A part that is a message is printed as one."""
     message = Twist(linear=Vector3(x=1.5))
 
-    text = await echoed(running, tool, screen, talker, message, field=path)
+    text = await echoed(running, tool, screen, talker, message, fields=(path,))
 
     assert text == shown
 
@@ -202,7 +213,7 @@ async def test_field_takes_an_index(running: Any, tool: Node, talker: Node, scre
     """``names[0]`` is what one would write in Python."""
     message = Int32MultiArray(data=[4, 5])
 
-    text = await echoed(running, tool, screen, talker, message, field="data[1]")
+    text = await echoed(running, tool, screen, talker, message, fields=("data[1]",))
 
     assert text == "5\n---\n"
 
@@ -221,7 +232,7 @@ async def test_a_wrong_field_says_which_there_are(
 ) -> None:
     """ros2 shows a Python error here."""
     with pytest.raises((CommandError, ExceptionGroup)) as raised:
-        await echoed(running, tool, screen, talker, Twist(), field=path)
+        await echoed(running, tool, screen, talker, Twist(), fields=(path,))
 
     assert raised.group_contains(CommandError, match=says) or raised.match(says)
 
@@ -233,7 +244,7 @@ async def test_filter_lets_through_what_fits(
     messages = [Twist(linear=Vector3(x=x)) for x in (1.0, 2.0, 3.0)]
 
     text = await echoed(
-        running, tool, screen, talker, *messages, field="linear.x", filter_text="m > 1.5"
+        running, tool, screen, talker, *messages, fields=("linear.x",), filter_text="m > 1.5"
     )
 
     assert text == "2.0\n---\n3.0\n---\n"

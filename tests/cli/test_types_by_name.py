@@ -68,7 +68,7 @@ async def test_echo_learns_a_type_from_the_node_that_publishes_it(
     learned = await topic_type(tool, "/words")
 
     assert learned is not Words
-    async with running(echo(tool, "/words", field="text", output=screen.output)):
+    async with running(echo(tool, "/words", fields=("text",), output=screen.output)):
         publisher.publish(Words(text="hello"))
         await settle()
     assert screen.text == "hello\n---\n"

@@ -162,8 +162,8 @@ def prepare_echo(options: dict[str, Any]) -> None:
     *qos_options("sensor_data"),
     csv_option,
     click.option(
-        "--field", metavar="PATH", shell_complete=complete_fields,
-        help="Print one field, such as pose.position or name[0].",
+        "--field", "fields", metavar="PATH", multiple=True, shell_complete=complete_fields,
+        help="Print one field, such as pose.position or name[0]; may be repeated.",
     ),
     *print_options,
     click.option("--no-lost-messages", is_flag=True, help="Do not report lost messages."),
@@ -198,7 +198,7 @@ async def echo(
     *,
     output: Output,
     qos: QoSProfile | None = None,
-    field: str | None = None,
+    fields: Sequence[str] = (),
     no_lost_messages: bool = False,
     raw: bool = False,
     filter_text: str | None = None,
@@ -215,10 +215,8 @@ async def echo(
         The exit status.
 
     Raises:
-        CommandError: the type cannot be determined, or `field` or a filter is invalid.
+        CommandError: the type cannot be determined, or a field or a filter is invalid.
     """
-    if field is not None and not field.strip("."):
-        raise CommandError(f"Invalid field value '{field}': expected a path such as pose.position")
     name = node.resolve_topic_name(topic_name)
     publishers = lookup.endpoints(node, EndpointKind.PUBLISHER, name=name)
     msg_type = await lookup.topic_type(node, name, message_type)
@@ -226,7 +224,7 @@ async def echo(
         raise no_type(node, name)
     if not publishers:
         output.warn(f"WARNING: topic [{name}] does not appear to be published yet")
-    printer = Printer(output, field=field, **printing)
+    printer = Printer(output, fields=fields, **printing)
     fits = filter_from(filter_text)
     follower = Follower(node)
     lost = 0

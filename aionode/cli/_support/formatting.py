@@ -6,12 +6,13 @@ import functools
 from typing import TYPE_CHECKING, Any
 
 from aionode.cli._support.field_path import field_of
+from aionode.errors import CommandError
 from aionode.message import Message
 from aionode.message._conversion import Form, plain, plain_value
 from aionode.qos import HistoryPolicy
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from aionode.cli._support.output import Output
     from aionode.graph import EndpointInfo
@@ -75,7 +76,10 @@ class Printer:
             as ``--json`` always does.
         no_arr: Whether arrays are described instead of printed.
         no_str: Whether strings are described instead of printed.
-        field: The path of the only field to print.
+        fields: The paths of the fields to print; all of the message if there are none.
+
+    Raises:
+        CommandError: A path is empty.
     """
 
     def __init__(
@@ -87,14 +91,19 @@ class Printer:
         truncate_length: int | None = 128,
         no_arr: bool = False,
         no_str: bool = False,
-        field: str | None = None,
+        fields: Sequence[str] = (),
     ) -> None:
+        for path in fields:
+            if not path.strip("."):
+                raise CommandError(
+                    f"Invalid field value '{path}': expected a path such as pose.position"
+                )
         self._output = output
         self._csv = csv
         self._flow_style = flow_style
-        self._field = field
+        self._fields = fields
         # ros2 prints a `byte` as a character, in CSV and as a single field as bytes.
-        as_byte = chr if not (csv or field) else lambda number: bytes((number,))
+        as_byte = chr if not (csv or fields) else lambda number: bytes((number,))
         self._form = Form(
             as_byte=int if output.json else as_byte,
             truncate=None if output.json else truncate_length,
@@ -103,14 +112,19 @@ class Printer:
         )
 
     def part_of(self, msg: Any) -> Any:
-        """Return the part of a message that is printed: all of it, or one field."""
-        return self._part_and_type(msg)[0]
+        """Return the part of a message that is printed: all of it, one field, or a list of them."""
+        parts = [part for part, _ in self._parts(msg)]
+        return parts[0] if len(parts) == 1 else parts
 
     def show(self, msg: Any, info: Mapping[str, int] | None = None) -> None:
         """Print one message, or its bytes, after `info` if given."""
         if isinstance(msg, Message):
-            part, type_ = self._part_and_type(msg)
-            self.show_plain(self.plain(part, type_), info, as_yaml=isinstance(part, Message))
+            parts = self._parts(msg)
+            if len(parts) == 1:
+                ((part, type_),) = parts
+                self.show_plain(self.plain(part, type_), info, as_yaml=isinstance(part, Message))
+            else:
+                self._show_fields([self.plain(part, type_) for part, type_ in parts], info)
         elif self._output.json:
             self.show_plain(bytes(msg), info)  # as Base64
         else:
@@ -141,10 +155,24 @@ class Printer:
             body = yaml_text(plain, flow_style=self._flow_style) if as_yaml else f"{plain}\n"
             self._output.text(f"{head}{body}---")
 
-    def _part_and_type(self, msg: Any) -> tuple[Any, FieldType | None]:
-        if self._field is None or not isinstance(msg, Message):
-            return msg, None
-        return field_of(msg, self._field)
+    def _show_fields(self, values: list[Any], info: Mapping[str, int] | None) -> None:
+        """Print several fields, in the order of the command line."""
+        if self._output.json or self._csv:
+            self.show_plain(dict(zip(self._fields, values, strict=True)), info)
+            return
+        head = "" if info is None else f"{yaml_text(info)}---\n"
+        bodies = [
+            yaml_text(value, flow_style=self._flow_style)
+            if isinstance(value, dict)
+            else f"{value}\n"
+            for value in values
+        ]
+        self._output.text(f"{head}{''.join(bodies)}---")
+
+    def _parts(self, msg: Any) -> list[tuple[Any, FieldType | None]]:
+        if not self._fields or not isinstance(msg, Message):
+            return [(msg, None)]
+        return [field_of(msg, path) for path in self._fields]
 
 
 def names_text(names: list[str]) -> str:
