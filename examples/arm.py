@@ -10,7 +10,7 @@ look at it from another terminal with ``aionode tf tree``.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, sin, tau
+from math import cos, hypot, sin, tau
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -58,7 +58,8 @@ class Joint:
 def joints_of(urdf: Path) -> list[Joint]:
     """Return the joints of a robot's description."""
     found: list[Joint] = []
-    for joint in ET.parse(urdf).iter("joint"):  # noqa: S314  # our own file
+    # Those of transmissions and sensors, deeper in the file, only name joints.
+    for joint in ET.parse(urdf).getroot().findall("joint"):  # noqa: S314  # our own file
         texts = {part.tag: part.attrib for part in joint}
         found.append(
             Joint(
@@ -66,11 +67,17 @@ def joints_of(urdf: Path) -> list[Joint]:
                 texts["parent"]["link"],
                 texts["child"]["link"],
                 numbers(texts.get("origin", {}).get("xyz", "0 0 0")),
-                numbers(texts.get("axis", {}).get("xyz", "1 0 0")),
+                unit(numbers(texts.get("axis", {}).get("xyz", "1 0 0"))),
                 joint.attrib["type"] == "fixed",
             )
         )
     return found
+
+
+def unit(axis: tuple[float, ...]) -> tuple[float, ...]:
+    """Return an axis with the length 1, which a URDF need not give it."""
+    length = hypot(*axis)
+    return tuple(part / length for part in axis) if length else axis
 
 
 def numbers(text: str) -> tuple[float, ...]:
