@@ -48,7 +48,7 @@ class ServiceUnavailableError(ServiceError, TimeoutError):
     def __init__(self, service: str) -> None:
         super().__init__(
             service,
-            "the server went away before it replied; await wait_for_service() and call again",
+            "the server went away before it replied; call again once a server is there",
         )
 
 
@@ -159,7 +159,7 @@ class GoalLostError(GoalError):
     def __init__(self, action: str, goal_id: str, problem: str) -> None:
         self.problem = problem
         super().__init__(
-            action, goal_id, f"was lost: {problem}; await wait_for_server() and send it again"
+            action, goal_id, f"was lost: {problem}; send it again once a server is there"
         )
 
 

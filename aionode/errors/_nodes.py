@@ -26,7 +26,10 @@ class NodeNameNonExistentError(AionodeError, LookupError, RuntimeError):
 
     def __init__(self, node: str) -> None:
         self.node = node
-        super().__init__(f"{node}: no such node; `await node.wait_for_node(name)` waits for one")
+        super().__init__(
+            f"{node}: no such node; look at the names that are there, or wait for it, as "
+            "wait_for_node() does"
+        )
 
 
 class NodeNotRunningError(AionodeError, RuntimeError):
