@@ -183,3 +183,24 @@ def test_an_executable_that_is_missing_is_named(
         Programs([], None).command(args)
 
     assert says in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import rosbag2_py",
+        "from tf2_ros import Buffer",
+        "__import__('importlib').import_module('rclpy')",
+    ],
+)
+def test_a_program_that_needs_ros_is_told_by_which_option_it_runs(
+    line: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In one line, where its text does not show that it is a program of rclpy."""
+    program = tmp_path / "needs_ros.py"
+    program.write_text(line)
+
+    assert main(["run", str(program)]) == 1
+
+    (text,) = capsys.readouterr().err.splitlines()
+    assert text.endswith(f"`aionode run --rclpy {program}`")

@@ -8,10 +8,10 @@ from __future__ import annotations
 import ast
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import click
 
@@ -99,7 +99,7 @@ def run_command(
     if command is not None:
         become(command)
     # Not before: a program that takes the place of this process needs no nodes here.
-    from aionode._node_source import FITS, node_maker
+    from aionode._node_source import FITS
     from aionode.runner import run
 
     if rclpy or interfaces:
@@ -114,7 +114,25 @@ def run_command(
     if not specs:
         raise click.UsageError(f"Nothing to run: {FITS}.")
     sys.path[:0] = [str(Path.cwd()), *programs.module_folders(specs)]
-    run(*(node_maker(spec) for spec in specs), args=list(ros_args))
+    run(*(maker_of(spec) for spec in specs), args=list(ros_args))
+
+
+def maker_of(spec: str) -> Callable[[], Any]:
+    """Return what makes the node that is named, as `node_maker` does.
+
+    Raises:
+        CommandError: There is no such thing, or it imports what is not installed; a program of
+            rclpy may do so by a name that its text does not show.
+    """
+    from aionode._node_source import node_maker
+
+    try:
+        return node_maker(spec)
+    except ModuleNotFoundError as error:
+        raise CommandError(
+            f"{spec}: it imports {error.name}, which is not installed; "
+            f"a program of ROS 2 runs by `aionode run --rclpy {spec}`"
+        ) from error
 
 
 class Programs:
