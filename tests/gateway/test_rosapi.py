@@ -189,6 +189,29 @@ async def test_a_parameter_is_set_and_deleted(client: RosbridgeClient, node: Nod
         assert answer["values"]["reason"]
 
 
+@pytest.mark.parametrize(
+    ("present", "text", "value"),
+    [
+        (1.5, "2", 2.0),
+        ([1.5], "[2, 3]", [2.0, 3.0]),
+        ([1.5], "[3.5, 4]", [3.5, 4.0]),
+        (1, "2", 2),
+        ([1], "[2, 3]", [2, 3]),
+    ],
+)
+async def test_a_double_may_be_written_as_a_whole_number(
+    client: RosbridgeClient, node: Node, present: Any, text: str, value: Any
+) -> None:
+    """JavaScript cannot write 2.0."""
+    node.declare_parameter("gain", present)
+
+    done = await client.call("/rosapi/set_param", name="/robot_node:gain", value=text)
+
+    assert done["values"] == {"successful": True, "reason": ""}
+    got = node.get_parameter("gain").value
+    assert (list(got) if isinstance(value, list) else got) == value
+
+
 async def test_a_parameter_that_is_not_there_has_the_default(client: RosbridgeClient) -> None:
     """A name without a colon is a mistake, of which the client is told."""
     for name in ("/robot_node:none", "nonsense", "/none:speed"):

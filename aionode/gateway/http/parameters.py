@@ -8,7 +8,6 @@ from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
 from aionode.gateway.http.answers import Asked, json_response
-from aionode.gateway.session.client_json import check_items
 
 __all__ = ["set_parameter", "show_parameters"]
 
@@ -44,25 +43,10 @@ async def set_parameter(asked: Asked) -> Response:
     node, parameter = node_and_parameter(asked)
     if not parameter:
         raise HTTPException(404, f"{node}: name a parameter, as in /parameters{node}/rate")
-    value = asked.json()
-    check_items(value, parameter)
-    asked.session.decide("parameter", f"{node}:{parameter}", "")  # before anything is read
-    present = (await asked.session.get_parameters(node, [parameter])).get(parameter)
-    (result,) = await asked.session.set_parameters(node, {parameter: as_real(value, present)})
+    result = await asked.session.set_json_parameter(node, parameter, asked.json())
     if not result.successful:
         raise HTTPException(409, f"{node}: {parameter}: {result.reason}")
     return Response(status_code=204)
-
-
-def as_real(value: Any, present: Any) -> Any:
-    """Return whole numbers as the parameter has them: JSON may write 1.0 as 1."""
-    if isinstance(value, list):
-        like = plain(present)
-        example = like[0] if isinstance(like, list) and like else None
-        return [as_real(item, example) for item in value]
-    if isinstance(present, float) and type(value) is int:
-        return float(value)
-    return value
 
 
 def plain(value: Any) -> Any:

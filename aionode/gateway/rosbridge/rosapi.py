@@ -310,7 +310,7 @@ async def set_param(session: Session, args: Args) -> dict[str, Any]:
     try:
         value = decoded(args["value"], session._limits.frame_parts, "value")
         node, parameter = parameter_name(args["name"])
-        (result,) = await session.set_parameters(node, {parameter: value})
+        result = await session.set_json_parameter(node, parameter, value)
     except (AionodeError, TimeoutError) as error:
         return failed(error)
     return {"successful": result.successful, "reason": result.reason}

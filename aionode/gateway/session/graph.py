@@ -14,7 +14,7 @@ from aionode.errors import AionodeError, MessageError, NodeNameNonExistentError,
 from aionode.gateway.session.base import SessionBase
 from aionode.gateway.session.client_json import check_items
 from aionode.graph import TOPIC_KINDS, EndpointKind
-from aionode.parameter import Parameter
+from aionode.parameter import Parameter, ParameterType
 from aionode.parameter_client import AsyncParameterClient
 
 if TYPE_CHECKING:
@@ -193,6 +193,28 @@ class SessionGraph(SessionBase):
                 parameters = await client.get_parameters(names)
         return {parameter.name: parameter.value for parameter in parameters}
 
+    async def set_json_parameter(self, node: str, name: str, value: Any) -> SetParametersResult:
+        """Set a parameter to a value in JSON, where a double may be written as 2.
+
+        Args:
+            node: The full name of the node.
+            name: The name of the parameter.
+            value: The value; None undeclares the parameter.
+
+        Raises:
+            RefusedError: the policy does not allow it.
+            ServiceError: the node offers no parameters.
+            TimeoutError: the node has not answered within 5 s.
+            MessageError: the value is none that parameters have (a ValueError).
+        """
+        check_items(value, name)
+        self.decide("parameter", f"{node}:{name}", "")  # before anything is read
+        if holds_whole(value):
+            present = (await self.get_parameters(node, [name])).get(name)
+            value = as_real(value, Parameter(name, value=present).type_)
+        (result,) = await self.set_parameters(node, {name: value})
+        return result
+
     async def set_parameters(
         self, node: str, values: Mapping[str, Any]
     ) -> list[SetParametersResult]:
@@ -224,6 +246,21 @@ class SessionGraph(SessionBase):
             duration_ns=self.steady_ns() - began_ns, way=self.kind,
         )  # fmt: skip
         return results
+
+
+def holds_whole(value: Any) -> bool:
+    """Return whether a value in JSON is or has a whole number."""
+    return any(type(item) is int for item in (value if isinstance(value, list) else [value]))
+
+
+def as_real(value: Any, type_: ParameterType) -> Any:
+    """Return whole numbers as doubles where the parameter has them, or the list mixes both."""
+    if isinstance(value, list):
+        is_mixed = any(isinstance(item, float) for item in value)
+        if is_mixed or type_ is ParameterType.DOUBLE_ARRAY:
+            return [as_real(item, ParameterType.DOUBLE) for item in value]
+        return value
+    return float(value) if type_ is ParameterType.DOUBLE and type(value) is int else value
 
 
 def parameter_of(name: str, value: Any) -> Parameter:
