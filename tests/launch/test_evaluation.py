@@ -571,3 +571,14 @@ def test_what_a_group_does_later_keeps_what_the_group_has_set(files: Files) -> N
     )
 
     assert [record["log"] for record in plan] == ["left"]
+
+
+def test_a_launch_file_uses_functions_of_another_file(files: Files) -> None:
+    """As those of many robots do; what fails in it is said with its place."""
+    lib = files.write("lib.py", "def text():\n    return 'from lib'\n")
+    broken = files.write("broken.py", "\n1 / 0\n")
+
+    plan = files.python(f"LogInfo(msg=load_python_launch_file_as_module({lib!r}).text()),")
+    assert [record["log"] for record in plan] == ["from lib"]
+    with pytest.raises(LaunchFileError, match=r"broken\.py:2: ZeroDivisionError"):
+        files.python(f"load_python_launch_file_as_module({broken!r}),")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from importlib.machinery import SourceFileLoader
+from importlib.util import module_from_spec, spec_from_loader
+from types import ModuleType
 from typing import Any, ClassVar
 
 from aionode.launch._launch.launch_context import LaunchContext
@@ -18,6 +21,7 @@ __all__ = [
     "PythonLaunchDescriptionSource",
     "XMLLaunchDescriptionSource",
     "YAMLLaunchDescriptionSource",
+    "load_python_launch_file_as_module",
 ]
 
 
@@ -76,3 +80,13 @@ class YAMLLaunchDescriptionSource(AnyLaunchDescriptionSource):
     """A file in YAML."""
 
     kind = "yaml"
+
+
+def load_python_launch_file_as_module(python_launch_file_path: str) -> ModuleType:
+    """Run a file of Python, whatever its ending, and return its module for a launch file to use."""
+    loader = SourceFileLoader("python_launch_file", python_launch_file_path)
+    spec = spec_from_loader(loader.name, loader)
+    assert spec is not None  # noqa: S101  # a loader of source always gives one
+    module = module_from_spec(spec)
+    loader.exec_module(module)
+    return module
