@@ -340,6 +340,45 @@ async def test_parameters_are_read_set_and_followed(
         assert value | {"value": 2.0} in everything["parameters"]
 
 
+async def test_a_parameter_that_is_refused_leaves_the_others_to_be_set(
+    node: Node, node_factory: Callable[..., Node]
+) -> None:
+    """The values always follow: a viewer waits for them, and shows what the nodes have."""
+    driver = node_factory("driver")
+    driver.declare_parameter("speed", 0.5)
+    driver.declare_parameter("name", "left")
+    parameters = [
+        {"name": "/driver.name", "value": 7},
+        {"name": "/nobody.speed", "value": 1.0},
+        {"name": "/driver.speed", "value": 2.0},
+    ]
+    async with client_of(node) as client:
+        client.send("setParameters", parameters=parameters, id="a")
+        follows = await client.op("parameterValues")
+        refused = await client.op("status")
+
+    values = {each["name"]: each["value"] for each in follows["parameters"]}
+    assert follows["id"] == "a"
+    assert values == {"/driver.name": "left", "/driver.speed": 2.0}
+    assert "/driver.name" in refused["message"]
+    assert "/nobody" in refused["message"]
+
+
+async def test_parameters_are_read_though_one_node_does_not_answer(
+    node: Node, node_factory: Callable[..., Node]
+) -> None:
+    """What can be told is told."""
+    node_factory("driver").declare_parameter("speed", 0.5)
+    async with client_of(node) as client:
+        names = ["/nobody.speed", "/driver.speed"]
+        client.send("getParameters", parameterNames=names, id="a")
+        told = await client.op("parameterValues")
+        refused = await client.op("status")
+
+    assert [each["name"] for each in told["parameters"]] == ["/driver.speed"]
+    assert "/nobody" in refused["message"]
+
+
 async def test_the_connection_graph_shows_who_talks_with_whom(node: Node) -> None:
     """First all of it, then what has changed."""
     publisher = node.create_publisher(String, "/words", 1)

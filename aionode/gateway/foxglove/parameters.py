@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.errors import MessageError
+from aionode.errors import AionodeError, MessageError
 from aionode.gateway.foxglove import frames
 from aionode.parameter import Parameter
 
@@ -46,18 +47,21 @@ class Parameters:
         """Send parameters; without names those of all nodes.
 
         Raises:
-            MessageError: a name is not that of a node, a dot, and a parameter.
-            RefusedError: the policy hides a node.
+            MessageError: a name is not that of a node, a dot, and a parameter; or a node does not
+                tell its parameters, and those of the others are sent.
         """
         wanted = by_node(names) if names else await self._session.all_parameter_names()
+        failures = Failures()
         shown: list[dict[str, Any]] = []
         for node, own in wanted.items():
-            values = await self._session.get_parameters(node, own)
-            shown += [
-                frames.shown_parameter(f"{node}.{name}", Parameter(name, value=value))
-                for name, value in values.items()
-            ]
+            with failures.of(node, TimeoutError):
+                values = await self._session.get_parameters(node, own)
+                shown += [
+                    frames.shown_parameter(f"{node}.{name}", Parameter(name, value=value))
+                    for name, value in values.items()
+                ]
         self._send(shown, request_id)
+        failures.tell("getParameters")
 
     async def set(
         self, parameters: Sequence[frames.FoxgloveParameter], request_id: str | None
@@ -65,26 +69,42 @@ class Parameters:
         """Set parameters, and send their values if the client has asked for them.
 
         Raises:
-            MessageError: a value is none that parameters have, or its node refuses it.
-            RefusedError: the policy refuses it.
+            MessageError: a name is not that of a node, a dot, and a parameter; or some parameters
+                cannot be set, and the others are.
         """
         given = {parameter.name: parameter for parameter in parameters}
+        failures = Failures()
+        told: list[str] = []
         for node, own in by_node(given).items():
+            allowed = []
             for name in own:  # before anything is read
-                self._session.decide("parameter", f"{node}:{name}", "")
-            now = await self._session.get_parameters(node, own)
-            changed = {
-                name: frames.parameter_of(
-                    name, given[f"{node}.{name}"], Parameter(name, value=now.get(name)).type_
-                ).value
-                for name in own
-            }
-            results = await self._session.set_parameters(node, changed)
-            for name, result in zip(changed, results, strict=True):
-                if not result.successful:
-                    raise MessageError(f"{node}.{name}", result.reason)
+                with failures.of(f"{node}.{name}"):
+                    self._session.decide("parameter", f"{node}:{name}", "")
+                    if not self._session._sees(f"{node}:{name}", []):
+                        raise MessageError(name, "the policy does not show it")
+                    allowed.append(name)
+            with failures.of(node, TimeoutError):  # then the node is not asked again
+                now = await self._session.get_parameters(node, allowed)
+                told += [f"{node}.{name}" for name in allowed]
+                for name in allowed:
+                    with failures.of(f"{node}.{name}"):
+                        await self._set_one(node, given[f"{node}.{name}"], name, now.get(name))
         if request_id is not None:
-            await self.get(list(given), request_id)
+            if told:
+                with failures.of("getParameters"):
+                    await self.get(told, request_id)
+            else:  # without names, `get` would tell all
+                self._send([], request_id)
+        failures.tell("setParameters")
+
+    async def _set_one(
+        self, node: str, given: frames.FoxgloveParameter, name: str, now: object
+    ) -> None:
+        type_ = Parameter(name, value=now).type_
+        value = frames.parameter_of(name, given, type_).value
+        (result,) = await self._session.set_parameters(node, {name: value})
+        if not result.successful:
+            raise MessageError(name, result.reason)
 
     async def follow(self, names: Sequence[str]) -> None:
         """Send parameters whenever they change; without names all of them.
@@ -140,6 +160,31 @@ class Parameters:
         if request_id is not None:
             fields["id"] = request_id
         self._session.outbox.send(frames.op_frame("parameterValues", fields))
+
+
+class Failures:
+    """What has failed of a request about several parameters; the others have succeeded."""
+
+    def __init__(self) -> None:
+        self._texts: list[str] = []
+
+    @contextlib.contextmanager
+    def of(self, subject: str, *others: type[Exception]) -> Iterator[None]:
+        """Keep the error of the block: one of aionode's own, or of `others`."""
+        kinds: tuple[type[Exception], ...] = (AionodeError, *others)
+        try:
+            yield
+        except kinds as error:
+            self._texts.append(f"{subject}: {str(error) or 'no answer in time'}")
+
+    def tell(self, request: str) -> None:
+        """Raise if anything has failed.
+
+        Raises:
+            MessageError: it has.
+        """
+        if self._texts:
+            raise MessageError(request, "; ".join(self._texts))
 
 
 def by_node(names: Iterable[str]) -> dict[str, list[str]]:
