@@ -33,6 +33,7 @@ from aionode.engine.transport.drops import Drops
 from aionode.engine.transport.local import LocalTransport
 from aionode.engine.transport.network import network_from, new_participant, unheard_middleware
 from aionode.engine.wire._liveliness import endpoint_token, gid_of
+from aionode.engine.wire._replaced_texts import REPLACED_TEXTS
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import ConfigurationError, EntityDestroyedError, ForkedProcessError, brief
 from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
@@ -193,6 +194,7 @@ class Context:
         )
         self.graph = Graph(self.participant)
         self.drops = Drops()
+        self._replaced_before = REPLACED_TEXTS.total()
         MismatchReport(self.graph, self.participant)
         DuplicateReport(self.graph, self.participant)
         self.time_base: TimeBase = clock if clock is not None else MachineTime()
@@ -534,12 +536,14 @@ class Context:
         """How many things of other processes were dropped or refused, by the reason.
 
         Such as ``malformed``; the log has said what they were. What the QoS of a subscription lets
-        go is in its `stats`.
+        go is in its `stats`. ``replaced_texts`` counts messages of the whole process that were
+        not dropped: a text in them is no Unicode, and was read with U+FFFD instead.
         """
         drops = {
             id(drops): drops for drops in (self.drops, *(each.drops for each in self._transports))
         }
-        return sum((each.totals() for each in drops.values()), Counter())
+        replaced = Counter(replaced_texts=REPLACED_TEXTS.total() - self._replaced_before)
+        return +sum((each.totals() for each in drops.values()), replaced)
 
     @property
     def transports(self) -> tuple[Transport, ...]:

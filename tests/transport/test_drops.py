@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import asyncio
 import logging
 from pathlib import Path
 
@@ -12,6 +13,8 @@ from aionode.engine import transport
 from aionode.engine.context import Context
 from aionode.engine.transport.drops import SUBJECTS, Drop, Drops
 from aionode.engine.transport.local import LocalTransport
+from aionode.interfaces.std_msgs.msg import String
+from aionode.node import Node
 
 FOLDER = Path(str(transport.__file__)).parent
 SOURCES = {
@@ -127,6 +130,18 @@ def test_a_context_tells_what_all_of_its_transports_dropped() -> None:
     drops.note(Drop.REQUESTS, "/add", "32 MiB", count=2)
 
     assert context.dropped == {"malformed": 1, "requests": 2}
+
+
+async def test_a_context_counts_messages_with_replaced_texts() -> None:
+    """They came, but not as they were sent; callbacks of every transport read them alike."""
+    heard: asyncio.Queue[str] = asyncio.Queue()
+    async with Context(transport="local") as context, Node("n", context=context) as node:
+        publisher = node.create_publisher(String, "battery", 10)
+        node.create_subscription(String, "battery", lambda msg: heard.put_nowait(msg.data), 10)
+        publisher.publish(b"\0\1\0\0\6\0\0\x0080 \xb0C\0")
+
+        assert await heard.get() == "80 \N{REPLACEMENT CHARACTER}C"
+        assert context.dropped == {"replaced_texts": 1}
 
 
 def names_in(node: ast.AST) -> set[str]:

@@ -1,7 +1,8 @@
 """Decodes any message field by field: slower than the generated functions, but more lenient.
 
 It accepts both byte orders and the output of writers that are less strict than ROS, and its errors
-name the field and the offset. Lengths are checked against the remaining bytes before anything is
+name the field and the offset. Text that is no Unicode is decoded here only, with U+FFFD for what is
+wrong in it, as rclpy decodes it. Lengths are checked against the remaining bytes before anything is
 allocated, so a corrupt length cannot make the result much larger than the data.
 """
 
@@ -11,10 +12,11 @@ import struct
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from aionode.engine.wire._replaced_texts import REPLACED_TEXTS
 from aionode.engine.wire.cdr._constants import COUNT_SIZE, HEADER
 from aionode.engine.wire.cdr._family import OWN, MessageFamily
 from aionode.engine.wire.cdr._layout import PRIMITIVES, minimum_size, padding
-from aionode.engine.wire.cdr._strings import wide_string
+from aionode.engine.wire.cdr._strings import repaired_wide_string, wide_string
 from aionode.errors import DecodeError
 from aionode.message import fields, type_name
 
@@ -48,6 +50,8 @@ class FallbackDecoder:
         self._pos = 0
         self._path = ""
         self._order = "<"
+        self._replaced: tuple[str, bytes] | None = None
+        """Where the first text is that is no Unicode, and its bytes."""
 
     def whole(self) -> Any:
         """Decode the header and the message after it."""
@@ -56,7 +60,10 @@ class FallbackDecoder:
             self._pos = 0
             self._fail(f"starts with {start.hex(' ')}, needs 00 01 (CDR, little endian) or 00 00")
         self._order = ORDERS[start]
-        return self._message(self._cls)
+        message = self._message(self._cls)
+        if self._replaced is not None:
+            REPLACED_TEXTS.note(type_name(self._cls), *self._replaced)
+        return message
 
     def _message(self, cls: type[Message]) -> Any:
         described = fields(cls)
@@ -103,25 +110,23 @@ class FallbackDecoder:
 
     def _text(self) -> str:
         size = self._count("bytes of text")
-        start = self._pos
         data = bytes(self._take(size, f"{size} bytes of text"))
         # Some writers leave out the NUL, or write a length of 0 for an empty string.
         data = data.removesuffix(b"\0")
         try:
             return data.decode()
-        except UnicodeDecodeError as error:
-            self._pos = start + error.start
-            self._fail(f"invalid UTF-8 ({error.reason})")
+        except UnicodeDecodeError:
+            self._replaced = self._replaced or (self._path, data)
+            return data.decode(errors="replace")
 
     def _wide_text(self) -> str:
         count = self._count("characters")
-        start = self._pos
         data = self._take(4 * count, f"{count} characters of 4 bytes")
         try:
             return wide_string(data, self._order)
-        except UnicodeDecodeError as error:
-            self._pos = start
-            self._fail(f"invalid UTF-16 or UTF-32 ({error.reason})")
+        except UnicodeDecodeError:
+            self._replaced = self._replaced or (self._path, bytes(data))
+            return repaired_wide_string(data, self._order)
 
     def _array(self, kind: FieldType, count: int) -> Any:
         import numpy as np

@@ -12,6 +12,7 @@ __all__ = [
     "StringsReader",
     "StringsWriter",
     "read_wide_strings",
+    "repaired_wide_string",
     "wide_bytes",
     "wide_string",
     "wide_strings",
@@ -127,6 +128,18 @@ def wide_string(data: Any, order: str = "<") -> str:
             "utf-16", bytes(data), 0, len(data), "surrogate pairs mixed with UTF-32"
         )
     return struct.pack(f"<{len(units)}H", *units).decode("utf-16-le")
+
+
+def repaired_wide_string(data: Any, order: str) -> str:
+    """Return a wide string in which U+FFFD stands for whatever is neither UTF-16 nor UTF-32."""
+    units = struct.unpack(f"{order}{len(data) // 4}I", data)
+    octets = b"".join(
+        struct.pack("<H", unit)
+        if unit < 0x10000
+        else chr(unit if unit < 0x110000 else 0xFFFD).encode("utf-16-le")
+        for unit in units
+    )
+    return octets.decode("utf-16-le", "replace")
 
 
 def read_wide_strings(data: Any, pos: int, count: int) -> tuple[list[str], int]:
