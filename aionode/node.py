@@ -123,25 +123,25 @@ class Node(NodeEndpoints, NodeGraphQueries):
             parameter_overrides=parameter_overrides or (),
             allow_undeclared_parameters=allow_undeclared_parameters,
         )
-        self._join_context()
-        shared, own = self._shared_arguments, self._own_arguments
+        self._Node__join_context()
+        shared, own = self._Node__shared_arguments, self._Node__own_arguments
         if enable_rosout and shared.rosout_logs and own.rosout_logs:
-            self._stop_rosout = builtin_services.publish_log(self, rosout_qos_profile)
-        self._parameter_store.publish = builtin_services.publish_parameter_events(self)
-        for usage in self._usages:
+            self._Node__stop_rosout = builtin_services.publish_log(self, rosout_qos_profile)
+        self._Node__parameter_store.publish = builtin_services.publish_parameter_events(self)
+        for usage in self._Node__usages:
             if not usage.is_over:
-                usage.note_parameters(self._parameter_store)
+                usage.note_parameters(self._Node__parameter_store)
         if automatically_declare_parameters_from_overrides:
             dynamic = ParameterDescriptor(dynamic_typing=True)
-            for name in self._parameter_store.overrides:
+            for name in self._Node__parameter_store.overrides:
                 self.declare_parameter(name, descriptor=dynamic)
-        TimeSource(self, self._clock)
+        TimeSource(self, self._Node__clock)
         if start_parameter_services:
-            builtin_services.serve_parameters(self, self._parameter_store)
+            builtin_services.serve_parameters(self, self._Node__parameter_store)
         builtin_services.serve_type_descriptions(self)
         if enable_logger_service:
             builtin_services.serve_logger_levels(self)
-        self._constructed = True
+        self._Node__constructed = True
 
     def create_action_server(
         self,

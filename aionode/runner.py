@@ -145,7 +145,7 @@ def refuse_created_before(
     if not any(node_rules) and arguments.rosout_logs:
         return
     for node in nodes:
-        if isinstance(node, Node) and node._uses_global_arguments:
+        if isinstance(node, Node) and node._Node__uses_global_arguments:
             given = args[args.index("--ros-args") + 1 :]
             raise InvalidROSArgsError(
                 " ".join(given),

@@ -95,22 +95,22 @@ class Supervisor(Generic[NodeT]):
             raise ValueError(
                 f'Supervisor: restart={restart!r} is unknown; use "on-failure", "always" or "no"'
             )
-        self._backoff = Backoff(min_delay_sec, max_delay_sec, "Supervisor")
-        self._make_node = make_node
-        self._restart = restart
-        self._clock = SteadyClock(time_base=clock)
-        self._state: Literal["starting", "running", "restarting", "ended"] = "starting"
-        self._node: NodeT | None = None
-        self._name = ""
-        self._since_ns = 0
-        self._restarts = 0
-        self._last_end: NodeEnd | None = None
-        self._error = ""
-        self._tasks: asyncio.TaskGroup | None = None
-        self._work: asyncio.Task[None] | None = None
+        self.__backoff = Backoff(min_delay_sec, max_delay_sec, "Supervisor")
+        self.__make_node = make_node
+        self.__restart = restart
+        self.__clock = SteadyClock(time_base=clock)
+        self.__state: Literal["starting", "running", "restarting", "ended"] = "starting"
+        self.__node: NodeT | None = None
+        self.__name = ""
+        self.__since_ns = 0
+        self.__restarts = 0
+        self.__last_end: NodeEnd | None = None
+        self.__error = ""
+        self.__tasks: asyncio.TaskGroup | None = None
+        self.__work: asyncio.Task[None] | None = None
 
     def __repr__(self) -> str:
-        return f"<Supervisor {self._name} {self._state} restarts={self._restarts}>"
+        return f"<Supervisor {self.__name} {self.__state} restarts={self.__restarts}>"
 
     # Lifetime
 
@@ -121,11 +121,11 @@ class Supervisor(Generic[NodeT]):
             RuntimeError: it was entered before.
             Exception: the node could not be created or started.
         """
-        if self._tasks is not None:
+        if self.__tasks is not None:
             raise RuntimeError("Supervisor: cannot be entered twice; create another one")
         started: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        self._tasks = await asyncio.TaskGroup().__aenter__()
-        self._work = self._tasks.create_task(self._supervise(started), name="supervisor")
+        self.__tasks = await asyncio.TaskGroup().__aenter__()
+        self.__work = self.__tasks.create_task(self.__supervise(started), name="supervisor")
         try:
             await started
         except BaseException:
@@ -143,10 +143,10 @@ class Supervisor(Generic[NodeT]):
 
         An exception from the body propagates unchanged.
         """
-        assert self._tasks is not None  # noqa: S101  # set by __aenter__
-        assert self._work is not None  # noqa: S101  # as above
-        self._work.cancel()
-        await self._tasks.__aexit__(None, None, None)
+        assert self.__tasks is not None  # noqa: S101  # set by __aenter__
+        assert self.__work is not None  # noqa: S101  # as above
+        self.__work.cancel()
+        await self.__tasks.__aexit__(None, None, None)
 
     async def run(self) -> None:
         """Run the node until it has ended for good; with ``restart="always"`` until cancelled.
@@ -156,10 +156,10 @@ class Supervisor(Generic[NodeT]):
                 ``restart="no"``.
         """
         async with self:
-            assert self._work is not None  # noqa: S101  # set by __aenter__
-            await asyncio.wait([self._work])
-        if self._last_end is not None and self._last_end.error is not None:
-            raise self._last_end.error
+            assert self.__work is not None  # noqa: S101  # set by __aenter__
+            await asyncio.wait([self.__work])
+        if self.__last_end is not None and self.__last_end.error is not None:
+            raise self.__last_end.error
 
     # Health
 
@@ -170,77 +170,77 @@ class Supervisor(Generic[NodeT]):
         Raises:
             NodeNotRunningError: none is running, as it failed or was destroyed (a RuntimeError).
         """
-        if self._node is None:
-            raise NodeNotRunningError(self._name or "of the supervisor", self._why_none())
-        return self._node
+        if self.__node is None:
+            raise NodeNotRunningError(self.__name or "of the supervisor", self.__why_none())
+        return self.__node
 
-    def _why_none(self) -> str:
-        if self._state == "starting":
+    def __why_none(self) -> str:
+        if self.__state == "starting":
             return "it has not started yet; enter the supervisor with `async with` first"
-        if self._state == "restarting":
-            return f"it failed ({self._error}) and restarts soon; answer 503, or retry later"
-        return f"it failed ({self._error})" if self._error else "it was destroyed"
+        if self.__state == "restarting":
+            return f"it failed ({self.__error}) and restarts soon; answer 503, or retry later"
+        return f"it failed ({self.__error})" if self.__error else "it was destroyed"
 
     def health(self) -> Health:
         """Return the health of the node now."""
-        running = self._state == "running"
+        running = self.__state == "running"
         return Health(
             ok=running,
-            state=self._state,
-            node=self._name,
-            restarts=self._restarts,
-            uptime_sec=(self._clock.now_ns() - self._since_ns) / S_TO_NS if running else 0.0,
-            error=self._error,
+            state=self.__state,
+            node=self.__name,
+            restarts=self.__restarts,
+            uptime_sec=(self.__clock.now_ns() - self.__since_ns) / S_TO_NS if running else 0.0,
+            error=self.__error,
         )
 
     # Supervision
 
-    async def _supervise(self, started: asyncio.Future[None]) -> None:
+    async def __supervise(self, started: asyncio.Future[None]) -> None:
         try:
             while True:
-                self._last_end = end = await self._run_one(started)
+                self.__last_end = end = await self.__run_one(started)
                 if not started.done():
                     started.set_exception(end.error or RuntimeError("the node did not start"))
                     return
-                if not self._wants_another(end):
+                if not self.__wants_another(end):
                     return
-                await self._pause(end)
-                self._restarts += 1
+                await self.__pause(end)
+                self.__restarts += 1
         finally:
-            self._state = "ended"
+            self.__state = "ended"
 
-    async def _run_one(self, started: asyncio.Future[None]) -> NodeEnd:
+    async def __run_one(self, started: asyncio.Future[None]) -> NodeEnd:
         """Run one node until it ends; an exception is returned as its end."""
         try:
-            node = self._make_node()
-            self._name = node.get_fully_qualified_name()
+            node = self.__make_node()
+            self.__name = node.get_fully_qualified_name()
             async with node:
-                self._node = node
-                self._state = "running"
-                self._since_ns = self._clock.now_ns()
+                self.__node = node
+                self.__state = "running"
+                self.__since_ns = self.__clock.now_ns()
                 if not started.done():
                     started.set_result(None)
                 await node.until_destroyed()
         except Exception as error:  # noqa: BLE001  # reported by the log, `health` and `run`
-            self._error = short_text(error)
+            self.__error = short_text(error)
             return NodeEnd("failed", error)
         finally:
-            self._node = None
+            self.__node = None
         return NodeEnd("destroyed")
 
-    def _wants_another(self, end: NodeEnd) -> bool:
+    def __wants_another(self, end: NodeEnd) -> bool:
         # A cancellation during the end of a node that failed is hidden by the node's exceptions.
-        if self._work is not None and self._work.cancelling():
+        if self.__work is not None and self.__work.cancelling():
             return False
-        return wants_another(self._restart, failed=end.reason == "failed")
+        return wants_another(self.__restart, failed=end.reason == "failed")
 
-    async def _pause(self, end: NodeEnd) -> None:
+    async def __pause(self, end: NodeEnd) -> None:
         """Wait before the next start, longer after each failure in a row."""
-        was_running, self._state = self._state == "running", "restarting"
-        ran_ns = self._clock.now_ns() - self._since_ns if was_running else 0
-        delay_sec = self._backoff.delay_after(ran_ns / S_TO_NS)
+        was_running, self.__state = self.__state == "running", "restarting"
+        ran_ns = self.__clock.now_ns() - self.__since_ns if was_running else 0
+        delay_sec = self.__backoff.delay_after(ran_ns / S_TO_NS)
         trace = "" if end.error is None else ":\n" + traceback_text(end.error)
         get_logger("aionode.supervisor").error(
-            f"node {self._name} {end.reason}; restarting in {delay_sec:g} s{trace}"
+            f"node {self.__name} {end.reason}; restarting in {delay_sec:g} s{trace}"
         )
-        await self._clock.sleep(delay_sec)
+        await self.__clock.sleep(delay_sec)

@@ -66,50 +66,64 @@ class NodeBase:
         own = parse_arguments(cli_args or ())
         own.refuse_unknown()
         shared = self.context.arguments if use_global_arguments else Arguments()
-        self._own_arguments = own
-        self._shared_arguments = shared
-        self._uses_global_arguments = use_global_arguments
-        self._rules = own.remap_rules + shared.remap_rules
-        self._usages = [
+        self._Node__own_arguments = own
+        self._Node__shared_arguments = shared
+        self._Node__uses_global_arguments = use_global_arguments
+        self._Node__rules = own.remap_rules + shared.remap_rules
+        self._Node__usages = [
             Usage(own),
             self.context._current_usage if use_global_arguments else Usage(shared),
         ]
-        for usage in self._usages:
+        for usage in self._Node__usages:
             usage.note_node(node_name)
-        node_name = names.remap_node_name(self._rules, node_name)
-        namespace = names.remap_namespace(self._rules, node_name, namespace)
+        node_name = names.remap_node_name(self._Node__rules, node_name)
+        namespace = names.remap_namespace(self._Node__rules, node_name, namespace)
         full_name = names.fully_qualified_name(namespace, node_name)
-        self._constructed = False  # until the built-in services exist; then come the program's own
-        self._warned_about: set[str] = set()  # kinds of timers' third argument
-        self._entities: dict[Entity, None] = {}  # in order of creation; destroyed ones leave it
-        self._tasks: asyncio.TaskGroup | None = None  # of the entities, once the node has started
-        self._node_tasks = NodeTasks(self._end_leases)
-        self._node_tasks.enter_constructor()
-        self._running = False
-        self._destroyed = asyncio.Event()
-        self._end_record = EndRecord(f"node {full_name}")
-        self._clock = ROSClock(time_base=self.context.time_base)
-        self._clock._end_of_wait = self._node_tasks.end_of_wait
-        self._logger = get_logger(
+        self._Node__constructed = (
+            False  # until the built-in services exist; then come the program's own
+        )
+        self._Node__warned_about: set[str] = set()  # kinds of timers' third argument
+        self._Node__entities: dict[
+            Entity, None
+        ] = {}  # in order of creation; destroyed ones leave it
+        self._Node__tasks: asyncio.TaskGroup | None = (
+            None  # of the entities, once the node has started
+        )
+        self._Node__node_tasks = NodeTasks(self._Node__end_leases)
+        self._Node__node_tasks.enter_constructor()
+        self._Node__running = False
+        self._Node__destroyed = asyncio.Event()
+        self._Node__end_record = EndRecord(f"node {full_name}")
+        self._Node__clock = ROSClock(time_base=self.context.time_base)
+        self._Node__clock._end_of_wait = self._Node__node_tasks.end_of_wait
+        self._Node__logger = get_logger(
             names.logger_name(namespace, node_name), now_ns=self.context.time_base.system_ns
         )
-        self._callbacks = Callbacks(
+        self._Node__callbacks = Callbacks(
             node=full_name,
-            logger=self._logger,
+            logger=self._Node__logger,
             budget_ns=round(callback_budget_ms * 1e6) if context.seed is None else sys.maxsize,
             slice_ns=context.time_base.slice_ns,
         )
-        self._affinity = context._affinity
-        self._node_shutdown = Shutdown(self._entities, self._callbacks, self._leave)
-        self._stop_rosout: Callable[[], None] | None = None
-        self._registrations: list[Registration] = []  # of the node itself, one for each transport
-        self._info = self.context._describe_node(
+        self._Node__affinity = context._affinity
+        self._Node__node_shutdown = Shutdown(
+            self._Node__entities, self._Node__callbacks, self._Node__leave
+        )
+        self._Node__stop_rosout: Callable[[], None] | None = None
+        self._Node__registrations: list[
+            Registration
+        ] = []  # of the node itself, one for each transport
+        self._Node__info = self.context._describe_node(
             node_name, namespace, enclave=own.enclave or shared.enclave or "/"
         )
 
     def __repr__(self) -> str:
-        state = "destroyed" if self.destroyed else "running" if self._running else "not running"
-        return f"<Node {self.get_fully_qualified_name()} {state} entities={len(self._entities)}>"
+        state = (
+            "destroyed" if self.destroyed else "running" if self._Node__running else "not running"
+        )
+        return (
+            f"<Node {self.get_fully_qualified_name()} {state} entities={len(self._Node__entities)}>"
+        )
 
     # Lifetime
 
@@ -122,21 +136,23 @@ class NodeBase:
         """
         if self.destroyed:
             raise EntityDestroyedError(f"node {self.get_fully_qualified_name()}", "run")
-        if self._running:
+        if self._Node__running:
             raise RuntimeError(f"node {self.get_fully_qualified_name()} is already running")
-        self._running = True
+        self._Node__running = True
         try:
             await self.context._acquire()
         except BaseException:
-            self._running = False
+            self._Node__running = False
             raise
-        self._end_record.begin()
-        self._node_tasks.enter_body()
-        self._tasks = await asyncio.TaskGroup().__aenter__()
-        for entity in list(self._entities):
-            self._start_entity(entity, self._tasks)
-        for usage in self._usages:
-            usage.begin(self.context.time_base, lambda: not self.destroyed, self._logger.warning)
+        self._Node__end_record.begin()
+        self._Node__node_tasks.enter_body()
+        self._Node__tasks = await asyncio.TaskGroup().__aenter__()
+        for entity in list(self._Node__entities):
+            self._Node__start_entity(entity, self._Node__tasks)
+        for usage in self._Node__usages:
+            usage.begin(
+                self.context.time_base, lambda: not self.destroyed, self._Node__logger.warning
+            )
         return self
 
     async def __aexit__(
@@ -153,13 +169,13 @@ class NodeBase:
         Raises:
             ExceptionGroup: the exceptions of callbacks, together with that of the body, if any.
         """
-        tasks = self._tasks
+        tasks = self._Node__tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
-        self._node_tasks.note_error(exc)
-        with self._end_record.recorded(exc):
+        self._Node__node_tasks.note_error(exc)
+        with self._Node__end_record.recorded(exc):
             self.destroy_node()
             try:
-                await to_the_end(self._node_shutdown.wait())
+                await to_the_end(self._Node__node_shutdown.wait())
             except asyncio.CancelledError as cancelled:
                 if exc is None:
                     exc_type, exc, traceback = type(cancelled), cancelled, cancelled.__traceback__
@@ -171,7 +187,7 @@ class NodeBase:
                     raising = group
                     raise
             finally:
-                self._running = False
+                self._Node__running = False
                 await to_the_end(self.context._release(), raising)
 
     async def run(self) -> None:
@@ -189,10 +205,10 @@ class NodeBase:
             async with self:
                 await self.until_destroyed()
         except Exception as error:
-            self._tell_failure(error)
+            self._Node__tell_failure(error)
             raise
 
-    def _tell_failure(self, error: Exception) -> None:
+    def _Node__tell_failure(self, error: Exception) -> None:
         """Log why the node failed, if a task runs nothing but `run`.
 
         Such a task may be awaited late or never, and asyncio tells of its exception only when it is
@@ -201,7 +217,7 @@ class NodeBase:
         task = asyncio.current_task()
         coroutine = None if task is None else task.get_coro()
         if getattr(coroutine, "cr_code", None) is NodeBase.run.__code__:
-            self._logger.error(
+            self._Node__logger.error(
                 f"the node failed and has ended: {failure_text(error)}. "
                 "To get the exception, await the task of run()"
             )
@@ -211,7 +227,7 @@ class NodeBase:
 
         Cancelling has no effect on the node.
         """
-        await self._destroyed.wait()
+        await self._Node__destroyed.wait()
 
     async def ended(self) -> NodeEnd:
         """Wait until the node has ended, and return how and why.
@@ -224,17 +240,17 @@ class NodeBase:
         Raises:
             RuntimeError: it is awaited by the task that runs the node, which would wait for itself.
         """
-        return await self._end_record.wait()
+        return await self._Node__end_record.wait()
 
     @property
     def destroyed(self) -> bool:
         """Whether `destroy_node` was called."""
-        return self._destroyed.is_set()
+        return self._Node__destroyed.is_set()
 
     @property
     def is_running(self) -> bool:
         """Whether the node calls callbacks: `run` or ``async with`` has begun and not ended."""
-        return self._running
+        return self._Node__running
 
     def destroy_node(self) -> None:
         """End the node. Calling it again has no effect.
@@ -254,20 +270,20 @@ class NodeBase:
         """
         if self.destroyed:
             return
-        if self._affinity.is_other_thread():
-            self._affinity.call(self.destroy_node)
+        if self._Node__affinity.is_other_thread():
+            self._Node__affinity.call(self.destroy_node)
             return
-        self._destroyed.set()
-        self._end_leases()  # at once: callbacks may take seconds to unwind
-        self._node_shutdown.begin()
+        self._Node__destroyed.set()
+        self._Node__end_leases()  # at once: callbacks may take seconds to unwind
+        self._Node__node_shutdown.begin()
 
-    def _end_leases(self) -> None:
+    def _Node__end_leases(self) -> None:
         """Send the stops of the leases that the publishers of this node are held by."""
         node = f"node {self.get_fully_qualified_name()}"
-        for entity in self._entities:
+        for entity in self._Node__entities:
             entity._end_lease(lambda: EntityDestroyedError(node))
 
-    def _join_context(self) -> None:
+    def _Node__join_context(self) -> None:
         """Add the node to its context, and announce it on every transport.
 
         Raises:
@@ -275,59 +291,61 @@ class NodeBase:
             ForkedProcessError: the context belongs to the parent process.
         """
         self.context._add_node(self)
-        self._registrations = self.context._register(
-            lambda transport: transport.create_node(self._info)
+        self._Node__registrations = self.context._register(
+            lambda transport: transport.create_node(self._Node__info)
         )
-        self.context.graph.add_node(self._info)
+        self.context.graph.add_node(self._Node__info)
 
-    def _leave(self) -> None:
+    def _Node__leave(self) -> None:
         """Release what belongs to the node itself, after all entities are destroyed."""
-        if self._stop_rosout is not None:
-            self._stop_rosout()
-        self._clock.destroy()
-        for registration in self._registrations:
+        if self._Node__stop_rosout is not None:
+            self._Node__stop_rosout()
+        self._Node__clock.destroy()
+        for registration in self._Node__registrations:
             registration.close()
-        self.context.graph.remove_node(self._info)
+        self.context.graph.remove_node(self._Node__info)
         self.context._remove_node(self)
-        if not self._running:
-            self._end_record.note(NodeEnd("destroyed"))
+        if not self._Node__running:
+            self._Node__end_record.note(NodeEnd("destroyed"))
 
-    def _abandon(self) -> None:
+    def _Node__abandon(self) -> None:
         """Mark the node destroyed without closing anything, as the parent process still uses it.
 
         Called by the context in a forked child.
         """
-        self._destroyed = asyncio.Event()  # a new one: the parent's tasks wait for the old one
-        self._destroyed.set()
-        self._tasks = None
-        for entity in self._entities:
+        self._Node__destroyed = (
+            asyncio.Event()
+        )  # a new one: the parent's tasks wait for the old one
+        self._Node__destroyed.set()
+        self._Node__tasks = None
+        for entity in self._Node__entities:
             entity.destroyed = True
 
-    def _call_in_loop(self, action: Callable[[], None]) -> None:
+    def _Node__call_in_loop(self, action: Callable[[], None]) -> None:
         """Call `action` in the thread of the node's loop: at once if this is it, or none runs."""
-        self._affinity.call(action)
+        self._Node__affinity.call(action)
 
     # Identity
 
     def get_name(self) -> str:
         """Return the name without namespace."""
-        return self._info.name
+        return self._Node__info.name
 
     def get_namespace(self) -> str:
         """Return the namespace, which begins with a slash."""
-        return self._info.namespace
+        return self._Node__info.namespace
 
     def get_fully_qualified_name(self) -> str:
         """Return the namespace and name, joined by a slash."""
-        return self._info.fully_qualified_name
+        return self._Node__info.fully_qualified_name
 
     def get_logger(self) -> RcutilsLogger:
         """Return the node's logger, which is named after the node."""
-        return self._logger
+        return self._Node__logger
 
     def get_clock(self) -> Clock:
         """Return the node's clock: ROS time, which is system time unless `use_sim_time` is set."""
-        return self._clock
+        return self._Node__clock
 
     @property
     def graph(self) -> Graph:
@@ -342,7 +360,7 @@ class NodeBase:
         Raises:
             InvalidTopicNameException: `topic` is invalid (a ValueError).
         """
-        return self._resolve(topic, only_expand=only_expand)
+        return self._Node__resolve(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """Return the full name of a service of this node, remapped unless `only_expand`.
@@ -350,56 +368,58 @@ class NodeBase:
         Raises:
             InvalidServiceNameException: `service` is invalid (a ValueError).
         """
-        return self._resolve(service, only_expand=only_expand, is_service=True)
+        return self._Node__resolve(service, only_expand=only_expand, is_service=True)
 
-    def _resolve(self, name: str, *, only_expand: bool = False, is_service: bool = False) -> str:
+    def _Node__resolve(
+        self, name: str, *, only_expand: bool = False, is_service: bool = False
+    ) -> str:
         resolve = partial(names.resolve, is_service=is_service)
         if only_expand:
             return resolve(name, self.get_name(), self.get_namespace())
-        for usage in self._usages:
+        for usage in self._Node__usages:
             if not usage.is_over:
                 expanded = resolve(name, self.get_name(), self.get_namespace())
                 usage.note_name(
                     expanded, self.get_name(), self.get_namespace(), is_service=is_service
                 )
-        return resolve(name, self.get_name(), self.get_namespace(), self._rules)
+        return resolve(name, self.get_name(), self.get_namespace(), self._Node__rules)
 
     # Entities
 
     @in_loop_thread
-    def _add_entity(self, entity: EntityT) -> EntityT:
+    def _Node__add_entity(self, entity: EntityT) -> EntityT:
         """Own `entity`: enter it into the graph, start it if the node runs, destroy it at the end.
 
         An action server or client, made of other entities, adds itself here.
         """
-        self._entities[entity] = None
-        entity._adopt(self._forget_entity, self._affinity, self._node_tasks)
+        self._Node__entities[entity] = None
+        entity._adopt(self._Node__forget_entity, self._Node__affinity, self._Node__node_tasks)
         if isinstance(entity, Endpoint):
             entity._enter_graph()
-        if self._tasks is not None:
-            self._start_entity(entity, self._tasks)
+        if self._Node__tasks is not None:
+            self._Node__start_entity(entity, self._Node__tasks)
         return entity
 
-    def _start_entity(self, entity: Entity, tasks: asyncio.TaskGroup) -> None:
+    def _Node__start_entity(self, entity: Entity, tasks: asyncio.TaskGroup) -> None:
         """Start `entity`; the end of the node waits for those that run callbacks."""
         task = entity._start(tasks)
         if task is not None and entity._stage is EndStage.CALLBACKS:
-            self._node_shutdown.watch(task)
+            self._Node__node_shutdown.watch(task)
 
-    def _forget_entity(self, entity: Entity) -> None:
-        self._entities.pop(entity, None)
+    def _Node__forget_entity(self, entity: Entity) -> None:
+        self._Node__entities.pop(entity, None)
 
-    def _entities_of(self, kind: type[EntityT]) -> list[EntityT]:
-        return [entity for entity in self._entities if isinstance(entity, kind)]
+    def _Node__entities_of(self, kind: type[EntityT]) -> list[EntityT]:
+        return [entity for entity in self._Node__entities if isinstance(entity, kind)]
 
-    def _expect_at_end(self, answer: asyncio.Future[Any]) -> None:
+    def _Node__expect_at_end(self, answer: asyncio.Future[Any]) -> None:
         """Have the end of the node wait for `answer`, up to 1 s, before it destroys clients.
 
         Action clients use it: their requests to cancel goals have to reach the servers.
         """
-        self._node_shutdown.expect(answer)
+        self._Node__node_shutdown.expect(answer)
 
-    def _refuse_if_destroyed(self, wanted: str) -> None:
+    def _Node__refuse_if_destroyed(self, wanted: str) -> None:
         if self.destroyed:
             raise EntityDestroyedError(
                 f"node {self.get_fully_qualified_name()}", f"create {wanted}"
@@ -419,7 +439,9 @@ def destroying_on_error(constructor: Callable[..., None]) -> Callable[..., None]
         try:
             constructor(self, *args, **options)
         except BaseException:
-            if hasattr(self, "_info"):  # else the name was rejected: there is nothing to destroy
+            if hasattr(
+                self, "_Node__info"
+            ):  # else the name was rejected: there is nothing to destroy
                 self.destroy_node()
             raise
         finally:

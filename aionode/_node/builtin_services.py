@@ -50,7 +50,7 @@ def publish_log(node: NodeEndpoints, profile: QoSProfile | int) -> Callable[[], 
                 publisher.publish(log_message(event, node.get_clock().now()))
 
     def sink(event: LogEvent) -> None:
-        node._call_in_loop(lambda: publish(event))
+        node._Node__call_in_loop(lambda: publish(event))
 
     return node.get_logger().add_sink(sink)
 

@@ -52,27 +52,27 @@ class NodeEndpoints(NodeParameters):
     @property
     def publishers(self) -> list[Publisher[Any]]:
         """The publishers of this node."""
-        return self._entities_of(Publisher)
+        return self._Node__entities_of(Publisher)
 
     @property
     def subscriptions(self) -> list[Subscription[Any]]:
         """The subscriptions of this node."""
-        return self._entities_of(Subscription)
+        return self._Node__entities_of(Subscription)
 
     @property
     def services(self) -> list[Service[Any, Any]]:
         """The services of this node."""
-        return self._entities_of(Service)
+        return self._Node__entities_of(Service)
 
     @property
     def clients(self) -> list[Client[Any, Any]]:
         """The clients of this node."""
-        return self._entities_of(Client)
+        return self._Node__entities_of(Client)
 
     @property
     def timers(self) -> list[Timer]:
         """The timers of this node."""
-        return self._entities_of(Timer)
+        return self._Node__entities_of(Timer)
 
     @in_loop_thread
     def create_publisher(
@@ -99,9 +99,9 @@ class NodeEndpoints(NodeParameters):
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("publisher")
+        self._Node__refuse_if_destroyed("publisher")
         expect_message_type(msg_type, f"publisher of {topic}")
-        setup = self._endpoint_setup(
+        setup = self._Node__endpoint_setup(
             EndpointKind.PUBLISHER, topic, msg_type, qos_profile, qos_overriding_options
         )
         publisher = Publisher(
@@ -113,7 +113,7 @@ class NodeEndpoints(NodeParameters):
             self.context.time_base,
             event_callbacks,
         )
-        return self._add_with_events(publisher)
+        return self._Node__add_with_events(publisher)
 
     @overload
     def create_subscription(
@@ -211,9 +211,9 @@ class NodeEndpoints(NodeParameters):
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("subscription")
+        self._Node__refuse_if_destroyed("subscription")
         expect_message_type(msg_type, f"subscription of {topic}")
-        setup = self._endpoint_setup(
+        setup = self._Node__endpoint_setup(
             EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile, qos_overriding_options
         )
         subscription: Subscription[Any] = Subscription(
@@ -239,9 +239,9 @@ class NodeEndpoints(NodeParameters):
                 content_filter_options.filter_expression,
                 content_filter_options.expression_parameters,
             )
-        return self._add_subscription(subscription)
+        return self._Node__add_subscription(subscription)
 
-    def _create_direct_subscription(
+    def _Node__create_direct_subscription(
         self, msg_type: type[Any], topic: str, take: Take, qos_profile: QoSProfile
     ) -> Subscription[bytes]:
         """Return a subscription that hands CDR bytes to `take` within the event that brings them.
@@ -261,9 +261,9 @@ class NodeEndpoints(NodeParameters):
             InvalidTopicNameException: `topic` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("subscription")
-        setup = self._endpoint_setup(EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
-        return self._add_subscription(
+        self._Node__refuse_if_destroyed("subscription")
+        setup = self._Node__endpoint_setup(EndpointKind.SUBSCRIPTION, topic, msg_type, qos_profile)
+        return self._Node__add_subscription(
             Subscription(
                 setup,
                 msg_type,
@@ -277,7 +277,7 @@ class NodeEndpoints(NodeParameters):
             )
         )
 
-    def _add_subscription(self, subscription: Subscription[T]) -> Subscription[T]:
+    def _Node__add_subscription(self, subscription: Subscription[T]) -> Subscription[T]:
         """Announce a subscription to the transports, and own it."""
         subscription._add_registrations(
             self.context._register(
@@ -286,7 +286,7 @@ class NodeEndpoints(NodeParameters):
                 )
             )
         )
-        self._add_with_events(subscription)
+        self._Node__add_with_events(subscription)
         return subscription
 
     @in_loop_thread
@@ -322,9 +322,9 @@ class NodeEndpoints(NodeParameters):
             InvalidServiceNameException: `srv_name` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("service")
+        self._Node__refuse_if_destroyed("service")
         expect_service_type(srv_type, f"service {srv_name}")
-        setup = self._endpoint_setup(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
+        setup = self._Node__endpoint_setup(EndpointKind.SERVER, srv_name, srv_type, qos_profile)
         service: Service[RequestT, ResponseT] = Service(
             setup,
             srv_type,
@@ -339,7 +339,7 @@ class NodeEndpoints(NodeParameters):
                 lambda transport: transport.create_server(setup.endpoint, srv_type, service._serve)
             )
         )
-        return self._add_entity(service)
+        return self._Node__add_entity(service)
 
     @in_loop_thread
     def create_client(
@@ -361,13 +361,13 @@ class NodeEndpoints(NodeParameters):
             InvalidServiceNameException: `srv_name` is invalid (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("client")
+        self._Node__refuse_if_destroyed("client")
         expect_service_type(srv_type, f"client of {srv_name}")
-        setup = self._endpoint_setup(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
+        setup = self._Node__endpoint_setup(EndpointKind.CLIENT, srv_name, srv_type, qos_profile)
         requesters = self.context._register(
             lambda transport: transport.create_requester(setup.endpoint, srv_type)
         )
-        return self._add_entity(
+        return self._Node__add_entity(
             Client(
                 setup,
                 srv_type,
@@ -409,37 +409,37 @@ class NodeEndpoints(NodeParameters):
             ValueError: the period is negative, or `on_error` is invalid.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("timer")
+        self._Node__refuse_if_destroyed("timer")
         timer = Timer(
             callback,
             to_period_ns(timer_period_sec),
-            self._clock_for_timer(clock),
-            partial(self._callbacks.make_runner, on_error=on_error, offload=offload),
+            self._Node__clock_for_timer(clock),
+            partial(self._Node__callbacks.make_runner, on_error=on_error, offload=offload),
             autostart=autostart,
         )
-        return self._add_entity(timer)
+        return self._Node__add_entity(timer)
 
-    def _clock_for_timer(self, given: object) -> Clock:
+    def _Node__clock_for_timer(self, given: object) -> Clock:
         """Return the clock that a timer follows, from the third argument of `create_timer`."""
         if isinstance(given, Clock):
             return given
         if given is None:
-            return self._clock
+            return self._Node__clock
         if not hasattr(given, "can_execute"):
             raise TypeError(
                 f"create_timer: clock is {brief(given)}; give a clock such as SteadyClock(), or "
                 "nothing for the node's clock"
             )
         kind = type(given).__name__
-        if kind not in self._warned_about:
-            self._warned_about.add(kind)
-            self._logger.warning(
+        if kind not in self._Node__warned_about:
+            self._Node__warned_about.add(kind)
+            self._Node__logger.warning(
                 f"create_timer: the third argument is a {kind}, which has no effect: calls of one "
                 "timer never overlap, and callbacks of different entities take turns where they "
                 "await. In aionode this argument is the clock: write create_timer(period, "
                 "callback), and concurrent= on subscriptions and services for calls at once"
             )
-        return self._clock
+        return self._Node__clock
 
     @in_loop_thread
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -454,49 +454,51 @@ class NodeEndpoints(NodeParameters):
             ValueError: `frequency` is not positive.
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self._refuse_if_destroyed("rate")
-        return self._add_entity(Rate(frequency, self._clock if clock is None else clock))
+        self._Node__refuse_if_destroyed("rate")
+        return self._Node__add_entity(
+            Rate(frequency, self._Node__clock if clock is None else clock)
+        )
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Destroy a publisher, as its `destroy` does; False if it is not one of this node's."""
-        return self._destroy(publisher)
+        return self._Node__destroy(publisher)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
         """Destroy a subscription, as its `destroy` does; False if it is not one of this node's."""
-        return self._destroy(subscription)
+        return self._Node__destroy(subscription)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
         """Destroy a service, as its `destroy` does; False if it is not one of this node's."""
-        return self._destroy(service)
+        return self._Node__destroy(service)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
         """Destroy a client, as its `destroy` does; False if it is not one of this node's."""
-        return self._destroy(client)
+        return self._Node__destroy(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Destroy a timer, as its `destroy` does; False if it is not one of this node's."""
-        return self._destroy(timer)
+        return self._Node__destroy(timer)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate, as its `destroy` does; False if it is not one of this node's."""
-        return self._destroy(rate)
+        return self._Node__destroy(rate)
 
-    def _destroy(self, entity: Entity) -> bool:
+    def _Node__destroy(self, entity: Entity) -> bool:
         """Destroy `entity`; return whether it belonged to this node."""
-        if entity not in self._entities:
+        if entity not in self._Node__entities:
             return False
         entity.destroy()
         return True
 
-    def _add_with_events(self, endpoint: TopicT) -> TopicT:
+    def _Node__add_with_events(self, endpoint: TopicT) -> TopicT:
         """Own a publisher or subscription, and what calls its event callbacks."""
-        self._add_entity(endpoint)
+        self._Node__add_entity(endpoint)
         monitor = endpoint._monitor
         if monitor is not None and monitor.handler is not None:
-            self._add_entity(monitor.handler)
+            self._Node__add_entity(monitor.handler)
         return endpoint
 
-    def _endpoint_setup(
+    def _Node__endpoint_setup(
         self,
         kind: EndpointKind,
         name: str,
@@ -505,10 +507,10 @@ class NodeEndpoints(NodeParameters):
         overriding: QoSOverridingOptions | None = None,
     ) -> EndpointSetup:
         """Return what a new endpoint is made with; `_add_entity` puts it into the graph."""
-        if self._constructed:  # the built-in services are rarely called, and start without it
+        if self._Node__constructed:  # the built-in services are rarely called, and start without it
             load_arrays(ros_type)
         is_service = kind in SERVICE_KINDS
-        full_name = self._resolve(name, is_service=is_service)
+        full_name = self._Node__resolve(name, is_service=is_service)
         profile = qos.as_profile(qos_profile)
         if overriding is not None:
             entity: Literal["publisher", "subscription"] = (
@@ -521,13 +523,13 @@ class NodeEndpoints(NodeParameters):
         elif kind is EndpointKind.SUBSCRIPTION:
             profile = qos.best_available_for_subscription(profile, others)
         endpoint = self.context._describe_endpoint(
-            kind, self._info, full_name, ros_type, profile.resolved()
+            kind, self._Node__info, full_name, ros_type, profile.resolved()
         )
         return EndpointSetup(
             endpoint,
             self.graph,
-            self._callbacks,
-            self._affinity,
+            self._Node__callbacks,
+            self._Node__affinity,
             self.context.network.queue_bytes,
         )
 

@@ -93,25 +93,27 @@ class GraphQueries:
             subclass may have any attributes: each name that a node has may be taken by one.
     """
 
-    _graph_answers: GraphAnswers
+    _Node__graph_answers: GraphAnswers
 
     # Nodes
 
     def get_node_names(self) -> list[str]:
         """Return the names of all nodes, without namespaces."""
-        return [node.name for node in self._graph_answers.nodes()]
+        return [node.name for node in self._Node__graph_answers.nodes()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """Return the full names of all nodes."""
-        return [node.fully_qualified_name for node in self._graph_answers.nodes()]
+        return [node.fully_qualified_name for node in self._Node__graph_answers.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return the name and namespace of every node."""
-        return [(node.name, node.namespace) for node in self._graph_answers.nodes()]
+        return [(node.name, node.namespace) for node in self._Node__graph_answers.nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Return the name, namespace and security enclave of every node."""
-        return [(node.name, node.namespace, node.enclave) for node in self._graph_answers.nodes()]
+        return [
+            (node.name, node.namespace, node.enclave) for node in self._Node__graph_answers.nodes()
+        ]
 
     # Topics and services by name
 
@@ -126,30 +128,30 @@ class GraphQueries:
         Hidden topics, which have a name with a part that begins with ``_``, are those of actions
         and of tools; without `include_hidden` they are left out, as ``ros2 topic list`` does.
         """
-        return shown(self._graph_answers.names_and_types(TOPIC_KINDS), include_hidden)
+        return shown(self._Node__graph_answers.names_and_types(TOPIC_KINDS), include_hidden)
 
     def get_service_names_and_types(self, *, include_hidden: bool = True) -> NamesAndTypes:
         """Return every service that has a server or a client, with its types.
 
         Without `include_hidden`, hidden services are left out, such as those of actions.
         """
-        return shown(self._graph_answers.names_and_types(SERVICE_KINDS), include_hidden)
+        return shown(self._Node__graph_answers.names_and_types(SERVICE_KINDS), include_hidden)
 
     def count_publishers(self, topic_name: str) -> int:
         """Return how many publishers `topic_name` has; a relative name is this node's."""
-        return self._graph_answers.count(EndpointKind.PUBLISHER, topic_name)
+        return self._Node__graph_answers.count(EndpointKind.PUBLISHER, topic_name)
 
     def count_subscribers(self, topic_name: str) -> int:
         """Return how many subscriptions `topic_name` has; a relative name is this node's."""
-        return self._graph_answers.count(EndpointKind.SUBSCRIPTION, topic_name)
+        return self._Node__graph_answers.count(EndpointKind.SUBSCRIPTION, topic_name)
 
     def count_services(self, service_name: str) -> int:
         """Return how many servers `service_name` has; a relative name is this node's."""
-        return self._graph_answers.count(EndpointKind.SERVER, service_name)
+        return self._Node__graph_answers.count(EndpointKind.SERVER, service_name)
 
     def count_clients(self, service_name: str) -> int:
         """Return how many clients `service_name` has; a relative name is this node's."""
-        return self._graph_answers.count(EndpointKind.CLIENT, service_name)
+        return self._Node__graph_answers.count(EndpointKind.CLIENT, service_name)
 
     # By node
 
@@ -164,7 +166,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._graph_answers.names_and_types_of(
+        return self._Node__graph_answers.names_and_types_of(
             EndpointKind.PUBLISHER, node_name, node_namespace
         )
 
@@ -179,7 +181,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._graph_answers.names_and_types_of(
+        return self._Node__graph_answers.names_and_types_of(
             EndpointKind.SUBSCRIPTION, node_name, node_namespace
         )
 
@@ -191,7 +193,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._graph_answers.names_and_types_of(
+        return self._Node__graph_answers.names_and_types_of(
             EndpointKind.SERVER, node_name, node_namespace
         )
 
@@ -203,7 +205,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._graph_answers.names_and_types_of(
+        return self._Node__graph_answers.names_and_types_of(
             EndpointKind.CLIENT, node_name, node_namespace
         )
 
@@ -215,7 +217,7 @@ class NodeGraphQueries(GraphQueries, NodeBase):
     """
 
     @property
-    def _graph_answers(self) -> GraphAnswers:  # type: ignore[override] # made when it is asked
+    def _Node__graph_answers(self) -> GraphAnswers:  # type: ignore[override] # made when it is asked
         return OwnGraph(self)
 
     @asks
@@ -251,8 +253,8 @@ class NodeGraphQueries(GraphQueries, NodeBase):
         try:
             async with asyncio.timeout(timeout):
                 while not is_there():
-                    if self._info not in self.graph.nodes_named(own):
-                        raise self._node_tasks.end_of_wait(f"node {own}")
+                    if self._Node__info not in self.graph.nodes_named(own):
+                        raise self._Node__node_tasks.end_of_wait(f"node {own}")
                     await self.graph.changed(wanted, own)
         except TimeoutError:
             return is_there()
@@ -266,7 +268,7 @@ class NodeGraphQueries(GraphQueries, NodeBase):
         no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> list[TopicEndpointInfo]:
         """Return every publisher of a topic; `no_mangle` is ignored."""
-        return self._topic_endpoints(EndpointKind.PUBLISHER, topic_name)
+        return self._Node__topic_endpoints(EndpointKind.PUBLISHER, topic_name)
 
     def get_subscriptions_info_by_topic(
         self,
@@ -274,9 +276,11 @@ class NodeGraphQueries(GraphQueries, NodeBase):
         no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> list[TopicEndpointInfo]:
         """Return every subscription of a topic; `no_mangle` is ignored."""
-        return self._topic_endpoints(EndpointKind.SUBSCRIPTION, topic_name)
+        return self._Node__topic_endpoints(EndpointKind.SUBSCRIPTION, topic_name)
 
-    def _topic_endpoints(self, kind: EndpointKind, topic_name: str) -> list[TopicEndpointInfo]:
+    def _Node__topic_endpoints(
+        self, kind: EndpointKind, topic_name: str
+    ) -> list[TopicEndpointInfo]:
         name = self.resolve_topic_name(topic_name)
         return [topic_endpoint_info(found) for found in self.graph.endpoints(kind, name=name)]
 

@@ -35,7 +35,7 @@ StructT = TypeVar("StructT")
 class ParameterMethods:
     """The methods of a node over its `ParameterStore`, which describes each step and exception."""
 
-    _parameter_store: ParameterStore
+    _Node__parameter_store: ParameterStore
 
     # Declaring
 
@@ -60,7 +60,9 @@ class ParameterMethods:
             InvalidParameterTypeException: the override is of another type than `value`.
             InvalidParameterValueException: the descriptor or a callback rejects the value.
         """
-        return self._parameter_store.declare_parameter(name, value, descriptor, ignore_override)
+        return self._Node__parameter_store.declare_parameter(
+            name, value, descriptor, ignore_override
+        )
 
     def declare_parameters(
         self,
@@ -69,17 +71,19 @@ class ParameterMethods:
         ignore_override: bool = False,  # rclpy's signature
     ) -> list[Parameter]:
         """Declare parameters, each given as ``(name, value or type, descriptor)``, in order."""
-        return self._parameter_store.declare_parameters(namespace, parameters, ignore_override)
+        return self._Node__parameter_store.declare_parameters(
+            namespace, parameters, ignore_override
+        )
 
     def undeclare_parameter(self, name: str) -> None:
         """Remove a parameter. No callback is called and no event is published."""
-        self._parameter_store.undeclare_parameter(name)
+        self._Node__parameter_store.undeclare_parameter(name)
 
     # Reading
 
     def has_parameter(self, name: str) -> bool:
         """Whether the parameter is declared."""
-        return self._parameter_store.has_parameter(name)
+        return self._Node__parameter_store.has_parameter(name)
 
     def get_parameter(self, name: str) -> Parameter:
         """Return a parameter.
@@ -89,39 +93,39 @@ class ParameterMethods:
                 allowed.
             ParameterUninitializedException: it was declared without a value and never set.
         """
-        return self._parameter_store.get_parameter(name)
+        return self._Node__parameter_store.get_parameter(name)
 
     def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
         """Return several parameters; see `get_parameter`."""
-        return self._parameter_store.get_parameters(names)
+        return self._Node__parameter_store.get_parameters(names)
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
         """Return a parameter, or `alternative_value` if it is undeclared or not set."""
-        return self._parameter_store.get_parameter_or(name, alternative_value)
+        return self._Node__parameter_store.get_parameter_or(name, alternative_value)
 
     def get_parameter_type(self, name: str) -> ParameterType:
         """Return the type of a parameter."""
-        return self._parameter_store.get_parameter_type(name)
+        return self._Node__parameter_store.get_parameter_type(name)
 
     def get_parameter_types(self, names: Sequence[str]) -> list[ParameterType]:
         """Return the types of several parameters."""
-        return self._parameter_store.get_parameter_types(names)
+        return self._Node__parameter_store.get_parameter_types(names)
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
         """Return the parameters below `prefix`, keyed by the rest of their names."""
-        return self._parameter_store.get_parameters_by_prefix(prefix)
+        return self._Node__parameter_store.get_parameters_by_prefix(prefix)
 
     def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
         """Return the names below `prefixes`, at most `depth` dots deep; 0 means any depth."""
-        return self._parameter_store.list_parameters(prefixes, depth)
+        return self._Node__parameter_store.list_parameters(prefixes, depth)
 
     def describe_parameter(self, name: str) -> ParameterDescriptor:
         """Return the descriptor of a parameter."""
-        return self._parameter_store.describe_parameter(name)
+        return self._Node__parameter_store.describe_parameter(name)
 
     def describe_parameters(self, names: Sequence[str]) -> list[ParameterDescriptor]:
         """Return the descriptors of several parameters."""
-        return self._parameter_store.describe_parameters(names)
+        return self._Node__parameter_store.describe_parameters(names)
 
     # Changing
 
@@ -132,7 +136,7 @@ class ParameterMethods:
             ParameterNotDeclaredException: one is undeclared, and undeclared parameters are not
                 allowed; those before it are set.
         """
-        return self._parameter_store.set_parameters(parameter_list)
+        return self._Node__parameter_store.set_parameters(parameter_list)
 
     def set_parameters_atomically(self, parameter_list: Sequence[Parameter]) -> SetParametersResult:
         """Set all parameters, or none if one is rejected.
@@ -141,7 +145,7 @@ class ParameterMethods:
             ParameterNotDeclaredException: one is undeclared, and undeclared parameters are not
                 allowed.
         """
-        return self._parameter_store.set_parameters_atomically(parameter_list)
+        return self._Node__parameter_store.set_parameters_atomically(parameter_list)
 
     def set_descriptor(
         self,
@@ -150,33 +154,33 @@ class ParameterMethods:
         alternative_value: ParameterValue | None = None,
     ) -> ParameterValue:
         """Replace the descriptor of a parameter, and return its resulting value."""
-        return self._parameter_store.set_descriptor(name, descriptor, alternative_value)
+        return self._Node__parameter_store.set_descriptor(name, descriptor, alternative_value)
 
     # Callbacks
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Call `callback` before a change is checked; it returns the parameters to set instead."""
-        self._parameter_store.add_pre_set_parameters_callback(callback)
+        self._Node__parameter_store.add_pre_set_parameters_callback(callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Call `callback` to check a change; the first that rejects it decides."""
-        self._parameter_store.add_on_set_parameters_callback(callback)
+        self._Node__parameter_store.add_on_set_parameters_callback(callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Call `callback` after a change."""
-        self._parameter_store.add_post_set_parameters_callback(callback)
+        self._Node__parameter_store.add_post_set_parameters_callback(callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self._parameter_store.remove_pre_set_parameters_callback(callback)
+        self._Node__parameter_store.remove_pre_set_parameters_callback(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self._parameter_store.remove_on_set_parameters_callback(callback)
+        self._Node__parameter_store.remove_on_set_parameters_callback(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Remove a callback; a ValueError if it was not added."""
-        self._parameter_store.remove_post_set_parameters_callback(callback)
+        self._Node__parameter_store.remove_post_set_parameters_callback(callback)
 
 
 class NodeParameters(ParameterMethods, NodeBase):
@@ -203,11 +207,11 @@ class NodeParameters(ParameterMethods, NodeBase):
             callback_budget_ms=callback_budget_ms,
         )
         full_name = self.get_fully_qualified_name()
-        self._parameter_store = ParameterStore(
+        self._Node__parameter_store = ParameterStore(
             full_name,
             overrides=[  # the last value of a name wins
-                *parameters_from(self._shared_arguments.parameters_for(full_name)),
-                *parameters_from(self._own_arguments.parameters_for(full_name)),
+                *parameters_from(self._Node__shared_arguments.parameters_for(full_name)),
+                *parameters_from(self._Node__own_arguments.parameters_for(full_name)),
                 *parameter_overrides,
             ],
             allow_undeclared=allow_undeclared_parameters,

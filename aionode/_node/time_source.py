@@ -73,13 +73,13 @@ class TimeSource:
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
             # The subscription outlives the callbacks: their cleanup may sleep.
-            self._node._node_shutdown.postpone(self._subscription, EndStage.GOALS)
+            self._node._Node__node_shutdown.postpone(self._subscription, EndStage.GOALS)
             context = self._node.context
             watch = ClockWatch(
                 *(self._subscription._endpoint, context.graph, context.time_base),
                 heard=lambda: self._heard,
             )
-            self._watch = self._node._add_entity(WatchedClock(watch))
+            self._watch = self._node._Node__add_entity(WatchedClock(watch))
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None

@@ -521,7 +521,7 @@ class Recorder:
         info.type_hash = key[2] if key[2].startswith("RIHS") else info.type_hash
         number = recording.number_of(info, self._repeated_depth(name, profile, offered))
         recording.numbers[key] = number  # the graph may show no hash
-        recording.subscriptions[number] = self.node._create_direct_subscription(
+        recording.subscriptions[number] = self.node._Node__create_direct_subscription(
             msg_type, name, partial(self._take, number), profile
         )
 

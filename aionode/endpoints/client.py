@@ -260,8 +260,8 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             self._warned = True
             self._callbacks.logger.warning(
                 f"{self.srv_name}: called while {silence(0)} The call waits without an answer; "
-                "wait for the server first (wait_for_service() of a client, wait_for_server() of "
-                "an action client)"
+                "wait for the server first: wait_for_service() of a client, wait_for_server() of "
+                "an action client"
             )
 
     def _close(self) -> None:

@@ -348,7 +348,7 @@ class BareNode:
         self.context.graph.remove_node(self.info)
         self.context._remove_node(self)
 
-    def _abandon(self) -> None:
+    def _Node__abandon(self) -> None:
         """Mark the node destroyed without closing anything; in a forked child."""
         self._destroyed = True
         self._endpoints.clear()

@@ -94,7 +94,7 @@ class ContextNode(Protocol):
     def destroy_node(self) -> None:
         """End the node."""
 
-    def _abandon(self) -> None:
+    def _Node__abandon(self) -> None:
         """Mark the node destroyed without closing anything; in a forked child."""
 
 
@@ -497,7 +497,7 @@ class Context:
         self._inherited = True
         self._affinity.detach()
         for node in self._nodes:
-            node._abandon()
+            node._Node__abandon()
         for transport in self._transports:
             transport.abandon()
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # never collected, not even at exit

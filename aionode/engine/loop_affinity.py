@@ -102,7 +102,7 @@ def in_loop_thread(method: MethodT) -> MethodT:
 
     @wraps(method)
     def call(self: Any, *args: Any, **options: Any) -> Any:
-        affinity: LoopAffinity = self._affinity
+        affinity: LoopAffinity = self._Node__affinity
         if affinity.is_other_thread():
             return affinity.wait_for(partial(method, self, *args, **options))
         return method(self, *args, **options)
@@ -115,7 +115,7 @@ def in_thread_of_node(constructor: MethodT) -> MethodT:
 
     @wraps(constructor)
     def construct(self: Any, node: Any, *args: Any, **options: Any) -> None:
-        affinity: LoopAffinity = node._affinity
+        affinity: LoopAffinity = node._Node__affinity
         if affinity.is_other_thread():
             affinity.wait_for(partial(constructor, self, node, *args, **options))
         else:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from aionode.rclpy.context import Context
     from aionode.rclpy.event_handler import EventHandler
 
-__all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "in_use", "wait_until"]
+__all__ = ["HandleOwner", "ServiceEntity", "TopicEntity", "in_use", "in_use_by_node", "wait_until"]
 
 CHECK_S = 0.05
 """Time between two looks of a wait for another process."""
@@ -41,6 +41,19 @@ def in_use(method: Callable[Concatenate[HandleT, P], T]) -> Callable[Concatenate
     @wraps(method)
     def call(self: HandleOwner[HandleT], /, *args: P.args, **kwargs: P.kwargs) -> T:
         with self._handle as handle:
+            return method(handle, *args, **kwargs)
+
+    return call
+
+
+def in_use_by_node(
+    method: Callable[Concatenate[HandleT, P], T],
+) -> Callable[Concatenate[Any, P], T]:
+    """Return the same for nodes, whose names with one underscore are their users'."""
+
+    @wraps(method)
+    def call(self: Any, /, *args: P.args, **kwargs: P.kwargs) -> T:
+        with self._Node__handle as handle:
             return method(handle, *args, **kwargs)
 
     return call

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode._node.graph import GraphQueries
 from aionode.graph import EndpointKind
-from aionode.rclpy._entities import in_use, wait_until
+from aionode.rclpy._entities import in_use_by_node, wait_until
 from aionode.rclpy._impl.node import NodeHandle
 from aionode.rclpy.qos import as_own
 from aionode.rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
@@ -27,35 +27,35 @@ TYPES = {
 class NodeGraph(GraphQueries):
     """The part of `Node` that has a name, and looks at others."""
 
-    _handle: NodeHandle
+    _Node__handle: NodeHandle
     _context: Context
 
     @property
-    def _graph_answers(self) -> NodeHandle:  # type: ignore[override] # it may be destroyed
-        return self._handle
+    def _Node__graph_answers(self) -> NodeHandle:  # type: ignore[override] # it may be destroyed
+        return self._Node__handle
 
     @property
     def handle(self) -> NodeHandle:
         """The handle."""
-        return self._handle
+        return self._Node__handle
 
     @handle.setter
     def handle(self, value: Any) -> None:
         raise AttributeError("handle cannot be modified after node creation")
 
-    get_name = in_use(NodeHandle.get_node_name)
-    get_namespace = in_use(NodeHandle.get_namespace)
-    get_fully_qualified_name = in_use(NodeHandle.get_fully_qualified_name)
+    get_name = in_use_by_node(NodeHandle.get_node_name)
+    get_namespace = in_use_by_node(NodeHandle.get_namespace)
+    get_fully_qualified_name = in_use_by_node(NodeHandle.get_fully_qualified_name)
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """Return the full name of a topic, remapped unless `only_expand`."""
-        with self._handle:
-            return self._handle.resolve(topic, only_expand=only_expand)
+        with self._Node__handle:
+            return self._Node__handle.resolve(topic, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """Return the full name of a service, remapped unless `only_expand`."""
-        with self._handle:
-            return self._handle.resolve(service, only_expand=only_expand, is_service=True)
+        with self._Node__handle:
+            return self._Node__handle.resolve(service, only_expand=only_expand, is_service=True)
 
     # Nodes
 
@@ -77,18 +77,18 @@ class NodeGraph(GraphQueries):
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic; with `no_mangle` its name is complete."""
-        return self._infos(EndpointKind.PUBLISHER, topic_name, is_complete=no_mangle)
+        return self._Node__infos(EndpointKind.PUBLISHER, topic_name, is_complete=no_mangle)
 
     def get_subscriptions_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """Return the subscriptions of a topic; with `no_mangle` its name is complete."""
-        return self._infos(EndpointKind.SUBSCRIPTION, topic_name, is_complete=no_mangle)
+        return self._Node__infos(EndpointKind.SUBSCRIPTION, topic_name, is_complete=no_mangle)
 
-    def _infos(
+    def _Node__infos(
         self, kind: EndpointKind, topic_name: str, *, is_complete: bool
     ) -> list[TopicEndpointInfo]:
-        endpoints = self._handle.endpoints(kind, topic_name, is_complete=is_complete)
+        endpoints = self._Node__handle.endpoints(kind, topic_name, is_complete=is_complete)
         return [info_of(endpoint) for endpoint in endpoints]
 
 

@@ -81,12 +81,12 @@ class NodeParameters(ParameterMethods):
     PARAM_REL_TOL = 1e-6
     """How near to a limit or a step a float has to be, relative to it."""
 
-    def _init_parameters(
+    def _Node__init_parameters(
         self, full_name: str, overrides: Iterable[Parameter[Any]], *, allow_undeclared: bool
     ) -> None:
         """Begin without parameters; programs of rclpy look at the attributes besides the store."""
         store = Store(full_name, overrides=overrides, allow_undeclared=allow_undeclared)
-        self._parameter_store = store
+        self._Node__parameter_store = store
         self._allow_undeclared_parameters = allow_undeclared
         self._parameters = store._parameters
         self._descriptors = store._descriptors

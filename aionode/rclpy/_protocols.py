@@ -32,7 +32,7 @@ class NodeLike(Protocol):
     _guards: list[Any]
     _clients: list[Any]
     _services: list[Any]
-    _waitables: list[Any]
+    _Node__waitables: list[Any]
 
     @property
     def handle(self) -> NodeHandle:

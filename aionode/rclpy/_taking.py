@@ -36,10 +36,10 @@ def find_ready(
     """Return what is ready now, in the order of a round."""
     ready: list[Ready] = []
     for node in nodes:
-        if node._waitables:  # few have any
+        if node._Node__waitables:  # few have any
             ready += [
                 (waitable, node, take_waitable)
-                for waitable in tuple(node._waitables)
+                for waitable in tuple(node._Node__waitables)
                 if can_execute(waitable) and is_ready(waitable, context)
             ]
     for node in nodes:

@@ -106,7 +106,7 @@ class Executor:
         # Held while tasks are added, and while those that are done are left out, so that none is
         # lost.
         self._tasks_lock = threading.RLock()
-        self._wakeup = Wakeup()
+        self._Executor__wakeup = Wakeup()
         self._is_shutdown = False
         # Used by the thread that spins; only one thread may at a time.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
@@ -114,9 +114,9 @@ class Executor:
         if self._context.handle is None:
             raise RuntimeError("Context must be initialized a GuardCondition can be created")
         self._context.handle.refuse_if_over("guard_condition")
-        self._context_handle = self._context.handle
-        self._context_handle.signal.add(self._wakeup)
-        self._io = self._context_handle.io
+        self._Executor__context_handle = self._context.handle
+        self._Executor__context_handle.signal.add(self._Executor__wakeup)
+        self._Executor__io = self._Executor__context_handle.io
         self._context.on_shutdown(self.wake)
 
     @property
@@ -149,13 +149,13 @@ class Executor:
         Raises:
             ForkedProcessError: the context belongs to the parent of this forked process.
         """
-        self._io.refuse_if_inherited()
+        self._Executor__io.refuse_if_inherited()
         with self._nodes_lock:
             if node in self._nodes:
                 return False
             self._nodes[node] = None
             node.executor = self
-            node.handle.signal.add(self._wakeup)
+            node.handle.signal.add(self._Executor__wakeup)
         self.wake()
         return True
 
@@ -164,7 +164,7 @@ class Executor:
         with self._nodes_lock:
             if node in self._nodes:
                 del self._nodes[node]
-                node.handle.signal.remove(self._wakeup)
+                node.handle.signal.remove(self._Executor__wakeup)
         self.wake()
 
     def get_nodes(self) -> list[NodeLike]:
@@ -174,7 +174,7 @@ class Executor:
 
     def wake(self) -> None:
         """Have it look again at what is ready; any thread may call this."""
-        self._wakeup.wake()
+        self._Executor__wakeup.wake()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Begin no more callbacks, and let go of the nodes.
@@ -191,7 +191,7 @@ class Executor:
         self.wake()
         for node in self.get_nodes():
             self.remove_node(node)
-        self._context_handle.signal.remove(self._wakeup)
+        self._Executor__context_handle.signal.remove(self._Executor__wakeup)
         self._cb_iter = None
         return True
 
@@ -214,21 +214,21 @@ class Executor:
         # With an executor of its own, that is one of its tasks: a call more for `spin_once`.
         future.add_done_callback(lambda _: self.wake())
         if timeout_sec is None or timeout_sec < 0:
-            while self._goes_on(future):
+            while self._Executor__goes_on(future):
                 self._spin_once_impl(timeout_sec, future.done)
             return
         ends_ns = steady_ns() + timeout_sec * 1e9
         left = TimeoutObject(timeout_sec)
-        while self._goes_on(future):
+        while self._Executor__goes_on(future):
             self._spin_once_impl(left, future.done)
             left_ns = ends_ns - steady_ns()
             if left_ns <= 0:
                 return
             left.timeout = left_ns / 1e9
 
-    def _goes_on(self, future: Future[Any]) -> bool:
-        if self._context_handle.is_shut_down:
-            self._context_handle.note_told()
+    def _Executor__goes_on(self, future: Future[Any]) -> bool:
+        if self._Executor__context_handle.is_shut_down:
+            self._Executor__context_handle.note_told()
             return False
         return not (future.done() or future.cancelled() or self._is_shutdown)
 
@@ -291,9 +291,9 @@ class Executor:
             ExternalShutdownException: the context is shut down.
             ConditionReachedException: the condition is true.
         """
-        return self._as_task(self._next(timeout_sec, nodes, condition))
+        return self._Executor__as_task(self._Executor__next(timeout_sec, nodes, condition))
 
-    def _next(
+    def _Executor__next(
         self,
         timeout_sec: float | TimeoutObject | None,
         nodes: list[NodeLike] | None,
@@ -304,7 +304,7 @@ class Executor:
         while True:
             if self._cb_iter is None or self._last_args != args:
                 self._last_args = args
-                self._cb_iter = self._rounds(timeout_sec, nodes, condition)
+                self._cb_iter = self._Executor__rounds(timeout_sec, nodes, condition)
             try:
                 return next(self._cb_iter)
             except StopIteration:
@@ -317,9 +317,9 @@ class Executor:
         condition: Callable[[], bool] = never,
     ) -> Iterator[Work]:
         """Return the callbacks of one round as tasks, after waiting until there is one."""
-        return map(self._as_task, self._rounds(timeout_sec, nodes, condition))
+        return map(self._Executor__as_task, self._Executor__rounds(timeout_sec, nodes, condition))
 
-    def _rounds(
+    def _Executor__rounds(
         self,
         timeout_sec: float | TimeoutObject | None,
         nodes: list[NodeLike] | None,
@@ -333,16 +333,16 @@ class Executor:
             ends_ns = steady_ns() + int(timeout_sec * 1e9)
         yielded = False
         while not yielded:
-            self._wakeup.take(False)  # whatever it was for is looked at now
-            self._raise_if_over(condition)
+            self._Executor__wakeup.take(False)  # whatever it was for is looked at now
+            self._Executor__raise_if_over(condition)
             used = self.get_nodes() if nodes is None else nodes
             if self._tasks:
-                for work in self._unfinished(used):
+                for work in self._Executor__unfinished(used):
                     yielded = True
                     yield work
-            ready = find_ready(used, self.can_execute, self._context_handle)
+            ready = find_ready(used, self.can_execute, self._Executor__context_handle)
             if not ready and not yielded:
-                ready = self._ready_after_wait(used, ends_ns)
+                ready = self._Executor__ready_after_wait(used, ends_ns)
             # Before the calls, which may take longer than the limit.
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for call in ready:
@@ -353,28 +353,30 @@ class Executor:
             if over:
                 raise TimeoutException
 
-    def _raise_if_over(self, condition: Callable[[], bool] = never) -> None:
+    def _Executor__raise_if_over(self, condition: Callable[[], bool] = never) -> None:
         if self._is_shutdown:
             self.wake()  # another thread may wait, too
             raise ShutdownException
-        if self._context_handle.is_shut_down:
-            self._context_handle.note_told()
-            self._io.refuse_if_inherited()
+        if self._Executor__context_handle.is_shut_down:
+            self._Executor__context_handle.note_told()
+            self._Executor__io.refuse_if_inherited()
             self.wake()
             raise ExternalShutdownException
         if condition():
             raise ConditionReachedException
 
-    def _ready_after_wait(self, nodes: list[NodeLike], ends_ns: int | None) -> list[Ready]:
+    def _Executor__ready_after_wait(
+        self, nodes: list[NodeLike], ends_ns: int | None
+    ) -> list[Ready]:
         left_ns = None if ends_ns is None else ends_ns - steady_ns()
         if left_ns is not None and left_ns <= 0:
             return []
-        self._wait(nodes, left_ns)
-        if self._is_shutdown or self._context_handle.is_shut_down:
-            self._raise_if_over()
-        return find_ready(nodes, self.can_execute, self._context_handle)
+        self._Executor__wait(nodes, left_ns)
+        if self._is_shutdown or self._Executor__context_handle.is_shut_down:
+            self._Executor__raise_if_over()
+        return find_ready(nodes, self.can_execute, self._Executor__context_handle)
 
-    def _unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
+    def _Executor__unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
         """Yield the tasks that can go on, and forget those that are done."""
         with self._tasks_lock:
             self._tasks = [
@@ -392,7 +394,7 @@ class Executor:
             ):
                 yield work
 
-    def _wait(self, nodes: list[NodeLike], left_ns: int | None) -> None:
+    def _Executor__wait(self, nodes: list[NodeLike], left_ns: int | None) -> None:
         """Wait until something may be ready, or the time has passed."""
         waits = [] if left_ns is None else [left_ns]
         for node in nodes:
@@ -405,42 +407,44 @@ class Executor:
         waitables = [
             waitable
             for node in nodes
-            for waitable in tuple(node._waitables)
+            for waitable in tuple(node._Node__waitables)
             if self.can_execute(waitable)
         ]
-        wait_set = wait_set_of(waitables, self._context_handle) if waitables else None
+        wait_set = wait_set_of(waitables, self._Executor__context_handle) if waitables else None
         if wait_set is not None:
             due_ns = wait_set.due_in_ns()
             if due_ns is not None:
                 waits.append(due_ns)
-            wait_set.watch(self._wakeup)
+            wait_set.watch(self._Executor__wakeup)
         try:
             # A handle of a waitable may have become ready before it was watched.
             if wait_set is None or not wait_set.may_be_ready():
                 timeout_sec = max(0, min(waits)) / 1e9 if waits else None
-                self._io.wait(self._wakeup, timeout_sec)
+                self._Executor__io.wait(self._Executor__wakeup, timeout_sec)
         finally:
             if wait_set is not None:
-                wait_set.unwatch(self._wakeup)
+                wait_set.unwatch(self._Executor__wakeup)
 
     # Calling callbacks
 
-    def _as_task(self, ready: Ready | Work) -> Work:
+    def _Executor__as_task(self, ready: Ready | Work) -> Work:
         """Return a task that takes what is ready and calls the entity's callback with it."""
         if isinstance(ready[0], Task):
             return ready  # type: ignore[return-value]  # as its first element says
         entity, node, take = cast("Ready", ready)
         entity._executor_event = True
-        return self._add_task(self._handle(entity, take), entity, node)
+        return self._Executor__add_task(self._Executor__handle(entity, take), entity, node)
 
-    def _add_task(self, coroutine: Coroutine[Any, Any, None], entity: Any, node: Any) -> Work:
+    def _Executor__add_task(
+        self, coroutine: Coroutine[Any, Any, None], entity: Any, node: Any
+    ) -> Work:
         task: Task[Any] = Task(coroutine, executor=self)
         work = (task, entity, node)
         with self._tasks_lock:
             self._tasks.append(work)
         return work
 
-    async def _handle(self, entity: Entity, take: Take) -> None:
+    async def _Executor__handle(self, entity: Entity, take: Take) -> None:
         group = entity.callback_group
         if self._is_shutdown or not (group is None or group.beginning_execution(entity)):
             entity._executor_event = False
@@ -460,7 +464,7 @@ class Executor:
                 group.ending_execution(entity)
             self.wake()
 
-    def _call(self, entity: Entity, node: Any, take: Take) -> Task[Any] | None:
+    def _Executor__call(self, entity: Entity, node: Any, take: Take) -> Task[Any] | None:
         """Take what is ready and call the entity's callback with it, in the only thread that does.
 
         Returns:
@@ -480,9 +484,9 @@ class Executor:
                 group.ending_execution(entity)
         if coroutine is None:
             return None
-        return self._add_task(self._finish(coroutine, entity), entity, node)[0]
+        return self._Executor__add_task(self._Executor__finish(coroutine, entity), entity, node)[0]
 
-    async def _finish(self, coroutine: Coroutine[Any, Any, None], entity: Entity) -> None:
+    async def _Executor__finish(self, coroutine: Coroutine[Any, Any, None], entity: Entity) -> None:
         try:
             await coroutine
         finally:
@@ -506,10 +510,10 @@ class SingleThreadedExecutor(Executor):
         condition: Callable[[], bool] = never,
     ) -> None:
         try:
-            ready = self._next(timeout_sec, None, condition)
+            ready = self._Executor__next(timeout_sec, None, condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
-        task = ready[0] if isinstance(ready[0], Task) else self._call(*ready)
+        task = ready[0] if isinstance(ready[0], Task) else self._Executor__call(*ready)
         if task is None:
             return
         task()
@@ -558,7 +562,7 @@ class MultiThreadedExecutor(Executor):
         ):
             return
         task._scheduled = True
-        self._executor.submit(self._step, task)
+        self._executor.submit(self._Executor__step, task)
         if task not in self._futures:
             self._futures.append(task)
         for future in self._futures[:]:
@@ -566,7 +570,7 @@ class MultiThreadedExecutor(Executor):
                 self._futures.remove(future)
                 future.result()  # raises what the callback raised
 
-    def _step(self, task: Task[Any]) -> None:
+    def _Executor__step(self, task: Task[Any]) -> None:
         try:
             task()
         finally:

@@ -114,14 +114,14 @@ class Node(NodeParameters, NodeGraph):
         self._services: list[Service[Any, Any]] = []
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
-        self._waitables: list[Waitable[Any]] = []
+        self._Node__waitables: list[Waitable[Any]] = []
         self._default_callback_group: CallbackGroup = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
-        self._executor_weakref: weakref.ref[Executor] | None = None
+        self._Node__executor_weakref: weakref.ref[Executor] | None = None
         if self._context.handle is None or not self._context.ok():
             raise NotInitializedException("cannot create node")
         with self._context.handle:
-            self._handle = NodeHandle(
+            self._Node__handle = NodeHandle(
                 node_name,
                 namespace or "",
                 self._context.handle,
@@ -130,17 +130,17 @@ class Node(NodeParameters, NodeGraph):
                 enable_rosout,
                 as_profile(rosout_qos_profile),
             )
-        self._logger = get_logger(self._handle.logger_name())
-        self._clock = self._make_clock()
-        self._init_parameters(
-            self._handle.get_fully_qualified_name(),
-            [*self._handle.get_parameters(Parameter).values(), *(parameter_overrides or ())],
+        self._logger = get_logger(self._Node__handle.logger_name())
+        self._clock = self._Node__make_clock()
+        self._Node__init_parameters(
+            self._Node__handle.get_fully_qualified_name(),
+            [*self._Node__handle.get_parameters(Parameter).values(), *(parameter_overrides or ())],
             allow_undeclared=allow_undeclared_parameters,
         )
         events = self.create_publisher(
             msg.ParameterEvent, "/parameter_events", qos_profile_parameter_events
         )
-        self._parameter_store.publish = ParameterEvents(events, self._clock)
+        self._Node__parameter_store.publish = ParameterEvents(events, self._clock)
         if automatically_declare_parameters_from_overrides:
             self.declare_parameters(
                 "",
@@ -159,7 +159,7 @@ class Node(NodeParameters, NodeGraph):
         self._type_description_service = TypeDescriptionService(self)
         self._context.track_node(self)
 
-    def _make_clock(self) -> ROSClock:
+    def _Node__make_clock(self) -> ROSClock:
         """Return the clock of a new node."""
         return ROSClock()
 
@@ -201,23 +201,23 @@ class Node(NodeParameters, NodeGraph):
     @property
     def waitables(self) -> Iterator[Waitable[Any]]:
         """Its waitables."""
-        yield from self._waitables
+        yield from self._Node__waitables
 
     @property
     def executor(self) -> Executor | None:
         """The executor that calls its callbacks, or None. Setting it takes it from the former."""
-        return None if self._executor_weakref is None else self._executor_weakref()
+        return None if self._Node__executor_weakref is None else self._Node__executor_weakref()
 
     @executor.setter
     def executor(self, new_executor: Executor | None) -> None:
         current = self.executor
         if current is new_executor:
             return
-        self._executor_weakref = None
+        self._Node__executor_weakref = None
         if current is not None:
             current.remove_node(self)
         if new_executor is not None:
-            self._executor_weakref = weakref.ref(new_executor)
+            self._Node__executor_weakref = weakref.ref(new_executor)
             new_executor.add_node(self)
 
     def _wake_executor(self) -> None:
@@ -272,7 +272,7 @@ class Node(NodeParameters, NodeGraph):
         profile = _declare_qos_parameters(Publisher, self, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         with self.handle:
-            handle = PublisherHandle(self._handle, msg_type, topic, profile)
+            handle = PublisherHandle(self._Node__handle, msg_type, topic, profile)
         try:
             publisher = publisher_class(
                 handle,
@@ -287,7 +287,7 @@ class Node(NodeParameters, NodeGraph):
             raise
         self._publishers.append(publisher)
         self._wake_executor()
-        self._add_event_handlers(publisher)
+        self._Node__add_event_handlers(publisher)
         return publisher
 
     def create_subscription(
@@ -328,7 +328,7 @@ class Node(NodeParameters, NodeGraph):
         check_is_valid_msg_type(msg_type)
         with self.handle:
             handle = SubscriptionHandle(
-                self._handle, msg_type, topic, profile, content_filter_options
+                self._Node__handle, msg_type, topic, profile, content_filter_options
             )
         try:
             subscription: Subscription[Any] = Subscription(
@@ -344,8 +344,8 @@ class Node(NodeParameters, NodeGraph):
         except BaseException:
             handle.destroy_when_not_in_use()
             raise
-        self._add(subscription, self._subscriptions, self._handle.messages)
-        self._add_event_handlers(subscription)
+        self._Node__add(subscription, self._subscriptions, self._Node__handle.messages)
+        self._Node__add_event_handlers(subscription)
         return subscription
 
     def create_client(
@@ -365,11 +365,11 @@ class Node(NodeParameters, NodeGraph):
         group = callback_group or self.default_callback_group
         check_is_valid_srv_type(srv_type)
         with self.handle:
-            handle = ClientHandle(self._handle, srv_type, srv_name, qos_profile)
+            handle = ClientHandle(self._Node__handle, srv_type, srv_name, qos_profile)
         client: Client[Any, Any] = Client(
             self.context, handle, srv_type, srv_name, qos_profile, group
         )
-        self._add(client, self._clients, self._handle.responses)
+        self._Node__add(client, self._clients, self._Node__handle.responses)
         return client
 
     def create_service(
@@ -390,11 +390,11 @@ class Node(NodeParameters, NodeGraph):
         group = callback_group or self.default_callback_group
         check_is_valid_srv_type(srv_type)
         with self.handle:
-            handle = ServiceHandle(self._handle, srv_type, srv_name, qos_profile)
+            handle = ServiceHandle(self._Node__handle, srv_type, srv_name, qos_profile)
         service: Service[Any, Any] = Service(
             handle, srv_type, srv_name, callback, group, qos_profile
         )
-        self._add(service, self._services, self._handle.requests)
+        self._Node__add(service, self._services, self._Node__handle.requests)
         return service
 
     def create_timer(
@@ -425,8 +425,8 @@ class Node(NodeParameters, NodeGraph):
                 context=self.context,
                 autostart=autostart,
             )
-        timer.handle.signal = self._handle.signal
-        self._add(timer, self._timers)
+        timer.handle.signal = self._Node__handle.signal
+        self._Node__add(timer, self._timers)
         return timer
 
     def create_guard_condition(
@@ -436,8 +436,8 @@ class Node(NodeParameters, NodeGraph):
         group = callback_group or self.default_callback_group
         with self.handle:
             guard = GuardCondition(callback, group, context=self.context)
-        guard.handle.signal = self._handle.signal
-        self._add(guard, self._guards)
+        guard.handle.signal = self._Node__handle.signal
+        self._Node__add(guard, self._guards)
         return guard
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -455,7 +455,9 @@ class Node(NodeParameters, NodeGraph):
         timer = self.create_timer(1.0 / frequency, None, self._rate_group, clock)
         return Rate(timer, context=self.context)
 
-    def _add(self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None) -> None:
+    def _Node__add(
+        self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None
+    ) -> None:
         """Own an entity, and have the executor look at it.
 
         Args:
@@ -473,41 +475,41 @@ class Node(NodeParameters, NodeGraph):
 
     def add_waitable(self, waitable: Waitable[Any]) -> None:
         """Have its executor wait for `waitable` as well."""
-        self._waitables.append(waitable)
+        self._Node__waitables.append(waitable)
         self._wake_executor()
 
     def remove_waitable(self, waitable: Waitable[Any]) -> None:
         """Undo `add_waitable`."""
-        self._waitables.remove(waitable)
+        self._Node__waitables.remove(waitable)
         self._wake_executor()
 
     # End
 
     def destroy_publisher(self, publisher: Publisher[Any]) -> bool:
         """Destroy a publisher; return whether it was one of this node."""
-        self._remove_event_handlers(publisher, self._publishers)
-        return self._destroy(publisher, self._publishers)
+        self._Node__remove_event_handlers(publisher, self._publishers)
+        return self._Node__destroy(publisher, self._publishers)
 
     def destroy_subscription(self, subscription: Subscription[Any]) -> bool:
         """Destroy a subscription; return whether it was one of this node."""
-        self._remove_event_handlers(subscription, self._subscriptions)
-        return self._destroy(subscription, self._subscriptions)
+        self._Node__remove_event_handlers(subscription, self._subscriptions)
+        return self._Node__destroy(subscription, self._subscriptions)
 
     def destroy_client(self, client: Client[Any, Any]) -> bool:
         """Destroy a client; return whether it was one of this node."""
-        return self._destroy(client, self._clients)
+        return self._Node__destroy(client, self._clients)
 
     def destroy_service(self, service: Service[Any, Any]) -> bool:
         """Destroy a service; return whether it was one of this node."""
-        return self._destroy(service, self._services)
+        return self._Node__destroy(service, self._services)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Destroy a timer; return whether it was one of this node."""
-        return self._destroy(timer, self._timers)
+        return self._Node__destroy(timer, self._timers)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Destroy a guard condition; return whether it was one of this node."""
-        return self._destroy(guard, self._guards)
+        return self._Node__destroy(guard, self._guards)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Destroy a rate, and wake what sleeps; return whether it was one of this node."""
@@ -515,18 +517,18 @@ class Node(NodeParameters, NodeGraph):
         rate.destroy()
         return success
 
-    def _add_event_handlers(self, entity: Any) -> None:
+    def _Node__add_event_handlers(self, entity: Any) -> None:
         for handler in entity.event_handlers:
             if not isinstance(handler, DefaultHandler):
                 self.add_waitable(handler)
 
-    def _remove_event_handlers(self, entity: Any, entities: list[Any]) -> None:
+    def _Node__remove_event_handlers(self, entity: Any, entities: list[Any]) -> None:
         if entity in entities:
             for handler in entity.event_handlers:
-                if handler in self._waitables:
-                    self._waitables.remove(handler)
+                if handler in self._Node__waitables:
+                    self._Node__waitables.remove(handler)
 
-    def _destroy(self, entity: Any, entities: list[Any]) -> bool:
+    def _Node__destroy(self, entity: Any, entities: list[Any]) -> bool:
         try:
             entities.remove(entity)
         except ValueError:
@@ -541,7 +543,7 @@ class Node(NodeParameters, NodeGraph):
     def destroy_node(self) -> None:
         """Destroy its entities, and leave the graph. Calling it again has no effect."""
         self._context.untrack_node(self)
-        self._parameter_store.publish = None
+        self._Node__parameter_store.publish = None
         ends: tuple[tuple[list[Any], Callable[[Any], bool]], ...] = (
             (self._publishers, self.destroy_publisher),
             (self._subscriptions, self.destroy_subscription),
@@ -554,7 +556,7 @@ class Node(NodeParameters, NodeGraph):
             while entities:
                 destroy(entities[0])
         self._type_description_service.destroy()
-        self._handle.destroy_when_not_in_use()
+        self._Node__handle.destroy_when_not_in_use()
         self._wake_executor()
 
     def __enter__(self) -> Self:

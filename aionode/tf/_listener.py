@@ -56,8 +56,8 @@ class TransformListener:
         )
         self.buffer = buffer
         self.node = node
-        self._senders: dict[bytes, str] = {}
-        self._unnamed: set[bytes] = set()  # publishers whose node is not known yet
+        self.__senders: dict[bytes, str] = {}
+        self.__unnamed: set[bytes] = set()  # publishers whose node is not known yet
         self.tf_sub: Subscription[TFMessage] = node.create_subscription(
             TFMessage, tf_topic, self.callback, qos or DEPTH
         )
@@ -65,43 +65,43 @@ class TransformListener:
             TFMessage, tf_static_topic, self.static_callback, static_qos
         )
         for subscription in (self.tf_sub, self.tf_static_sub):
-            subscription._watch(self._note_publisher)
+            subscription._watch(self.__note_publisher)
 
     def callback(self, data: TFMessage, info: MessageInfo) -> None:
         """Take transforms that may change."""
-        authority = self._sender(info["publisher_gid"])
+        authority = self.__sender(info["publisher_gid"])
         for transform in data.transforms:
             self.buffer.set_transform(transform, authority)
 
     def static_callback(self, data: TFMessage, info: MessageInfo) -> None:
         """Take transforms that hold at any time."""
-        authority = self._sender(info["publisher_gid"])
+        authority = self.__sender(info["publisher_gid"])
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, authority)
 
-    def _sender(self, gid: bytes) -> str:
+    def __sender(self, gid: bytes) -> str:
         """Return the full name of the node of a publisher; its gid while that is not known."""
-        known = self._senders.get(gid)
+        known = self.__senders.get(gid)
         if known is not None:
             return known
         topics = {self.tf_sub.topic_name, self.tf_static_sub.topic_name}
         for endpoint in self.node.graph.endpoints(EndpointKind.PUBLISHER):
             if endpoint.gid == gid and endpoint.name in topics:
-                if len(self._senders) >= MAX_SENDERS:
-                    self._senders.clear()
-                name = self._senders[gid] = endpoint.node.fully_qualified_name
+                if len(self.__senders) >= MAX_SENDERS:
+                    self.__senders.clear()
+                name = self.__senders[gid] = endpoint.node.fully_qualified_name
                 return name
-        if len(self._unnamed) < MAX_SENDERS:
-            self._unnamed.add(gid)
+        if len(self.__unnamed) < MAX_SENDERS:
+            self.__unnamed.add(gid)
         return nameless(gid)
 
-    def _note_publisher(self, endpoint: EndpointInfo, present: bool) -> None:
+    def __note_publisher(self, endpoint: EndpointInfo, present: bool) -> None:
         """Name the sender of transforms that have arrived before the graph knew their publisher.
 
         Static transforms come once: without this, their sender would never be named.
         """
-        if present and endpoint.gid in self._unnamed:
-            self._unnamed.discard(endpoint.gid)
+        if present and endpoint.gid in self.__unnamed:
+            self.__unnamed.discard(endpoint.gid)
             name = endpoint.node.fully_qualified_name
             self.buffer._rename_authority(nameless(endpoint.gid), name)
 

@@ -70,7 +70,7 @@ class NodeBufferCore(BufferCore):
             tf_topic=tf_topic,
             tf_static_topic=tf_static_topic,
         )
-        self._entity = node._add_entity(
+        self._entity = node._Node__add_entity(
             BufferEnd(f"transform buffer of {node.get_fully_qualified_name()}", self._end_waits)
         )
         self._jumps = self._clock.create_jump_callback(

@@ -213,7 +213,7 @@ async def test_a_cancellation_in_the_same_moment_counts(
 
         if cancelled_first:
             waiting.cancel()
-        for entity in list(planner._entities):
+        for entity in list(planner._Node__entities):
             entity.destroy()
         planner.get_clock().destroy()
         waiting.cancel()

@@ -644,10 +644,10 @@ def test_a_cancellation_at_any_await_leaves_a_primary_state(
                 elif how == "shutdown":
                     await asyncio.gather(node.trigger_shutdown(), return_exceptions=True)
                 else:
-                    node._transitions.cancel(FAILURE if how == "failure" else ERROR)
+                    node._LifecycleNode__transitions.cancel(FAILURE if how == "failure" else ERROR)
                 await asyncio.gather(task, return_exceptions=True)
-                assert not node._transitions.machine.in_transition
-                assert node._transitions._idle.is_set()
+                assert not node._LifecycleNode__transitions.machine.in_transition
+                assert node._LifecycleNode__transitions._idle.is_set()
 
     asyncio.run(run())
 

@@ -19,7 +19,7 @@ class Handles:
         self._ready = ready
         others = [Arrivals(Signal()) for _ in range(2)]
         self.node: Any = SimpleNamespace(
-            _waitables=[],
+            _Node__waitables=[],
             _timers=[],
             _subscriptions=[SimpleNamespace(_handle=SimpleNamespace(ready=self._look))],
             _guards=[],

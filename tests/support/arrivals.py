@@ -30,7 +30,7 @@ def gid_of(node: Node, topic: str, kind: EndpointKind = EndpointKind.PUBLISHER) 
 
 def direct_subscription(node: Node, *args: Any) -> Subscription[Any]:
     """Return a subscription that hands messages on as they arrive, as recorders have them."""
-    return node._create_direct_subscription(*args)
+    return node._Node__create_direct_subscription(*args)
 
 
 def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:

@@ -130,7 +130,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._waits: dict[asyncio.Future[None], None] = {}  # in order, to wake them in order
         self._futures = Futures(self)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
-        self._expect_at_end = node._expect_at_end
+        self._expect_at_end = node._Node__expect_at_end
         self._sends_for_others = False  # such as the clients of a gateway; see `lost_id`
         self._tell_goes_on = warner(node.get_logger(), self._subject)
 
@@ -180,7 +180,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             for part in self._parts:
                 part.destroy()
             raise
-        node._add_entity(self)
+        node._Node__add_entity(self)
 
     def __repr__(self) -> str:
         return (

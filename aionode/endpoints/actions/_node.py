@@ -40,7 +40,7 @@ class ActionNode(Protocol):
     A protocol, as `Node` itself imports the actions.
     """
 
-    _callbacks: Callbacks
+    _Node__callbacks: Callbacks
 
     @property
     def context(self) -> ActionContext:
@@ -82,8 +82,8 @@ class ActionNode(Protocol):
     def create_client(self, srv_type: Any, srv_name: str, *, qos_profile: Any) -> Any:
         """Return a client."""
 
-    def _add_entity(self, entity: Any) -> Any:
+    def _Node__add_entity(self, entity: Any) -> Any:
         """Own an entity that is made of others."""
 
-    def _expect_at_end(self, answer: asyncio.Future[Any]) -> None:
+    def _Node__expect_at_end(self, answer: asyncio.Future[Any]) -> None:
         """Have the end of the node wait for an answer."""

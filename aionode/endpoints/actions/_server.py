@@ -185,7 +185,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self.stats = CallbackStats()
         self._clock = node.get_clock()
         self._time_base = node.context.time_base
-        self._callbacks = node._callbacks
+        self._callbacks = node._Node__callbacks
         self._logger = node.get_logger()
         self._when_lost = on_client_lost
         lost_ns = checked_client_lost(on_client_lost, client_lost_sec, self._subject)
@@ -260,7 +260,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._client_watch = ClientWatch(
             self._send_goal.srv_name, node.graph, self._time_base, lost_ns, self._on_client_lost
         )
-        node._add_entity(self)
+        node._Node__add_entity(self)
 
     def __repr__(self) -> str:
         active = self._goals.active

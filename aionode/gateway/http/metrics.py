@@ -175,7 +175,7 @@ def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str,
     Entities of one kind and name are one for Prometheus, which refuses the same labels twice.
     """
     entities: dict[tuple[str, str], list[Stats]] = {}
-    for entity in list(node._entities):
+    for entity in list(node._Node__entities):
         kind = kind_of(entity)
         if kind is None:
             continue

@@ -26,7 +26,7 @@ BAYER: Final = {"rggb": "BG", "bggr": "RG", "gbrg": "GR", "grbg": "GB"}
 """OpenCV's names for Bayer patterns, which go by the second row and column."""
 
 
-def cvtColor2(image: Pixels, encoding_in: str, encoding_out: str) -> Pixels:  # noqa: N802
+def cvtColor2(image: Pixels, encoding_in: str, encoding_out: str) -> Pixels:
     """Return an image in another encoding, with values of another depth where that differs.
 
     Args:
@@ -118,7 +118,7 @@ def saturated(values: Pixels, dtype: np.dtype[Any]) -> Pixels:
     return near
 
 
-def cvtColorForDisplay(  # noqa: N802  # cv_bridge's name
+def cvtColorForDisplay(  # cv_bridge's name
     source: Pixels,
     encoding_in: str,
     encoding_out: str,

@@ -58,7 +58,7 @@ def type_name(dtype_name: str, channels: int) -> str:
     return f"{name}C{channels}"
 
 
-def getCvType(encoding: str) -> int:  # noqa: N802  # cv_bridge's name
+def getCvType(encoding: str) -> int:  # cv_bridge's name
     """Return the number that OpenCV has for the type of an encoding.
 
     Raises:

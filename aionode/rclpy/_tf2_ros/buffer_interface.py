@@ -112,7 +112,7 @@ def convert(a: Any, b_type: Any) -> Any:
     return direct(a)
 
 
-def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:  # noqa: N802  # tf2's name
+def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:  # tf2's name
     """Give an object a header, and return it."""
     obj.header = message_class("std_msgs/msg/Header")(frame_id=frame_id, stamp=stamp)
     return obj

@@ -121,14 +121,14 @@ class AsyncNode(Node):
     """
 
     def __init__(self, node_name: str, **options: Any) -> None:
-        self._tasks: asyncio.TaskGroup | None = None
-        self._pumps: dict[Any, asyncio.Task[None]] = {}
-        self._news: dict[Any, asyncio.Event] = {}
-        self._concurrent: set[Any] = set()
-        self._destroyed = asyncio.Event()
+        self.__tasks: asyncio.TaskGroup | None = None
+        self.__pumps: dict[Any, asyncio.Task[None]] = {}
+        self.__news: dict[Any, asyncio.Event] = {}
+        self.__concurrent: set[Any] = set()
+        self.__destroyed = asyncio.Event()
         super().__init__(node_name, **options)
 
-    def _make_clock(self) -> ROSClock:
+    def _Node__make_clock(self) -> ROSClock:
         return AsyncClock()
 
     def get_clock(self) -> AsyncClock:
@@ -144,17 +144,17 @@ class AsyncNode(Node):
         Raises:
             RuntimeError: it runs already, or was destroyed.
         """
-        if self._destroyed.is_set():
+        if self.__destroyed.is_set():
             raise RuntimeError("Node has been destroyed and cannot be reentered")
-        if self._tasks is not None:
+        if self.__tasks is not None:
             raise RuntimeError("Node is already running")
-        self._tasks = await asyncio.TaskGroup().__aenter__()
-        self._event = asyncio.Event()
-        self._loop_wakeup: Any = LoopWakeup(asyncio.get_running_loop(), self._event)
-        self.handle.signal.add(self._loop_wakeup)
-        self._dispatcher = self._tasks.create_task(self._dispatch())
+        self.__tasks = await asyncio.TaskGroup().__aenter__()
+        self.__event = asyncio.Event()
+        self.__loop_wakeup: Any = LoopWakeup(asyncio.get_running_loop(), self.__event)
+        self.handle.signal.add(self.__loop_wakeup)
+        self.__dispatcher = self.__tasks.create_task(self.__dispatch())
         for entity in (*self._subscriptions, *self._services, *self._timers, *self._guards):
-            self._start(entity)
+            self.__start(entity)
         return self
 
     async def __aexit__(
@@ -168,26 +168,26 @@ class AsyncNode(Node):
         Raises:
             ExceptionGroup: what callbacks have raised.
         """
-        tasks = self._tasks
+        tasks = self.__tasks
         assert tasks is not None  # noqa: S101  # set by __aenter__
         try:
             self.destroy_node()
-            self._dispatcher.cancel()
+            self.__dispatcher.cancel()
             await tasks.__aexit__(exc_type, exc, traceback)
         finally:
-            self._tasks = None
+            self.__tasks = None
 
     async def run(self) -> None:
         """Call callbacks until `destroy_node`."""
         async with self:
-            await self._destroyed.wait()
+            await self.__destroyed.wait()
 
     def destroy_node(self) -> None:
         """Destroy its entities, cancel their callbacks, and leave the graph."""
-        if self._destroyed.is_set():
+        if self.__destroyed.is_set():
             return
-        self._destroyed.set()
-        for pump in list(self._pumps.values()):
+        self.__destroyed.set()
+        for pump in list(self.__pumps.values()):
             pump.cancel()
         self._clock.destroy()
         super().destroy_node()
@@ -230,7 +230,7 @@ class AsyncNode(Node):
             **options,
         )
         if concurrent:
-            self._concurrent.add(subscription)
+            self.__concurrent.add(subscription)
         return subscription
 
     def create_service(
@@ -248,7 +248,7 @@ class AsyncNode(Node):
             srv_type, srv_name, callback, qos_profile=qos_profile, **options
         )
         if concurrent:
-            self._concurrent.add(service)
+            self.__concurrent.add(service)
         return service
 
     def create_client(
@@ -273,53 +273,55 @@ class AsyncNode(Node):
         """Return a timer; the callback may take a `TimerInfo`."""
         return super().create_timer(timer_period_sec, callback, autostart=autostart)
 
-    def _add(self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None) -> None:
-        super()._add(entity, entities, arrivals)
-        if self._tasks is not None and entities is not self._clients:  # whose calls are awaited
-            self._start(entity)
+    def _Node__add(
+        self, entity: Any, entities: list[Any], arrivals: Arrivals | None = None
+    ) -> None:
+        super()._Node__add(entity, entities, arrivals)
+        if self.__tasks is not None and entities is not self._clients:  # whose calls are awaited
+            self.__start(entity)
 
-    def _destroy(self, entity: Any, entities: list[Any]) -> bool:
-        pump = self._pumps.pop(entity, None)
+    def _Node__destroy(self, entity: Any, entities: list[Any]) -> bool:
+        pump = self.__pumps.pop(entity, None)
         if pump is not None and pump is not asyncio.current_task():
             pump.cancel()
-        self._news.pop(entity, None)
-        return super()._destroy(entity, entities)
+        self.__news.pop(entity, None)
+        return super()._Node__destroy(entity, entities)
 
     # Callbacks
 
-    def _start(self, entity: Any) -> None:
-        assert self._tasks is not None  # noqa: S101  # the node runs
-        self._news[entity] = asyncio.Event()
-        self._news[entity].set()
-        self._pumps[entity] = self._tasks.create_task(self._pump(entity))
+    def __start(self, entity: Any) -> None:
+        assert self.__tasks is not None  # noqa: S101  # the node runs
+        self.__news[entity] = asyncio.Event()
+        self.__news[entity].set()
+        self.__pumps[entity] = self.__tasks.create_task(self.__pump(entity))
 
-    async def _dispatch(self) -> None:
+    async def __dispatch(self) -> None:
         """Tell all entities that something has happened to one of them."""
         while True:
-            await self._event.wait()
-            self._event.clear()
-            for news in self._news.values():
+            await self.__event.wait()
+            self.__event.clear()
+            for news in self.__news.values():
                 news.set()
 
-    async def _pump(self, entity: Any) -> None:
+    async def __pump(self, entity: Any) -> None:
         """Call the callback of an entity whenever it is ready."""
-        news = self._news[entity]
+        news = self.__news[entity]
         async with asyncio.TaskGroup() as overlapping:
             while entity.handle.is_valid:
                 if not entity.handle.ready():
                     news.clear()
-                    await self._wait(entity, news)
+                    await self.__wait(entity, news)
                     continue
-                work = self._take(entity)
+                work = self.__take(entity)
                 if work is None:
                     continue
-                if entity in self._concurrent:
+                if entity in self.__concurrent:
                     overlapping.create_task(work)
                 else:
                     await work
                 await pause(0)
 
-    async def _wait(self, entity: Any, news: asyncio.Event) -> None:
+    async def __wait(self, entity: Any, news: asyncio.Event) -> None:
         due_ns = entity.handle.due_in_ns() if isinstance(entity, Timer) else None
         if due_ns is None:
             await news.wait()
@@ -331,7 +333,7 @@ class AsyncNode(Node):
         finally:
             alarm.cancel()
 
-    def _take(self, entity: Any) -> Any:
+    def __take(self, entity: Any) -> Any:
         """Take what is ready, and return the coroutine that handles it, or None."""
         try:
             with entity.handle:
@@ -343,23 +345,23 @@ class AsyncNode(Node):
                     return called(entity.callback, *taken[: 1 if only else 2])
                 if isinstance(entity, Service):
                     request, header = entity.handle.service_take_request(None)
-                    return None if header is None else self._answer(entity, request, header)
+                    return None if header is None else self.__answer(entity, request, header)
                 if isinstance(entity, Timer) and entity.callback is not None:
                     info = entity.handle.call_timer_with_info()
-                    return called(entity.callback, *self._timer_arguments(entity, info))
+                    return called(entity.callback, *self.__timer_arguments(entity, info))
                 entity.handle.take()
                 return called(entity.callback)
         except (InvalidHandle, TimerCancelledError):
             return None
 
-    def _timer_arguments(self, timer: Timer, info: dict[str, int]) -> tuple[Any, ...]:
+    def __timer_arguments(self, timer: Timer, info: dict[str, int]) -> tuple[Any, ...]:
         try:
             inspect.signature(timer.callback).bind()  # type: ignore[arg-type] # it has one
         except TypeError:
             return (timer.info(info),)
         return ()
 
-    async def _answer(self, service: Any, request: Any, header: Any) -> None:
+    async def __answer(self, service: Any, request: Any, header: Any) -> None:
         response = await called(service.callback, request, service.srv_type.Response())
         service.send_response(response, header)
 

@@ -67,14 +67,14 @@ class LifecycleNodeMixin(ManagedEntity):
         with self.handle:
             self._state_machine = LifecycleStateMachine(self.handle)
         if enable_communication_interface:
-            self._serve(callback_group or self.default_callback_group)
+            self._LifecycleNode__serve(callback_group or self.default_callback_group)
 
-    def _serve(self, group: CallbackGroup) -> None:
+    def _LifecycleNode__serve(self, group: CallbackGroup) -> None:
         """Answer the services of the state machine."""
         machine = self._state_machine
         answers = StateAnswers(machine.machine, msg.LifecycleState, msg.TransitionDescription)
         for name, srv_type, callback in (
-            ("change_state", msg.ChangeState, self._on_change_state),
+            ("change_state", msg.ChangeState, self._LifecycleNode__on_change_state),
             ("get_state", msg.GetState, answers.get_state),
             ("get_available_states", msg.GetAvailableStates, answers.get_available_states),
             (
@@ -87,16 +87,18 @@ class LifecycleNodeMixin(ManagedEntity):
             service = self.create_service(
                 srv_type,
                 f"~/{name}",
-                self._unless_destroyed(callback),
+                self._LifecycleNode__unless_destroyed(callback),
                 qos_profile=msg.TEN_MESSAGES,
                 callback_group=group,
             )
             setattr(self, f"_service_{name}", service)
             setattr(machine, f"service_{name}", service.handle)
 
-    def _unless_destroyed(self, callback: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    def _LifecycleNode__unless_destroyed(
+        self, callback: Callable[[Any, Any], Any]
+    ) -> Callable[[Any, Any], Any]:
         def answer(request: Any, response: Any) -> Any:
-            self._check_is_initialized()
+            self._LifecycleNode__check_is_initialized()
             return callback(request, response)
 
         return answer
@@ -105,19 +107,19 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure the node; return what its callback returned."""
-        return self._change_state(1)
+        return self._LifecycleNode__change_state(1)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Clean the node up; return what its callback returned."""
-        return self._change_state(2)
+        return self._LifecycleNode__change_state(2)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
         """Activate the node; return what its callback returned."""
-        return self._change_state(3)
+        return self._LifecycleNode__change_state(3)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Deactivate the node; return what its callback returned."""
-        return self._change_state(4)
+        return self._LifecycleNode__change_state(4)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Shut the node down; return what its callback returned.
@@ -128,10 +130,10 @@ class LifecycleNodeMixin(ManagedEntity):
         transition = self._state_machine.machine.find("shutdown")
         if transition is None:
             raise RCLError("Shutdown transtion not possible")
-        return self._change_state(transition.transition_id)
+        return self._LifecycleNode__change_state(transition.transition_id)
 
-    def _change_state(self, transition_id: int) -> TransitionCallbackReturn:
-        self._check_is_initialized()
+    def _LifecycleNode__change_state(self, transition_id: int) -> TransitionCallbackReturn:
+        self._LifecycleNode__check_is_initialized()
         machine = self._state_machine
         number, label = machine.current_state
         before = LifecycleState(label=label, state_id=number)
@@ -143,14 +145,16 @@ class LifecycleNodeMixin(ManagedEntity):
                 f"{machine.current_state}"
             )
             return TransitionCallbackReturn.ERROR
-        outcome = self._execute_callback(f"on_{transition.label}", before)
+        outcome = self._LifecycleNode__execute_callback(f"on_{transition.label}", before)
         machine.trigger_transition_by_label(outcome.to_label(), True)
         if outcome is TransitionCallbackReturn.ERROR:
-            after_error = self._execute_callback("on_error", before)
+            after_error = self._LifecycleNode__execute_callback("on_error", before)
             machine.trigger_transition_by_label(after_error.to_label(), True)
         return outcome
 
-    def _execute_callback(self, name: str, before: LifecycleState) -> TransitionCallbackReturn:
+    def _LifecycleNode__execute_callback(
+        self, name: str, before: LifecycleState
+    ) -> TransitionCallbackReturn:
         """Call the callback that decides which state follows; an exception counts as an error."""
         callback: Callable[[LifecycleState], TransitionCallbackReturn] = getattr(self, name)
         try:
@@ -161,7 +165,7 @@ class LifecycleNodeMixin(ManagedEntity):
             )
             return TransitionCallbackReturn.ERROR
 
-    def _check_is_initialized(self) -> None:
+    def _LifecycleNode__check_is_initialized(self) -> None:
         if not self._state_machine.initialized:
             raise RuntimeError(
                 "Internal error: got service request while lifecycle state machine is not "
@@ -180,7 +184,9 @@ class LifecycleNodeMixin(ManagedEntity):
             raise TypeError("Expected a rclpy.lifecycle.ManagedEntity instance.")
         self._managed_entities[entity] = None
 
-    def _tell_entities(self, callback_name: str, state: Any) -> TransitionCallbackReturn:
+    def _LifecycleNode__tell_entities(
+        self, callback_name: str, state: Any
+    ) -> TransitionCallbackReturn:
         """Call a callback of all entities, up to the first that does not succeed."""
         for entity in list(self._managed_entities):
             outcome = getattr(entity, callback_name)(state)
@@ -196,27 +202,27 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def on_configure(self, state: Any) -> TransitionCallbackReturn:
         """Handle the transition from unconfigured to inactive; tells the managed entities."""
-        return self._tell_entities("on_configure", state)
+        return self._LifecycleNode__tell_entities("on_configure", state)
 
     def on_cleanup(self, state: Any) -> TransitionCallbackReturn:
         """Handle the transition from inactive to unconfigured; tells the managed entities."""
-        return self._tell_entities("on_cleanup", state)
+        return self._LifecycleNode__tell_entities("on_cleanup", state)
 
     def on_shutdown(self, state: Any) -> TransitionCallbackReturn:
         """Handle the transition to finalized; tells the managed entities."""
-        return self._tell_entities("on_shutdown", state)
+        return self._LifecycleNode__tell_entities("on_shutdown", state)
 
     def on_activate(self, state: Any) -> TransitionCallbackReturn:
         """Handle the transition from inactive to active; tells the managed entities."""
-        return self._tell_entities("on_activate", state)
+        return self._LifecycleNode__tell_entities("on_activate", state)
 
     def on_deactivate(self, state: Any) -> TransitionCallbackReturn:
         """Handle the transition from active to inactive; tells the managed entities."""
-        return self._tell_entities("on_deactivate", state)
+        return self._LifecycleNode__tell_entities("on_deactivate", state)
 
     def on_error(self, state: Any) -> TransitionCallbackReturn:
         """Handle an error in another callback; tells the managed entities."""
-        return self._tell_entities("on_error", state)
+        return self._LifecycleNode__tell_entities("on_error", state)
 
     def create_lifecycle_publisher(
         self,
@@ -251,7 +257,7 @@ class LifecycleNodeMixin(ManagedEntity):
 
     # Services
 
-    def _on_change_state(self, request: Any, response: Any) -> Any:
+    def _LifecycleNode__on_change_state(self, request: Any, response: Any) -> Any:
         transition_id = request.transition.id
         if request.transition.label:
             try:
@@ -261,7 +267,9 @@ class LifecycleNodeMixin(ManagedEntity):
             except RCLError:
                 response.success = False
                 return response
-        response.success = self._change_state(transition_id) is TransitionCallbackReturn.SUCCESS
+        response.success = (
+            self._LifecycleNode__change_state(transition_id) is TransitionCallbackReturn.SUCCESS
+        )
         return response
 
 

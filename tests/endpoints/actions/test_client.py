@@ -323,7 +323,7 @@ async def test_a_goal_without_a_server_names_the_wait_that_action_clients_have(
             await client.send_goal(Fibonacci.Goal())
 
     (line,) = [text for text in caplog.messages if "no server is matched" in text]
-    assert "`wait_for_server()` of an action client" in line
+    assert "wait_for_server() of an action client" in line
 
 
 async def test_an_id_of_the_caller_is_used_and_rejected_the_second_time(ends: Ends) -> None:

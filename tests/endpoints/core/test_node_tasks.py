@@ -23,7 +23,7 @@ End = asyncio.CancelledError | EntityDestroyedError
 
 def end_in(node: Node) -> End:
     """Return how a wait of the current task ends."""
-    return node._node_tasks.end_of_wait("client of /add")
+    return node._Node__node_tasks.end_of_wait("client of /add")
 
 
 async def end_of(node: Node) -> End:

@@ -8,11 +8,11 @@ from aionode.rclpy._cv_bridge._encodings import getCvType
 __all__ = ["CV_MAT_CNWrap", "CV_MAT_DEPTHWrap", "cvtColor2", "cvtColorForDisplay", "getCvType"]
 
 
-def CV_MAT_CNWrap(cvtype: int) -> int:  # noqa: N802  # cv_bridge's name
+def CV_MAT_CNWrap(cvtype: int) -> int:  # cv_bridge's name
     """Return the number of channels of a type of OpenCV."""
     return (cvtype >> 3) + 1
 
 
-def CV_MAT_DEPTHWrap(cvtype: int) -> int:  # noqa: N802  # cv_bridge's name
+def CV_MAT_DEPTHWrap(cvtype: int) -> int:  # cv_bridge's name
     """Return the depth of a type of OpenCV."""
     return cvtype & 7
