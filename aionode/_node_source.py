@@ -8,16 +8,58 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from aionode.engine.context import Context
 from aionode.errors import CommandError
 from aionode.node import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
     from types import ModuleType
 
-__all__ = ["FITS", "module_in_file", "node_maker"]
+__all__ = ["FITS", "makers_of", "module_in_file", "node_maker"]
 
 FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker"
+
+
+def makers_of(specs: Sequence[str]) -> list[Callable[[], Any]]:
+    """Return what makes the nodes that are named; nothing if a file has run them itself.
+
+    A file whose last line runs its nodes, without asking for ``__main__``, does so when it is
+    imported. They have ended then, and are not started again.
+
+    Raises:
+        CommandError: A node is not there, or a file that runs its nodes itself is not alone.
+    """
+    makers = []
+    for spec in specs:
+        maker = maker_of(spec)
+        if maker is not None:
+            makers.append(maker)
+        elif len(specs) > 1:
+            raise CommandError(
+                f"{spec}: it has run its nodes itself, and no others beside them; for nodes of "
+                "several files in one process, let it run them only `if __name__ == "
+                '"__main__":`'
+            )
+    return makers
+
+
+def maker_of(spec: str) -> Callable[[], Any] | None:
+    """Return what makes the node that is named; None if its module has run its nodes itself.
+
+    Raises:
+        CommandError: There is no such thing, or it imports what is not installed; a program of
+            rclpy may do so by a name that its text does not show.
+    """
+    before = Context.openings
+    try:
+        module_of(spec.partition(":")[0], spec)
+        return node_maker(spec) if Context.openings == before else None
+    except ModuleNotFoundError as error:
+        raise CommandError(
+            f"{spec}: it imports {error.name}, which is not installed; "
+            f"a program of ROS 2 runs by `aionode run --rclpy {spec}`"
+        ) from error
 
 
 def node_maker(spec: str) -> Callable[[], Any]:

@@ -147,6 +147,7 @@ class Context:
         time_base: Where the time comes from.
         participant: Id of this context in the graph, in hexadecimal.
         seed: The seed of its ids; None if they are unique.
+        openings: How often a context of this process has opened: for nodes that run, or have run.
 
     Raises:
         ConfigurationError: an argument, or the environment variable used instead, is invalid (a
@@ -156,6 +157,7 @@ class Context:
             a network.
     """
 
+    openings: ClassVar[int] = 0
     _default: ClassVar[Context | None] = None
     _command_line: ClassVar[Usage] = Usage(Arguments())
     # For forked children: every context of this process, and whether one of them, or of the
@@ -404,6 +406,7 @@ class Context:
 
     async def _open_transports(self) -> None:
         opened: list[Transport] = []
+        Context.openings += 1
         if any(not isinstance(transport, LocalTransport) for transport in self._transports):
             if Context._parent_has_connected:
                 raise ForkedProcessError(repr(self))

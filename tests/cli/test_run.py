@@ -36,6 +36,7 @@ def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A file with two node classes."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["aionode"])
     file = tmp_path / "cli_run_nodes.py"
     file.write_text(SOURCE)
     return file
@@ -101,6 +102,56 @@ def test_classes_and_arguments_are_separated(
 
     assert status == 0
     assert ran == [(["Talker", "Listener"], ["--ros-args", "-p", "a:=1"])]
+
+
+RUNS_ITSELF = (
+    SOURCE
+    + """
+import asyncio
+import sys
+
+class Brief(Node):
+    def __init__(self):
+        super().__init__("brief")
+        print("made with", sys.argv[1:])
+
+    async def run(self):
+        async with self:
+            pass
+
+{}
+"""
+)
+
+
+@pytest.mark.parametrize("last_line", ["aionode.run(Brief)", "asyncio.run(Brief().run())"])
+@pytest.mark.parametrize("name", ["", ":Brief"])
+def test_a_file_that_runs_its_nodes_itself_runs_once(
+    last_line: str, name: str, program: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A beginner's file has no guard: to import it is to run it."""
+    program.with_name("cli_run_itself.py").write_text(
+        "import aionode\n" + RUNS_ITSELF.format(last_line)
+    )
+    sys.modules.pop("cli_run_itself", None)
+
+    status = main(["run", f"cli_run_itself.py{name}", "--ros-args", "-p", "a:=1"])
+
+    assert status == 0
+    assert capsys.readouterr().out == "made with ['--ros-args', '-p', 'a:=1']\n"
+
+
+def test_a_file_that_runs_its_nodes_itself_is_refused_beside_others(
+    program: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The others would have waited for its end without a word."""
+    file = program.with_name("cli_run_itself.py")
+    file.write_text("import aionode\n" + RUNS_ITSELF.format("aionode.run(Brief)"))
+    sys.modules.pop("cli_run_itself", None)
+
+    assert main(["run", "cli_run_itself.py", "cli_run_nodes.py:Talker"]) == 1
+
+    assert 'let it run them only `if __name__ == "__main__":`' in capsys.readouterr().err
 
 
 def test_an_option_before_the_arguments_is_an_error(

@@ -8,10 +8,10 @@ from __future__ import annotations
 import ast
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import click
 
@@ -98,12 +98,22 @@ def run_command(
     command = programs.command(args)
     if command is not None:
         become(command)
-    # Not before: a program that takes the place of this process needs no nodes here.
-    from aionode._node_source import FITS
-    from aionode.runner import run
-
     if rclpy or interfaces:
         raise click.UsageError("--rclpy and --interfaces are for programs of rclpy.")
+    run_nodes(args, programs)
+
+
+def run_nodes(args: Sequence[str], programs: Programs) -> None:
+    """Run nodes in this process: those that are named before ``--ros-args``.
+
+    Raises:
+        UsageError: An option stands before that, or nothing does.
+        CommandError: A node is not there, or a file that runs its nodes itself is not alone.
+    """
+    # Not before: a program that takes the place of this process needs no nodes here.
+    from aionode._node_source import FITS, makers_of
+    from aionode.runner import run
+
     at = args.index(ROS_ARGS) if ROS_ARGS in args else len(args)
     specs, ros_args = args[:at], args[at:]
     for spec in specs:
@@ -114,25 +124,10 @@ def run_command(
     if not specs:
         raise click.UsageError(f"Nothing to run: {FITS}.")
     sys.path[:0] = [str(Path.cwd()), *programs.module_folders(specs)]
-    run(*(maker_of(spec) for spec in specs), args=list(ros_args))
-
-
-def maker_of(spec: str) -> Callable[[], Any]:
-    """Return what makes the node that is named, as `node_maker` does.
-
-    Raises:
-        CommandError: There is no such thing, or it imports what is not installed; a program of
-            rclpy may do so by a name that its text does not show.
-    """
-    from aionode._node_source import node_maker
-
-    try:
-        return node_maker(spec)
-    except ModuleNotFoundError as error:
-        raise CommandError(
-            f"{spec}: it imports {error.name}, which is not installed; "
-            f"a program of ROS 2 runs by `aionode run --rclpy {spec}`"
-        ) from error
+    sys.argv[:] = [specs[0], *ros_args]  # what a file reads that runs its nodes itself
+    makers = makers_of(specs)
+    if makers:
+        run(*makers, args=list(ros_args))
 
 
 class Programs:
