@@ -15,6 +15,7 @@ __all__ = [
     "installed_executables",
     "is_python",
     "module_root",
+    "runs_in_this_python",
 ]
 
 
@@ -80,9 +81,23 @@ def is_python(file: Path) -> bool:
     """Return whether Python runs a file, by its name or its first line."""
     if file.suffix == ".py":
         return True
+    first = first_line(file)
+    return first.startswith(b"#!") and b"python" in first
+
+
+def runs_in_this_python(file: Path) -> bool:
+    """Return whether the first line of a file names the Python that runs this process."""
+    first = first_line(file)
+    if not first.startswith(b"#!"):
+        return False
+    python = Path(os.fsdecode(first[2:].strip()))
+    return "python" in python.name and python.parent == Path(sys.executable).parent
+
+
+def first_line(file: Path) -> bytes:
+    """Return the first line of a file, as far as it tells what runs it; nothing if unreadable."""
     try:
         with file.open("rb") as opened:
-            first = opened.readline(200)
+            return opened.readline(500)
     except OSError:
-        return False
-    return first.startswith(b"#!") and b"python" in first
+        return b""

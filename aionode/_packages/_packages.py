@@ -12,6 +12,7 @@ from aionode._packages._executables import (
     executables_in,
     installed_executables,
     module_root,
+    runs_in_this_python,
 )
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
@@ -112,8 +113,22 @@ class Packages:
         """
         program = self.executable(package, name)
         if package in self.sources():
-            options = ("--workspace", str(self.workspace), *options)
+            options = (*self._options(), *options)
         return program.command(*options)
+
+    def starter(self, program: Path) -> list[str]:
+        """Return the command that starts a program which may look for packages.
+
+        One that is installed for this Python, such as the xacro of PyPI, runs under aionode's
+        rclpy: it finds packages as the workspace has them. Any other one runs as it is.
+        """
+        if runs_in_this_python(program):
+            return [sys.executable, "-m", "aionode.rclpy", *self._options(), str(program)]
+        return [str(program)]
+
+    def _options(self) -> tuple[str, ...]:
+        """Return what tells a program of the workspace."""
+        return () if self.workspace is None else ("--workspace", str(self.workspace))
 
     def module_root(self, module: str) -> Path | None:
         """Return the folder to import a Python module from that a package of the workspace has."""

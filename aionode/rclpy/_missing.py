@@ -27,7 +27,7 @@ INSTEAD: Final = {
     "tf2_kdl": "tf_transformations computes with rotations in numpy",
     "PyKDL": "tf_transformations computes with rotations in numpy",
     "image_geometry": "OpenCV (`pip install opencv-python-headless`) has its functions",
-    "xacro": "`pip install xacro` has it",
+    "xacro": "`pip install 'aionode[xacro]'` brings it",
     "rospkg": "`pip install rospkg` has it",
     "catkin_pkg": "`pip install catkin_pkg` has it",
     "osrf_pycommon": "`pip install osrf-pycommon` has it",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -469,6 +470,48 @@ def test_what_is_done_later_is_checked_and_printed_without_doing_it(files: Files
         "OpaqueFunction(<lambda>)",
     ]
     assert list(plan.records()) == records
+
+
+@pytest.mark.parametrize("command", ["'xacro '", "FindExecutable(name='xacro'), ' '"])
+def test_a_command_in_python_finds_the_packages_of_the_workspace(
+    command: str, files: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The xacro of PyPI asks ament's index where a package is, also off the PATH."""
+    scripts = tmp_path / "bin"
+    scripts.mkdir()
+    python = scripts / "python"
+    python.symlink_to(sys.executable)
+    xacro = scripts / "xacro"
+    xacro.write_text(
+        f"#!{python}\nimport sys\n"
+        "from ament_index_python.packages import get_package_share_directory as share\n"
+        "print(share(sys.argv[1]), end='')\n"
+    )
+    xacro.chmod(0o755)
+    monkeypatch.setattr("sysconfig.get_path", lambda _: str(scripts))
+    monkeypatch.setattr("sys.executable", str(python))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
+    monkeypatch.setenv("PATH", "/usr/bin:/bin")
+    files.write("src/bot/package.xml", "<package><name>bot</name></package>")
+    file = files.write(
+        "src/bot/a.launch.py",
+        HEAD + BODY.format(entities=f"LogInfo(msg=Command([{command}, 'bot']))"),
+    )
+
+    (record,) = Plan(file, {}).records()
+
+    assert record["log"] == str(tmp_path / "src" / "bot")
+
+
+@pytest.mark.parametrize("action", ["Command(['xacro ', 'a'])", "FindExecutable(name='xacro')"])
+def test_a_missing_xacro_has_its_remedy(
+    action: str, files: Files, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Most descriptions of robots need it, and it is one extra away."""
+    monkeypatch.setattr("shutil.which", lambda name, path: None)
+
+    with pytest.raises(LaunchFileError, match=r"'xacro' not found .* 'aionode\[xacro\]' brings it"):
+        files.python(f"LogInfo(msg={action})")
 
 
 def test_an_event_handler_that_registers_itself_is_checked_once(files: Files) -> None:

@@ -8,6 +8,7 @@ import os
 import shlex
 import shutil
 import subprocess
+import sysconfig
 import uuid
 from collections.abc import Iterable
 from pathlib import Path
@@ -260,10 +261,25 @@ class FindExecutable(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
         name = perform_substitutions(context, self.name)
-        program = shutil.which(name, path=context.environment.get("PATH"))
+        program = program_of(name, context)
         if program is None:
-            raise SubstitutionFailure(f"executable '{name}' not found on the PATH")
+            raise SubstitutionFailure(f"executable {missing_program(name)}")
         return program
+
+
+def program_of(name: str, context: LaunchContext) -> str | None:
+    """Return the path of a program on the PATH, or of one that is installed beside this Python.
+
+    The PATH lacks those where the environment of this Python has not been activated.
+    """
+    path = context.environment.get("PATH")
+    return shutil.which(name, path=path) or shutil.which(name, path=sysconfig.get_path("scripts"))
+
+
+def missing_program(name: str) -> str:
+    """Return that a program is not there, and what to do."""
+    remedy = "; pip install 'aionode[xacro]' brings it" if Path(name).name == "xacro" else ""
+    return f"{name!r} not found on the PATH{remedy}"
 
 
 class FileContent(Substitution):
@@ -304,8 +320,17 @@ class Command(Substitution):
             )
         stderr = subprocess.STDOUT if on_stderr == "capture" else subprocess.PIPE
         try:
+            words = shlex.split(line)
+        except ValueError as error:
+            raise SubstitutionFailure(f"command {line!r} cannot be read: {error}") from error
+        if not words:
+            raise SubstitutionFailure("the command is empty")
+        program = program_of(words[0], context)
+        if program is None:
+            raise SubstitutionFailure(f"command {line!r}: {missing_program(words[0])}")
+        try:
             done = subprocess.run(  # noqa: S603  # the command of the user's file
-                shlex.split(line),
+                [*context.packages.starter(Path(program)), *words[1:]],
                 stdout=subprocess.PIPE,
                 stderr=stderr,
                 text=True,
