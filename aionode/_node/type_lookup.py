@@ -13,7 +13,7 @@ from aionode.engine.wire._described_type import action_from_descriptions, type_f
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, InterfaceNotFoundError, TypeDescriptionError
 from aionode.graph import EndpointKind
-from aionode.interfaces import get_interface
+from aionode.interfaces import get_interface, part_of, whole_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -41,6 +41,9 @@ async def find_type(
     try:
         known = get_interface(name)
     except InterfaceNotFoundError:
+        whole = whole_of(name)
+        if not users and whole is not None:
+            return part_of(name, await find_type(node, whole, endpoints))
         if not users:
             raise
         known = None

@@ -6,10 +6,10 @@ import hashlib
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode.bag._record import Record, TopicInfo
-from aionode.bag._types import known_class
 from aionode.bag._writer import BagWriter, topic_info
 from aionode.errors import BagError
 from aionode.graph import EndpointKind
+from aionode.interfaces import get_interface
 from aionode.qos import QoSProfile, ReliabilityPolicy
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ class Tap:
         if is_own or not present or publisher.name not in self._missing:
             return
         del self._missing[publisher.name]
-        msg_type = known_class(publisher.type_name)
+        msg_type = get_interface(publisher.type_name)
         qos = QoSProfile(
             depth=LATCHED_DEPTH,
             reliability=ReliabilityPolicy.BEST_EFFORT,

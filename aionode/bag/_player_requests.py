@@ -6,9 +6,9 @@ import asyncio
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.bag._selection import kind_of
-from aionode.bag._types import known_class
 from aionode.endpoints.service_introspection import REQUEST_RECEIVED, REQUEST_SENT
 from aionode.errors import AionodeError, InterfaceNotFoundError
+from aionode.interfaces import get_interface
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Mapping
@@ -78,10 +78,10 @@ class RequestSender:
         name = self._remap.get(name, name)
         try:
             if kind == "service":
-                srv_type = known_class(topic.type.removesuffix("_Event"))
+                srv_type = get_interface(topic.type.removesuffix("_Event"))
                 self._clients[topic.key] = self._node.create_client(srv_type, name)
             elif topic.name.endswith(SEND_GOAL):
-                action_type = known_class(topic.type.removesuffix("_SendGoal_Event"))
+                action_type = get_interface(topic.type.removesuffix("_SendGoal_Event"))
                 self._actions[kind_of(topic.name)[1]] = self._node.create_action_client(
                     action_type, name
                 )

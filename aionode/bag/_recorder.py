@@ -12,7 +12,6 @@ from aionode._process.concurrency import run_in_thread
 from aionode.bag._recorder_services import RecorderServices
 from aionode.bag._recording import Key, Recording, TopicStats, summary_of
 from aionode.bag._selection import Selection
-from aionode.bag._types import known_class
 from aionode.bag._writer import BagWriter, topic_info
 from aionode.bag._writer_thread import Row
 from aionode.clock import Time
@@ -175,6 +174,8 @@ class Recorder:
         self._paused = start_paused
         self._loss_report_hz = loss_report_hz
         self._unknown: dict[str, frozenset[bytes]] = {}
+        self._unrecorded: set[str] = set()
+        """Topics of such types."""
         self._last_ns = 0
         self._recording: Recording | None = None
         self._stats: dict[str, TopicStats] = {}
@@ -368,7 +369,7 @@ class Recorder:
 
     def summary(self) -> str:
         """Return in one line what was recorded and what was lost."""
-        return summary_of(self.stats, str(self.path))
+        return summary_of(self.stats, str(self.path), self._unrecorded - self.stats.keys())
 
     # Inside
 
@@ -540,10 +541,9 @@ class Recorder:
         if self._unknown.get(typename) == gids:
             return None
         try:
-            if "/msg/" in typename and endpoints:
-                return await self.node.find_type(typename, endpoints=endpoints)
-            return known_class(typename)
+            return await self.node.find_type(typename, endpoints=endpoints)
         except InterfaceNotFoundError as error:
+            self._unrecorded.add(topic)
             if typename not in self._unknown:
                 self._warn(f"{topic} is not recorded: {error}")
             self._unknown[typename] = gids

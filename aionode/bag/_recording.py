@@ -10,7 +10,7 @@ from aionode.bag._losses import LOSSES, Lost, losses_text
 from aionode.bag._writer_thread import Row, WriterThread
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Collection, Mapping
 
     from aionode.bag._record import TopicInfo
     from aionode.bag._writer import BagWriter
@@ -158,14 +158,15 @@ class Recording:
         self._writer.custom_data[LOSSES] = losses_text(losses)
 
 
-def summary_of(stats: Mapping[str, TopicStats], path: str) -> str:
-    """Return in one line what was recorded and what was lost."""
+def summary_of(stats: Mapping[str, TopicStats], path: str, unrecorded: Collection[str]) -> str:
+    """Return in one line what was recorded, what was lost, and which topics were not recorded."""
     recorded = sum(each.recorded for each in stats.values())
     lost = [
         f"{name}: {each.lost_in_transport} in transport, {each.lost_in_recorder} in recorder"
         for name, each in sorted(stats.items())
         if each.lost_in_transport or each.lost_in_recorder
     ]
+    lost += [f"{name}: all, nobody describes its type" for name in sorted(unrecorded)]
     end = f"lost: {'; '.join(lost)}" if lost else "lost: nothing"
     return f"recorded {recorded} messages of {len(stats)} topics to {path}; {end}"
 

@@ -11,32 +11,11 @@ from aionode.errors import AionodeError, IdlError, InterfaceNotFoundError
 from aionode.interfaces import get_interface
 from aionode.message import type_name
 
-__all__ = ["class_of", "definition_of", "known_class"]
+__all__ = ["class_of", "definition_of"]
 
 SEPARATOR: Final = "=" * 80
 SECTION: Final = re.compile(r"^={20,}\s*\nMSG: (\S+)[^\n]*\n?", re.MULTILINE)
 LONG_NAME: Final = re.compile(r"\b([a-z]\w*)/(?:msg|srv|action)/([A-Z]\w*)")
-PARTS: Final = {
-    "_Event": lambda cls: cls.Event,
-    "_Request": lambda cls: cls.Request,
-    "_Response": lambda cls: cls.Response,
-    "_FeedbackMessage": lambda cls: cls.Impl.FeedbackMessage,
-    "_SendGoal": lambda cls: cls.Impl.SendGoalService,
-    "_GetResult": lambda cls: cls.Impl.GetResultService,
-}
-"""How to get the types that belong to a service or an action, by the ends of their names."""
-
-
-def known_class(typename: str) -> Any:
-    """Return the class of a type that aionode or the program has; hidden types too.
-
-    Raises:
-        InterfaceNotFoundError: there is none.
-    """
-    base, bar, part = typename.rpartition("_")
-    if f"{bar}{part}" in PARTS and "/msg/" not in typename:
-        return PARTS[f"{bar}{part}"](known_class(base))
-    return get_interface(typename)
 
 
 @cache
@@ -69,7 +48,7 @@ def class_of(typename: str, wanted_hash: str, encoding: str, definition: str) ->
         InterfaceNotFoundError: the type is not known here, and its definition cannot be used.
     """
     try:
-        known = known_class(typename)
+        known = get_interface(typename)
     except InterfaceNotFoundError:
         known = None
     if known is not None and (not definition or wanted_hash == type_hash(known)):

@@ -18,6 +18,7 @@ from functools import cache
 from importlib import import_module
 from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
+from operator import attrgetter
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -32,10 +33,26 @@ __all__ = [
     "get_message",
     "get_service",
     "interface_names",
+    "part_of",
     "shipped_packages",
+    "whole_of",
 ]
 
 KINDS = ("msg", "srv", "action")
+
+PARTS = {
+    "Event": "Event",
+    "Request": "Request",
+    "Response": "Response",
+    "Goal": "Goal",
+    "Result": "Result",
+    "Feedback": "Feedback",
+    "FeedbackMessage": "Impl.FeedbackMessage",
+    "SendGoal": "Impl.SendGoalService",
+    "GetResult": "Impl.GetResultService",
+}
+"""Where the types are that belong to a service or an action, by the ends of their names."""
+
 LONGEST_NAME = 300
 """Longer names are compared with none: that takes time with their length."""
 
@@ -52,7 +69,8 @@ def get_interface(name: str) -> Any:
 
     Args:
         name: Its ROS name, such as ``std_msgs/msg/String``; ``std_msgs/String`` is understood if
-            there is only one kind of that name.
+            there is only one kind of that name. The types that belong to a service or an action
+            have names, too: ``example_interfaces/action/Fibonacci_FeedbackMessage``.
 
     Raises:
         InterfaceNotFoundError: There is no such type; the error has names that are close.
@@ -64,7 +82,37 @@ def get_interface(name: str) -> Any:
             found = types_of(parts[0], kind).get(parts[-1])
             if found is not None:
                 return found
+    whole = whole_of(name)
+    if whole is not None:
+        return part_of(name, get_interface(whole))
     raise not_found(name, parts)
+
+
+def whole_of(name: str) -> str | None:
+    """Return the name of the service or action that a type belongs to; None for other types.
+
+    Args:
+        name: The name of a type, such as ``example_interfaces/action/Fibonacci_FeedbackMessage``.
+    """
+    whole, _, part = name.rpartition("_")
+    is_part = part in PARTS and name.split("/")[1:2] in (["srv"], ["action"])
+    return whole if is_part else None
+
+
+def part_of(name: str, whole: Any) -> Any:
+    """Return a type that belongs to a service or an action.
+
+    Args:
+        name: The name of the type.
+        whole: The class of the service or action.
+
+    Raises:
+        InterfaceNotFoundError: It has no such part: a service has no goal.
+    """
+    try:
+        return attrgetter(PARTS[name.rpartition("_")[2]])(whole)
+    except AttributeError:
+        raise InterfaceNotFoundError(name, problem="there is no such part") from None
 
 
 def get_message(name: str) -> Any:

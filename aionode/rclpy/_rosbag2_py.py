@@ -9,10 +9,11 @@ from typing import Any, Final, Self
 import msgspec
 
 from aionode import bag
-from aionode.bag._types import definition_of, known_class
+from aionode.bag._types import definition_of
 from aionode.clock import Time as PlainTime
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, BagError, InterfaceNotFoundError
+from aionode.interfaces import get_interface
 from aionode.qos import QoSProfile
 from aionode.rclpy._rosbag2_live import (
     MessageOrder,
@@ -551,7 +552,7 @@ class SequentialWriter:
 def definition_by_name(typename: str) -> MessageDefinition:
     """Return the definition of a type by its name; without a text if it is unknown."""
     try:
-        cls = known_class(typename)
+        cls = get_interface(typename)
     except InterfaceNotFoundError:
         return MessageDefinition(topic_type=typename)
     return MessageDefinition(typename, "ros2msg", definition_of(cls), type_hash(cls))

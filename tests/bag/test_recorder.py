@@ -28,6 +28,7 @@ from aionode.interfaces.rosbag2_interfaces.srv import IsPaused, Snapshot
 from aionode.interfaces.rosgraph_msgs.msg import Clock
 from aionode.interfaces.sensor_msgs.msg import JointState
 from aionode.interfaces.std_msgs.msg import Float64MultiArray, Int32, String
+from aionode.message import ActionType, Message, float64
 from aionode.node import Node
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from aionode.testing import local_context, settle
@@ -161,9 +162,49 @@ async def test_a_topic_of_an_unknown_type_is_named_once_and_the_rest_is_recorded
             await settle()
             assert recorder.stats.keys() >= {"/words", "/more"}
             assert "/odd" not in recorder.stats
+            assert recorder.summary().endswith("lost: /odd: all, nobody describes its type")
     assert texts(tmp_path / "run") == ["a"]
     told = [each.message for each in caplog.records if "/odd is not recorded" in each.message]
     assert len(told) == 1
+
+
+class Walk(ActionType, typename="foreign_msgs/action/Walk", by_name=False):
+    """An action of another program: nothing here finds it by name."""
+
+    class Goal(Message):
+        """How far."""
+
+        metres: float64 = 0.5
+
+    class Result(Message):
+        """Nothing."""
+
+    class Feedback(Message):
+        """How far it has come."""
+
+        metres: float64 = 0.0
+
+
+async def test_the_feedback_of_an_action_that_only_its_node_knows_is_recorded(
+    tmp_path: Path,
+) -> None:
+    """The node describes the message, as it does those of its other topics."""
+
+    async def walk(goal: Any) -> Walk.Result:
+        goal.publish_feedback(Walk.Feedback(metres=0.25))
+        goal.succeed()
+        return Walk.Result()
+
+    topic = "/walk/_action/feedback"
+    async with local_context() as context, Node("walker", context=context) as node:
+        node.create_action_server(Walk, "walk", walk)
+        client = node.create_action_client(Walk, "walk")
+        async with bag.Recorder(tmp_path / "run", topics=[topic], context=context) as recorder:
+            await client.call(Walk.Goal())
+            await settle()
+            assert recorder.stats[topic] == (1, 0, 0)
+    with bag.open(tmp_path / "run") as run:
+        assert [record.message.feedback.metres for record in run.read(topic)] == [0.25]
 
 
 async def test_a_clock_that_is_set_back_is_one_line_and_no_message_is_lost(

@@ -456,6 +456,19 @@ async def test_a_goal_is_followed_by_events(client: httpx.AsyncClient, robot: No
     }
 
 
+async def test_the_feedback_of_all_clients_is_a_topic(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """Its type is none of a file: it belongs to the action."""
+    feedback = Fibonacci.Impl.FeedbackMessage(feedback=Fibonacci.Feedback(sequence=[0, 1]))
+    topic = robot.create_publisher(type(feedback), "/count/_action/feedback", LATCHED)
+    topic.publish(feedback)
+
+    answer = await client.get("/topics/count/_action/feedback")
+
+    assert answer.json()["feedback"] == {"sequence": [0, 1]}
+
+
 async def test_closing_the_stream_cancels_the_goal(client: httpx.AsyncClient, robot: Node) -> None:
     """Motion ends with whoever asked for it."""
     counter = Counter(robot)

@@ -120,6 +120,24 @@ async def test_message_details_describe_a_type_and_what_it_contains(
     assert (vector["fieldtypes"], vector["examples"]) == (["double"] * 3, ["0.0"] * 3)
 
 
+@pytest.mark.parametrize(
+    ("service", "type_name", "fields"),
+    [
+        ("message_details", "action/Fibonacci_FeedbackMessage", ["goal_id", "feedback"]),
+        ("message_details", "action/Fibonacci_Goal", ["order"]),
+        ("service_request_details", "action/Fibonacci_SendGoal", ["goal_id", "goal"]),
+    ],
+)
+async def test_details_describe_the_parts_of_an_action(
+    client: RosbridgeClient, service: str, type_name: str, fields: list[str]
+) -> None:
+    """The lists of topics and services name them."""
+    type_name = f"example_interfaces/{type_name}"
+    answer = await client.call(f"/rosapi/{service}", type=type_name)
+
+    assert answer["values"]["typedefs"][0]["fieldnames"] == fields
+
+
 async def test_details_tell_arrays_defaults_and_constants(client: RosbridgeClient) -> None:
     """A length of 0 means any, and -1 no array."""
     answer = await client.call("/rosapi/message_details", type="sensor_msgs/msg/BatteryState")

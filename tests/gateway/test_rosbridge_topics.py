@@ -10,6 +10,7 @@ import pytest
 
 from aionode.engine.wire import cdr
 from aionode.gateway.session.robot import Robot
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Vector3
 from aionode.interfaces.sensor_msgs.msg import Image
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -46,6 +47,33 @@ async def test_the_type_of_a_topic_need_not_be_given(client: RosbridgeClient, no
     status = await client.receive()
     assert (status["op"], status["level"], status["id"]) == ("status", "error", "s1")
     assert "/nothing" in status["msg"]
+
+
+@pytest.mark.parametrize(
+    "given", [{}, {"type": "example_interfaces/action/Fibonacci_FeedbackMessage"}]
+)
+async def test_the_feedback_of_an_action_is_a_topic(
+    client: RosbridgeClient, node: Node, given: dict[str, str]
+) -> None:
+    """A page that watches shows goals that others have sent; the type belongs to the action."""
+    message = Fibonacci.Impl.FeedbackMessage
+    publisher = node.create_publisher(message, "/fibonacci/_action/feedback", 10)
+    client.send("subscribe", topic="/fibonacci/_action/feedback", **given)
+    await settle()
+
+    publisher.publish(message(feedback=Fibonacci.Feedback(sequence=[0, 1])))
+
+    assert (await client.receive())["msg"]["feedback"] == {"sequence": [0, 1]}
+
+
+async def test_a_service_is_no_topic_though_it_belongs_to_an_action(
+    client: RosbridgeClient,
+) -> None:
+    """Its name looks like that of a message."""
+    name = "example_interfaces/action/Fibonacci_SendGoal"
+    client.send("subscribe", topic="/x", type=name)
+
+    assert "no name of a type of msg" in (await client.receive())["msg"]
 
 
 async def test_each_compression_has_its_form(robot: Robot, node: Node) -> None:

@@ -12,10 +12,18 @@ from aionode import Node
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError
 from aionode.graph import EndpointKind
-from aionode.interfaces import get_action, get_message, get_service, interface_names
+from aionode.interfaces import (
+    get_action,
+    get_interface,
+    get_message,
+    get_service,
+    interface_names,
+)
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
-from aionode.message import ActionType, Message, ServiceType
+from aionode.message import ActionType, Message, ServiceType, float64
 
 
 class Foreign(Message, typename="foreign/msg/Foreign", by_name=False):
@@ -88,6 +96,68 @@ async def test_a_type_is_learnt_from_the_node_that_uses_it(
 
     assert found is not Foreign
     assert type_hash(found) == type_hash(Foreign)
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("action/Fibonacci_FeedbackMessage", Fibonacci.Impl.FeedbackMessage),
+        ("action/Fibonacci_Goal", Fibonacci.Goal),
+        ("action/Fibonacci_SendGoal", Fibonacci.Impl.SendGoalService),
+        ("action/Fibonacci_SendGoal_Request", Fibonacci.Impl.SendGoalService.Request),
+        ("action/Fibonacci_GetResult_Event", Fibonacci.Impl.GetResultService.Event),
+        ("srv/AddTwoInts_Response", AddTwoInts.Response),
+        ("srv/AddTwoInts_Event", AddTwoInts.Event),
+    ],
+)
+def test_the_parts_of_services_and_actions_have_names(name: str, found: Any) -> None:
+    """The graph shows them: of an action there is nothing else in it."""
+    assert get_interface(f"example_interfaces/{name}") is found
+
+
+@pytest.mark.parametrize(
+    "name", ["srv/AddTwoInts_Goal", "srv/None_Event", "msg/String_Event", "_Goal"]
+)
+def test_a_part_that_there_is_not_has_no_name(name: str) -> None:
+    """A service has no goal, and a message no parts."""
+    with pytest.raises(InterfaceNotFoundError):
+        get_interface(f"example_interfaces/{name}")
+
+
+class Walk(ActionType, typename="foreign/action/Walk", by_name=False):
+    """An action that is not found by name, as if another process had it."""
+
+    class Goal(Message):
+        """How far."""
+
+        metres: float64 = 0.5
+
+    class Result(Message):
+        """Nothing."""
+
+    class Feedback(Message):
+        """How far it has come."""
+
+        metres: float64 = 0.0
+
+
+@pytest.mark.parametrize(
+    ("part", "described"),
+    [
+        ("FeedbackMessage", Walk.Impl.FeedbackMessage),
+        ("Goal", Walk.Goal),
+        ("SendGoal_Request", Walk.Impl.SendGoalService.Request),
+    ],
+)
+async def test_the_parts_of_an_action_are_learnt_from_the_node_that_has_it(
+    node_factory: Callable[..., Node], part: str, described: Any
+) -> None:
+    """A bag records its feedback, and a page shows it."""
+    node_factory("walker").create_action_server(Walk, "walk", lambda goal: Walk.Result())
+
+    found = await node_factory("asker").find_type(f"foreign/action/Walk_{part}")
+
+    assert type_hash(found) == type_hash(described)
 
 
 async def test_a_type_that_nobody_has_is_an_error(node_factory: Callable[..., Node]) -> None:

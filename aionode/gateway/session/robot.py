@@ -16,6 +16,7 @@ from aionode.gateway.session.feed import Feeds
 from aionode.gateway.session.goal_owners import GoalOwners
 from aionode.gateway.session.sharing import Shared
 from aionode.gateway.session.standstill import Standstills
+from aionode.message import ActionType, Message, ServiceType
 
 if TYPE_CHECKING:
     from aionode.gateway.policy.identity import Identity
@@ -29,6 +30,7 @@ Ask = Callable[["Identity", "Verb", str, Any], Awaitable[bool]]
 """Asks a person whether a client may do something: called with the client, what it wants to do,
 with which name, and what it sends. Returns whether the person says yes."""
 
+BASES: Final = {"msg": Message, "srv": ServiceType, "action": ActionType}
 MOST_TYPES: Final = 1000
 MOST_RATES: Final = 10_000
 
@@ -91,14 +93,19 @@ class Robot:
             InterfaceNotFoundError: neither this program nor a node that uses it describes it.
         """
         full = type_text(name, kind)
-        if len(full) > LONGEST_TYPE or not re.fullmatch(rf"\w+/{kind}/\w+", full, re.ASCII):
-            raise InterfaceNotFoundError(name[:200], problem=f"this is no name of a type of {kind}")
+        misfit = InterfaceNotFoundError(name[:200], problem=f"this is no name of a type of {kind}")
+        # Actions consist of services and messages, and services of messages.
+        of = rf"\w+/({kind}/\w+|(srv|action)/\w+_\w+)"
+        if len(full) > LONGEST_TYPE or not re.fullmatch(of, full, re.ASCII):
+            raise misfit
         graph = self.node.graph
         if self._changes != graph.changes:
             self._changes, self._types_now = graph.changes, {}
         now = self._types_now
         if full not in now:
             now[full] = await self._find_type(full)
+        if not issubclass(now[full], BASES[kind]):
+            raise misfit
         return now[full]
 
     async def _find_type(self, full: str) -> Any:
@@ -108,7 +115,8 @@ class Robot:
             InterfaceNotFoundError: see `find_type`.
         """
         endpoints = self.node.graph.endpoints()
-        hashes = frozenset(e.type_hash for e in endpoints if e.type_name.startswith(full))
+        whole = full.partition("_")[0] if "/msg/" not in full else full
+        hashes = frozenset(e.type_hash for e in endpoints if e.type_name.startswith(whole))
         key = (full, hashes)
         if key not in self._types:
             message_type = await self.node.find_type(full)
