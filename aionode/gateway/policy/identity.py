@@ -11,7 +11,9 @@ import msgspec
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-__all__ = ["Credentials", "Identity", "from_scope", "parsed_address", "take_token"]
+__all__ = ["Credentials", "Identity", "from_scope", "parsed_address", "place_of", "take_token"]
+
+IPV6_HOST_BITS: Final = 64
 
 TOKEN_PROTOCOL: Final = "bearer."  # noqa: S105  # what stands before one
 """Before the token, among the subprotocols of a WebSocket: browsers can set no header there."""
@@ -32,6 +34,11 @@ class Identity(msgspec.Struct, frozen=True):
     name: str
     groups: frozenset[str] = frozenset()
     address: str = ""
+
+    @property
+    def place(self) -> str:
+        """Where it connects from, as far as that tells clients apart; see `place_of`."""
+        return place_of(self.address)
 
 
 class Credentials(msgspec.Struct, frozen=True):
@@ -122,3 +129,11 @@ def parsed_address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address |
     except ValueError:
         return None
     return getattr(address, "ipv4_mapped", None) or address
+
+
+def place_of(address: str) -> str:
+    """Return where an address is: one host may have all those of an IPv6 network."""
+    parsed = parsed_address(address)
+    if parsed is None or parsed.version == 4:
+        return str(parsed or address)
+    return str(ipaddress.ip_network((parsed, IPV6_HOST_BITS), strict=False))

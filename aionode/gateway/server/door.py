@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Awaitable, Callable, MutableMapping
-from ipaddress import ip_network
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
 from aionode.clock import S_TO_NS
 from aionode.errors import RefusedError
-from aionode.gateway.policy.identity import from_scope, parsed_address, take_token
+from aionode.gateway.policy.identity import from_scope, place_of, take_token
 from aionode.gateway.policy.origin import check_browser
 
 if TYPE_CHECKING:
@@ -34,8 +33,6 @@ WRONG_NS: Final = S_TO_NS
 """After how many nanoseconds one of them is forgotten."""
 
 MOST_PLACES: Final = 10_000
-
-IPV6_HOST_BITS: Final = 64
 
 HEADERS: Final = [
     (b"cross-origin-resource-policy", b"same-origin"),
@@ -69,24 +66,27 @@ class Door:
         self._app = app
         self._gateway = gateway
         self._guesses = Guesses(gateway.robot.time_base.steady_ns)
+        self._of_pages = Guesses(gateway.robot.time_base.steady_ns)
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
         """Serve one request, or one WebSocket."""
         if scope["type"] not in {"http", "websocket"}:
             return
+        address_bytes = len(scope["query_string"])
         token = take_token(scope)
         credentials = from_scope(scope, token)
+        is_in_address = len(scope["query_string"]) < address_bytes
         policy = self._gateway.policy
         answer = Answer(send, allowed_origin(credentials.origin, policy.page_origins))
         try:
+            # Before its token is looked at: what another page sends says nothing about who guesses.
+            check_browser(credentials, policy.hosts, policy.page_origins)
             if is_preflight(scope):
-                check_browser(credentials, policy.hosts, policy.page_origins)
                 await preflight(answer)
                 return
-            if is_public(scope):
-                check_browser(credentials, policy.hosts, policy.page_origins)
-            else:
-                self._check(credentials)
+            if not is_public(scope):
+                by_any_page = is_in_address and hides_its_page(scope, credentials)
+                self._check(credentials, self._of_pages if by_any_page else self._guesses)
             scope["aionode.credentials"] = credentials
             limited = limit_body(scope, receive, policy.limits.frame_bytes)
             await self._app(scope, limited, answer)
@@ -95,19 +95,19 @@ class Door:
             if not answer.has_begun:
                 await refuse(scope, answer, error)
 
-    def _check(self, credentials: Credentials) -> None:
+    def _check(self, credentials: Credentials, guesses: Guesses) -> None:
         """Refuse a client that the policy does not know.
 
         Raises:
             RefusedError: it does not, or too many wrong tokens came from where the client is.
         """
         if credentials.token:
-            self._guesses.check(credentials.address)
+            guesses.check(credentials.address)
         try:
             self._gateway.policy.identify(credentials)
         except RefusedError:
             if credentials.token:
-                self._guesses.note_wrong(credentials.address)
+                guesses.note_wrong(credentials.address)
             raise
 
 
@@ -146,20 +146,25 @@ class Guesses:
         self._free_ns[place] = free_ns
 
 
-def place_of(address: str) -> str:
-    """Return where an address is: one host may have all those of an IPv6 network."""
-    parsed = parsed_address(address)
-    if parsed is None or parsed.version == 4:
-        return str(parsed or address)
-    return str(ip_network((parsed, IPV6_HOST_BITS), strict=False))
-
-
 def is_public(scope: Message) -> bool:
     """Return whether a request is for the page or the health, which tell nothing of the robot."""
     path: str = scope["path"]
     if scope["type"] != "http" or scope["method"] not in {"GET", "HEAD"}:
         return False
     return path in {"/", "/healthz"} or path.startswith(PUBLIC)
+
+
+def hides_its_page(scope: Message, credentials: Credentials) -> bool:
+    """Return whether a browser asks without saying for which page, as for images over plain HTTP.
+
+    Any page can put a token into the address of an image. So such tokens are counted by themselves:
+    they do not keep out a client that shows its token elsewhere.
+    """
+    if credentials.origin is not None or credentials.sec_fetch_site:
+        return False
+    return any(
+        name == b"user-agent" and value.startswith(b"Mozilla/") for name, value in scope["headers"]
+    )
 
 
 def is_preflight(scope: Message) -> bool:
