@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import AsyncIterator, MutableMapping
+from collections import defaultdict
+from collections.abc import AsyncIterator, Callable, Iterable, MutableMapping
 from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Final
 
@@ -89,11 +89,9 @@ class Clients:
             credentials: Its token, address and so on, to be judged again when the policy changes.
 
         Raises:
-            RefusedError: there are too many clients.
+            RefusedError: there are too many clients, and no other identity has more of them.
         """
-        limit = self._policy.limits.clients
-        if len(self._sessions) >= limit:
-            raise RefusedError("connection", f"there are {limit} clients already", "too_many")
+        self._make_room(identity)
         async with Session(self.robot, identity, kind, credentials) as session:
             self._sessions[session] = None
             try:
@@ -102,18 +100,51 @@ class Clients:
                 del self._sessions[session]
                 self._refused += session.refused
 
-    def session_of(
+    def _make_room(self, identity: Identity) -> None:
+        """Have a client of the greediest identity leave if there are as many as there may be.
+
+        So each identity has a share, and each address has one of that of its identity.
+
+        Raises:
+            RefusedError: the newcomer itself has as many as anyone, give or take one.
+        """
+        limit = self._policy.limits.clients
+        staying = [session for session in self._sessions if not session.ended.is_set()]
+        if len(staying) < limit:
+            return
+        own = [each for each in staying if each.identity.name == identity.name]
+        greediest = largest(staying, lambda each: each.identity.name)
+        if len(own) + 1 >= len(greediest):
+            here = [each for each in own if each.identity.place == identity.place]
+            greediest = largest(own, lambda each: each.identity.place)
+            if len(here) + 1 >= len(greediest):
+                raise RefusedError("connection", f"there are {limit} clients already", "too_many")
+        # What moves something ends last; of the others those that are there longest stay.
+        leaving = min(reversed(greediest), key=lambda each: each.publishes or each.has_goals)
+        leaving.end(
+            f"there are {limit} clients, which is the limit, and {leaving.identity.name} has most "
+            "of them: another one takes the place"
+        )
+
+    @asynccontextmanager
+    async def session_of(
         self, scope: MutableMapping[str, Any], kind: str
-    ) -> contextlib.AbstractAsyncContextManager[Session]:
-        """Return the session of a request, which the door has let in.
+    ) -> AsyncIterator[Session]:
+        """Yield the session of a request, which the door has let in.
 
         Its client is identified anew: the policy may have changed while the request arrived.
 
         Raises:
             RefusedError: the policy does not know the client any more.
         """
-        credentials = scope["aionode.credentials"]
-        return self.session(self._policy.identify(credentials), kind, credentials)
+        credentials, connection = scope["aionode.credentials"], scope["state"]["aionode_connection"]
+        identity = self._policy.identify(credentials)
+        async with self.session(identity, kind, credentials) as session:
+            connection.has_session = True
+            try:
+                yield session
+            finally:
+                connection.has_session = False
 
     @property
     def stats(self) -> GatewayStats:
@@ -159,3 +190,12 @@ class Clients:
         for session in list(self._sessions):
             session.check_again()
         log.info("gateway: the policy was read again")
+
+
+def largest(sessions: Iterable[Session], key: Callable[[Session], str]) -> list[Session]:
+    """Return the largest group of clients that a program has not made itself, the oldest first."""
+    groups: dict[str, list[Session]] = defaultdict(list)
+    for session in sessions:
+        if session.credentials is not None:
+            groups[key(session)].append(session)
+    return max(groups.values(), key=len, default=[])

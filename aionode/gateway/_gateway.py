@@ -25,6 +25,7 @@ from aionode.gateway.rosbridge import websocket as _rosbridge
 from aionode.gateway.rosbridge.client_list import ClientList
 from aionode.gateway.server.door import Door
 from aionode.gateway.server.server import Server, server_config
+from aionode.gateway.server.websocket import TRY_AGAIN_LATER, close
 from aionode.gateway.session.audit import Audit
 from aionode.gateway.session.robot import Bucket, Robot
 
@@ -186,10 +187,12 @@ class Gateway(Clients):
             if is_foxglove:
                 serving = _foxglove.serve(websocket, session, self._player)
                 await until(session.ended, serving, self._watch(session))
-                return
-            with self._client_list.listing(session.identity.address):
-                serving = _rosbridge.serve(websocket, session)
-                await until(session.ended, serving, self._watch(session))
+            else:
+                with self._client_list.listing(session.identity.address):
+                    serving = _rosbridge.serve(websocket, session)
+                    await until(session.ended, serving, self._watch(session))
+        if session.end_reason:
+            await close(websocket, TRY_AGAIN_LATER, session.end_reason)
 
     async def _watch(self, session: Session) -> None:
         """End the session of a client that gives no sign any more, though it has goals or commands.

@@ -243,6 +243,7 @@ async def until_ended(session: Session) -> AsyncIterator[None]:
 
     Raises:
         HTTPException: the session has ended (503).
+        RefusedError: another client has taken the place.
     """
     scope = asyncio.timeout(None)
     try:
@@ -251,6 +252,8 @@ async def until_ended(session: Session) -> AsyncIterator[None]:
     except TimeoutError:
         if not scope.expired():
             raise
+        if session.end_reason:
+            raise RefusedError("connection", session.end_reason, "too_many") from None
         raise HTTPException(503, "the gateway ends, or its policy has changed") from None
 
 
@@ -300,7 +303,8 @@ class Stream(Response):
         await send({"type": "http.response.body", "body": b"", "more_body": False})
 
     async def _send_chunks(self, put: Callable[[Frame], Awaitable[None]]) -> None:
-        with suppress(HTTPException):  # of a session that has ended: the stream has, too
+        # The stream ends with its session.
+        with suppress(HTTPException, RefusedError):
             async with until_ended(self._session), asyncio.TaskGroup() as tasks:
                 living = tasks.create_task(self._stay_alive(put))
                 await put(self._first)

@@ -170,11 +170,16 @@ class HttpConnection(H11Protocol):
     """A connection that has to say within some seconds what it wants, and to read the answer.
 
     The application finds in the state of the scope who the client is by its TLS certificate.
+
+    Attributes:
+        made_s: When it was made, by the clock of the loop.
+        has_session: Whether a session uses it, as the application says.
     """
 
     _timer: asyncio.TimerHandle | None = None
     _unread_bytes: int | None = None
-    _made_s: float = 0.0
+    made_s: float = 0.0
+    has_session = False
     _heard_s: float = 0.0
     _is_upgraded = False
     config: ServerConfig
@@ -188,7 +193,7 @@ class HttpConnection(H11Protocol):
             transport, super().data_received, lambda: not self.flow.read_paused
         )
         self.flow = Flow(transport, self._portions)
-        self._made_s = self.loop.time()
+        self.made_s = self.loop.time()
         if len(self.connections) > self._limits.clients + SPARE and not self._make_room():
             transport.abort()
             return
@@ -201,16 +206,19 @@ class HttpConnection(H11Protocol):
         return self.config.policy().limits
 
     def _make_room(self) -> bool:
-        """Close the oldest connection whose request is not there yet, and return whether one was.
+        """Close the oldest connection without a session, and return whether there was one.
 
-        A client says at once what it wants; those who only keep connections must not keep it out.
+        A client says at once what it wants, and those who only keep connections, or read none of
+        what is public, must not keep it out.
         """
-        waiting = [
+        without: list[HttpConnection | WebSocketConnection] = [
             other
             for other in self.connections
-            if isinstance(other, HttpConnection) and other is not self and other.is_waiting
+            if isinstance(other, HttpConnection | WebSocketConnection)
+            and other is not self
+            and not other.has_session
         ]
-        oldest = min(waiting, key=lambda other: other._made_s, default=None)
+        oldest = min(without, key=lambda other: other.made_s, default=None)
         if oldest is not None:
             oldest.transport.abort()
             self.connections.discard(oldest)  # its end is told in the next turn only
@@ -300,13 +308,20 @@ class HttpConnection(H11Protocol):
 
 
 class WebSocketConnection(WebSocketsSansIOProtocol):
-    """A WebSocket that says how long its client is silent, and whether it answers now."""
+    """A WebSocket that says how long its client is silent, and whether it answers now.
 
+    Attributes:
+        made_s: When it was made, by the clock of the loop.
+        has_session: Whether a session uses it, as the application says.
+    """
+
+    has_session = False
     _heard_s: float = 0.0
     config: ServerConfig
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
+        self.made_s = self.loop.time()
         self.conn.debug = False  # it would write the tokens of addresses and headers into the log
         self.logger = ServerLog(self.logger)  # type: ignore[assignment]  # does what is called of it
         self._asked: dict[bytes, Callable[[], None]] = {}  # by the payloads of pings

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import suppress
 from typing import TYPE_CHECKING, Final, TypeAlias
 
 from starlette.websockets import WebSocketDisconnect
@@ -16,12 +17,29 @@ if TYPE_CHECKING:
     from aionode.gateway.session.outbox import Outbox
     from aionode.gateway.session.session import Session
 
-__all__ = ["exchange"]
+__all__ = ["TRY_AGAIN_LATER", "close", "exchange"]
 
 Serve: TypeAlias = Callable[["Session", AsyncIterator[bytes | str]], Awaitable[None]]
 
 POLICY_VIOLATION: Final = 1008
 """Why a WebSocket is closed whose client sends no ops, or reads no answers (RFC 6455)."""
+
+TRY_AGAIN_LATER: Final = 1013
+"""Why a WebSocket is closed whose place another client takes (IANA's registry of RFC 6455)."""
+
+CLOSING_SEC: Final = 1.0
+"""How long a client that reads nothing may keep the end of its WebSocket, in seconds."""
+
+MOST_REASON: Final = 120
+"""The longest reason of an end, in bytes of UTF-8: RFC 6455 allows 123."""
+
+
+async def close(websocket: WebSocket, code: int, reason: str) -> None:
+    """Close a WebSocket with a reason, unless it is closed, or its client reads nothing."""
+    short = reason.encode()[:MOST_REASON].decode(errors="ignore")
+    with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
+        async with asyncio.timeout(CLOSING_SEC):
+            await websocket.close(code, short)
 
 
 async def exchange(

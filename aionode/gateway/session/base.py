@@ -63,6 +63,7 @@ class SessionBase:
         self.kind = kind
         self.credentials = credentials
         self.ended = asyncio.Event()
+        self.end_reason = ""
         self.owner: Owner = self
         self._robot = robot
         self._limits = robot.policy.limits
@@ -81,6 +82,11 @@ class SessionBase:
     def way(self) -> str:
         """How the client is connected, for `Owner`."""
         return self.kind
+
+    def end(self, reason: str) -> None:
+        """End the session, and tell the client why."""
+        self.end_reason = reason
+        self.ended.set()
 
     # The policy
 

@@ -33,7 +33,9 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         kind: The way in, for the audit log: ``rosbridge``, ``foxglove``, ``http``.
         credentials: Its evidence of its identity; None if the program made the session itself.
         outbox: The frames that wait for it.
-        ended: Set when the policy does not know the client any more.
+        ended: Set when the client has to leave: the gateway ends, the policy does not know the
+            client any more, or another one takes its place.
+        end_reason: Why, as the client is told; empty if it is not.
         is_doubtful: Whether it was silent for too long, so that commands may be from before that.
         owner: Who holds the topics that the client commands: the session, which ends the leases
             when it ends, or something that outlives it.
