@@ -157,6 +157,23 @@ async def test_messages_are_a_stream_of_events(client: httpx.AsyncClient, robot:
     assert data_of(read) == [{"data": "one"}, {"data": "two"}]
 
 
+async def test_a_slow_stream_of_events_has_the_last_message(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """Of a burst the first and the last are sent, with the time that the caller wants between."""
+    publisher = robot.create_publisher(String, "/chatter", 10)
+    async with client.stream(
+        "GET", "/topics/chatter?min_period_sec=0.05", headers={"Accept": "text/event-stream"}
+    ) as answer:
+        lines = answer.aiter_lines()
+        assert await anext(lines) == ": alive"  # the subscription is there
+        for text in "abcde":
+            publisher.publish(String(data=text))
+        read = [await anext(lines) for _ in range(5)]
+
+    assert data_of(read) == [{"data": "a"}, {"data": "e"}]
+
+
 async def test_a_closed_stream_leaves_no_subscription(
     client: httpx.AsyncClient, robot: Node
 ) -> None:

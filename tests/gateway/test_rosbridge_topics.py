@@ -171,6 +171,22 @@ async def test_a_client_may_ask_for_fewer_messages(client: RosbridgeClient, node
     assert (await client.receive())["msg"] == {"data": 7}
 
 
+@pytest.mark.parametrize(
+    ("given", "read"), [({}, [0, 4]), ({"queue_length": 1}, [0, 4]), ({"queue_length": 2}, [0, 3])]
+)
+async def test_a_client_that_asks_for_fewer_messages_gets_the_last(
+    client: RosbridgeClient, node: Node, given: dict[str, int], read: list[int]
+) -> None:
+    """It shows a state, and no further message may ever come."""
+    publisher = node.create_publisher(Int32, "/count", 100)
+    client.send("subscribe", topic="/count", throttle_rate=50, **given)
+    await settle()
+    for number in range(5):
+        publisher.publish(Int32(data=number))
+
+    assert [(await client.receive())["msg"]["data"] for _ in read] == read
+
+
 async def test_a_message_is_in_fragments_only_if_the_client_asks(
     client: RosbridgeClient, node: Node
 ) -> None:

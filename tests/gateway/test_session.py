@@ -417,11 +417,43 @@ async def test_a_rate_leaves_messages_out(bench: Bench) -> None:
     """A dashboard needs five a second, not a thousand."""
     words = bench.node.create_publisher(String, "/words", 10)
     async with bench.session() as session:
-        await session.subscribe("/words", frame=text_of, key="w", min_period_sec=0.2)
-        for text in "abcd":
+        await session.subscribe("/words", frame=text_of, key="w", depth=1, min_period_sec=0.2)
+        for text in "abcdefg":
             words.publish(String(data=text))
-            await bench.advance(0.1)
-        assert waiting(session) == ["a", "c"]
+            await bench.advance(0.075)
+        assert waiting(session) == ["a", "c", "f"]
+
+
+@pytest.mark.parametrize(
+    ("depth", "later"), [(1, [["e"], [], []]), (2, [["d"], ["e"], []])], ids=["newest", "two"]
+)
+async def test_a_rate_keeps_the_newest_messages_of_a_burst(
+    bench: Bench, depth: int, later: list[list[str]]
+) -> None:
+    """The last state has to come: a light that went off may not be shown as on for ever."""
+    words = bench.node.create_publisher(String, "/words", 10)
+    async with bench.session() as session:
+        await session.subscribe("/words", frame=text_of, key="w", depth=depth, min_period_sec=1.0)
+        for text in "abcde":
+            words.publish(String(data=text))
+        await bench.advance(0.9)
+        assert waiting(session) == ["a"]
+        for expected in later:
+            await bench.advance(1.0)
+            assert waiting(session) == expected
+
+
+async def test_a_rate_forgets_what_waits_when_its_client_unsubscribes(bench: Bench) -> None:
+    """Nothing comes after the end."""
+    words = bench.node.create_publisher(String, "/words", 10)
+    async with bench.session() as session:
+        subscribed = await session.subscribe("/words", frame=text_of, key="w", min_period_sec=1.0)
+        for text in "ab":
+            words.publish(String(data=text))
+        await settle()
+        subscribed.close()
+        await bench.advance(5.0)
+        assert waiting(session) == []
 
 
 async def test_a_message_that_does_not_fit_is_refused(bench: Bench) -> None:

@@ -77,7 +77,7 @@ CLIENT: Final = {
 PERIOD: Final = {
     "name": "min_period_sec",
     "in": "query",
-    "description": "The shortest time between two messages of a stream, in seconds.",
+    "description": "Seconds between two messages of a stream, at least; the newest of them waits.",
     "schema": {"type": "number", "minimum": 0, "default": 0.0},
 }
 

@@ -80,13 +80,15 @@ def topic_and_form(asked: Asked) -> tuple[str, str]:
 
 async def events(asked: Asked, topic: str) -> Response:
     """Return the messages of a topic as server-sent events."""
+    period_sec = asked.number("min_period_sec", 0.0, MOST_SEC)
     await asked.session.subscribe(
         topic,
         asked.type_name,
         frame=as_event,
         key=topic,
-        depth=round(asked.number("depth", 10, 1000)) or 1,
-        min_period_sec=asked.number("min_period_sec", 0.0, MOST_SEC),
+        # Messages that wait for their time are late: the newest is enough, unless more are wanted.
+        depth=round(asked.number("depth", 1 if period_sec else 10, 1000)) or 1,
+        min_period_sec=period_sec,
         prepare=prepare_json,
     )
     return Stream(asked.session, frames(asked.session.outbox), EVENTS, first=ALIVE, alive=ALIVE)

@@ -40,7 +40,8 @@ COMPRESSIONS: Final = ("none", "png", "cbor", "cbor-raw")
 """From the weakest: one subscription of a client has the strongest that any of its ids asks for."""
 
 DEFAULT_DEPTH: Final = 100
-"""Messages of each topic that wait for a client that names no ``queue_length``."""
+"""Messages of each topic that wait for a client that names no ``queue_length``; with a
+``throttle_rate`` it is the newest alone, since what waits for its time is late."""
 
 PUBLISHER_DEPTH: Final = 100
 
@@ -83,10 +84,11 @@ def wish_of(op: Op) -> Wish:
     if compression not in COMPRESSIONS:
         fitting = ", ".join(COMPRESSIONS)
         raise MessageError("subscribe.compression", f"{compression!r}, needs one of {fitting}")
+    period_sec = number(op, "throttle_rate") / 1000
     return Wish(
         type_text(text(op, "type", ""), "msg") or None,
-        number(op, "throttle_rate") / 1000,
-        int(number(op, "queue_length")) or DEFAULT_DEPTH,
+        period_sec,
+        int(number(op, "queue_length")) or (1 if period_sec else DEFAULT_DEPTH),
         number(op, "fragment_size"),
         compression,
         profile(op, QoSProfile(depth=10)),

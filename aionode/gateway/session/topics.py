@@ -12,6 +12,7 @@ from aionode.errors import AionodeError, RefusedError
 from aionode.gateway.session.base import SessionBase
 from aionode.gateway.session.command import check_age
 from aionode.gateway.session.large_json import prepare_json
+from aionode.gateway.session.pacing import Pacing
 from aionode.gateway.session.preparing import Preparing, prepared
 from aionode.gateway.session.values import json_of
 from aionode.message import Message
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
     from aionode.gateway.policy.policy import Decision, Verb
     from aionode.gateway.session.feed import Received
     from aionode.gateway.session.outbox import Frame
-    from aionode.gateway.session.preparing import Prepare
+    from aionode.gateway.session.pacing import Pacing
+from aionode.gateway.session.preparing import Prepare
 
 __all__ = ["SessionTopics", "Subscribed"]
 
@@ -42,6 +44,7 @@ class Subscribed:
         type_name: The name of its type.
         message_class: The class of its messages.
         failed: How many messages had no frame, because they are malformed.
+        take: Takes each message of the topic.
     """
 
     def __init__(
@@ -63,28 +66,23 @@ class Subscribed:
         self._frame = frame
         self._key = key
         self._depth = depth
-        self._min_period_ns = round(min_period_sec * S_TO_NS)
-        self._due_ns = 0
         self._leave: Callable[[], None] | None = None
         self._preparing: Preparing | None = None
+        self._pacing: Pacing | None = None
+        self.take = self._deliver
         if prepare is not None:
             self._preparing = Preparing(session._robot, prepare, self._deliver, depth)
+            self.take = self._preparing.put
+        if min_period_sec:
+            period_ns = round(min_period_sec * S_TO_NS)
+            self._pacing = Pacing(session._robot.time_base, period_ns, self.take, depth)
+            self.take = self._pacing.put
 
     @property
     def dropped(self) -> int:
         """The number of messages that were dropped, as encoding them or the client was too slow."""
         unprepared = 0 if self._preparing is None else self._preparing.dropped
         return unprepared + self._session.outbox.dropped.get(self._key, 0)
-
-    def _take(self, received: Received) -> None:
-        if self._min_period_ns:
-            if received.time_ns < self._due_ns:
-                return
-            self._due_ns = received.time_ns + self._min_period_ns
-        if self._preparing is None:
-            self._deliver(received)
-        else:
-            self._preparing.put(received)
 
     def _deliver(self, received: Received) -> None:
         try:
@@ -100,8 +98,9 @@ class Subscribed:
         if self._leave is not None:
             self._leave()
             self._leave = None
-            if self._preparing is not None:
-                self._preparing.close()
+            for waiting in (self._pacing, self._preparing):
+                if waiting is not None:
+                    waiting.close()
             self._session._subscribed.pop(self, None)
             self._session.outbox.discard(self._key)
 
@@ -149,9 +148,10 @@ class SessionTopics(SessionBase):
             type_name: The name of its type; by default that which the graph shows.
             frame: Returns the client's frame for a message, or None for none.
             key: Which queue of the outbox it waits in.
-            depth: How many frames may wait there.
+            depth: How many frames may wait there, and messages for their time.
             qos: The profile; by default the strongest that all publishers offer.
-            min_period_sec: The shortest time between two messages, in seconds; others are left out.
+            min_period_sec: The shortest time between two messages, in seconds; of those that come
+                faster the newest wait, and the others are left out.
             prepare: Encodes a large message, so that `frame` has little left to do; see
                 `Preparing`.
 
@@ -168,7 +168,7 @@ class SessionTopics(SessionBase):
             subscribed = Subscribed(
                 self, topic, message_class, frame, key, depth, min_period_sec, prepare
             )
-            subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed._take)
+            subscribed._leave = self._robot.feeds.add(topic, message_class, qos, subscribed.take)
             self._subscribed[subscribed] = None
         self._robot.audit.note(self.identity, "subscribe", topic, way=self.kind)
         return subscribed
