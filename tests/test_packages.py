@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 
 import pytest
 
 from aionode._packages import Packages, workspace_of
+from aionode._packages._share import share_of
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
 SETUP = """\
@@ -201,3 +203,157 @@ def test_a_folder_that_leads_back_to_itself_ends(tmp_path: Path) -> None:
     (tmp_path / "src" / "again").symlink_to(tmp_path)
 
     assert list(Packages(tmp_path).sources()) == ["robot"]
+
+
+@pytest.fixture
+def bot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A package whose launch files, models and settings are installed elsewhere than they lie."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    folder = tmp_path / "src" / "bot"
+    for name in ("launch/up.launch.py", "launch/more/deep.launch.py", "config/a.yaml", "b.yaml"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(name)
+    (folder / "package.xml").write_text("<package><name>bot</name></package>")
+    return folder
+
+
+def shown(workspace: Path) -> dict[str, str]:
+    """Return the text of each file in the share folder of the package, by its path there."""
+    share_of.cache_clear()
+    share = Packages(workspace).share("bot")
+    return {
+        str(Path(place, name).relative_to(share)): Path(place, name).read_text()
+        for place, _, names in os.walk(share, followlinks=True)
+        for name in names
+        if name not in {"setup.py", "setup.cfg", "package.xml", "CMakeLists.txt"}
+    }
+
+
+DATA_FILES = """
+import os
+from glob import glob
+from setuptools import setup
+package_name = 'bot'
+setup(data_files={})
+"""
+
+
+APPENDED = """
+files = [('lib/x', unknown())]
+files += more()
+files.append(('share/bot', ['launch/up.launch.py']))
+setup(data_files=files)
+"""
+
+OF_FOLDER = """
+project(bot)
+set(D ${CMAKE_CURRENT_SOURCE_DIR}/launch)
+install(DIRECTORY ${D}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bot FILES_MATCHING PATTERN x)
+"""
+
+OF_PATTERN = """
+file(GLOB UP launch/*.py)
+install(FILES
+  ${UP} DESTINATION "share/${PROJECT_NAME}/")
+"""
+
+PATH = "(f'share/{package_name}', glob(os.path.join('launch', '*')))"
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("setup.py", DATA_FILES.format("[('share/bot', glob('launch/*.py'))]")),
+        ("setup.py", DATA_FILES.format("[('share/' + package_name, ['launch/up.launch.py'])]")),
+        ("setup.py", DATA_FILES.format(f"[{PATH}]")),
+        ("setup.py", DATA_FILES.format("[('share/{}'.format(package_name), glob('*/*.py'))]")),
+        ("setup.py", DATA_FILES.format("[('share/bot', glob(d + '/*.py')) for d in ['launch']]")),
+        ("setup.py", APPENDED),
+        ("setup.cfg", "[options.data_files]\nshare/bot =\n  launch/*.py\n"),
+        ("CMakeLists.txt", "install(FILES launch/up.launch.py DESTINATION share/${PROJECT_NAME})"),
+        ("CMakeLists.txt", OF_PATTERN),
+        ("CMakeLists.txt", OF_FOLDER),
+    ],
+)
+def test_the_share_folder_shows_files_where_they_are_installed(
+    file: str, text: str, bot: Path
+) -> None:
+    """As in an installation, beside what lies there already; what is unknown stays where it is."""
+    (bot / file).write_text(text)
+
+    files = shown(bot.parents[1])
+
+    assert files["up.launch.py"] == "launch/up.launch.py"
+    assert files["launch/up.launch.py"] == "launch/up.launch.py"
+    assert files["config/a.yaml"] == "config/a.yaml"
+
+
+@pytest.mark.parametrize(
+    ("rule", "place"),
+    [
+        ("install(FILES b.yaml DESTINATION share/bot/config)", "config/b.yaml"),
+        ("install(FILES b.yaml DESTINATION share/bot/config RENAME c.yaml)", "config/c.yaml"),
+        ("install(DIRECTORY launch DESTINATION share/bot/config)", "config/launch/up.launch.py"),
+        ("install(DIRECTORY launch/more DESTINATION share/bot)", "more/deep.launch.py"),
+        ("install(DIRECTORY launch/ DESTINATION share/bot/config)", "config/more/deep.launch.py"),
+    ],
+)
+def test_what_is_installed_into_a_folder_stands_beside_what_is_there(
+    rule: str, place: str, bot: Path
+) -> None:
+    """A folder of links holds the files of the source folder, and those of the rules."""
+    (bot / "CMakeLists.txt").write_text(rule)
+
+    files = shown(bot.parents[1])
+
+    assert {place, "config/a.yaml"} <= set(files)
+    assert not (bot / place).exists()
+
+
+@pytest.mark.parametrize(
+    "rule",
+    [
+        "install(DIRECTORY launch config DESTINATION share/${PROJECT_NAME})",
+        "install(FILES b.yaml DESTINATION share/bot/../../../..)",
+        "install(FILES b.yaml DESTINATION share/other)",
+        "install(FILES missing.yaml DESTINATION share/bot/config)",
+        "set(A ${A}${A})" * 100 + "install(FILES ${A} DESTINATION share/bot)",
+    ],
+)
+def test_a_package_whose_files_lie_where_they_are_installed_is_its_own_share_folder(
+    rule: str, bot: Path
+) -> None:
+    """Nothing is written for it, least of all outside of the share folder."""
+    (bot / "CMakeLists.txt").write_text(rule)
+    share_of.cache_clear()
+
+    assert Packages(bot.parents[1]).share("bot") == bot
+
+
+def test_the_share_folder_follows_the_rules_of_the_package(bot: Path) -> None:
+    """A rule or file that is gone leaves nothing behind."""
+    (bot / "CMakeLists.txt").write_text(
+        "install(DIRECTORY launch config DESTINATION share/bot/all)\n"
+        "install(FILES b.yaml DESTINATION share/bot/config)"
+    )
+    before = shown(bot.parents[1])
+    (bot / "CMakeLists.txt").write_text("install(FILES b.yaml DESTINATION share/bot/all)")
+
+    files = shown(bot.parents[1])
+
+    assert {"all/config/a.yaml", "config/b.yaml"} <= set(before)
+    assert set(files) == {
+        *("launch/up.launch.py", "launch/more/deep.launch.py", "config/a.yaml", "b.yaml"),
+        "all/b.yaml",
+    }
+
+
+def test_a_home_that_is_read_only_needs_no_cache(
+    bot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in a container: the links are in a temporary folder then."""
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    (bot / "CMakeLists.txt").write_text("install(FILES b.yaml DESTINATION share/bot/config)")
+
+    assert shown(bot.parents[1])["config/b.yaml"] == "b.yaml"

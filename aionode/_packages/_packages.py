@@ -14,6 +14,7 @@ from aionode._packages._executables import (
     module_root,
     runs_in_this_python,
 )
+from aionode._packages._share import share_of
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
@@ -44,13 +45,15 @@ class Packages:
         return {} if self.workspace is None else packages_in(self.workspace)
 
     def share(self, name: str) -> Path:
-        """Return the folder with the data of a package: its source folder, or ``share/NAME``.
+        """Return the folder with the data of a package, as it is installed.
+
+        Of a package of the workspace, that is its source folder, or one of links to what is there.
 
         Raises:
             PackageNotFoundError: There is no such package; the error says what is close.
         """
         source = self.sources().get(name)
-        return source or self.prefix(name) / "share" / name
+        return share_of(source, name) if source else self.prefix(name) / "share" / name
 
     def prefix(self, name: str) -> Path:
         """Return the folder into which a package is installed.

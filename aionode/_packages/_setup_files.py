@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import ast
-import re
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
-__all__ = ["entry_points", "scripts"]
+from aionode._packages._cmake import Install, installs_of, matching
 
-INSTALL: Final = re.compile(
-    r"\binstall\s*\(\s*(PROGRAMS|FILES)\s+(?P<files>[^()]*?)\s+"
-    r"DESTINATION\s+\"?lib/(?P<package>[^\s\"/)]+)/?\"?(?:\s+RENAME\s+(?P<name>[^\s)]+))?",
-    re.IGNORECASE,
-)
-"""``install(PROGRAMS scripts/mover.py DESTINATION lib/${PROJECT_NAME})`` in a CMakeLists.txt."""
+__all__ = ["data_files", "entry_points", "scripts"]
+
+MAX_TEXT: Final = 100_000
+"""Longest text and list that is computed from a setup.py: sums of sums grow without bound."""
 
 
 def entry_points(folder: Path) -> dict[str, str]:
@@ -46,15 +44,21 @@ def of_pyproject(folder: Path) -> dict[str, str]:
 
 def of_setup_cfg(folder: Path) -> dict[str, str]:
     """Return the console scripts of a setup.cfg."""
+    lines = dict(section(folder, "options.entry_points")).get("console_scripts", "")
+    return dict(of_lines(lines.splitlines()))
+
+
+def section(folder: Path, name: str) -> list[tuple[str, str]]:
+    """Return the options of a section of a setup.cfg, with their values."""
     import configparser  # not for those who start nothing by its package
 
     parser = configparser.ConfigParser(interpolation=None)
+    parser.optionxform = str  # type: ignore[assignment,method-assign]  # a folder keeps its capitals
     try:
         parser.read(folder / "setup.cfg", encoding="utf-8")
+        return parser.items(name)
     except (configparser.Error, ValueError):
-        return {}
-    section = "options.entry_points"
-    return dict(of_lines(parser.get(section, "console_scripts", fallback="").splitlines()))
+        return []
 
 
 def of_setup_py(folder: Path) -> dict[str, str]:
@@ -90,35 +94,31 @@ def scripts(folder: Path, package: str) -> dict[str, Path]:
     They are the ``scripts`` of a setup.py, its ``data_files`` for ``lib/PACKAGE``, and what a
     CMakeLists.txt installs as programs.
     """
-    given = arguments(folder)
-    files = [item for item in listed(given.get("scripts")) if isinstance(item, str)]
-    for pair in listed(given.get("data_files")):
-        if len(listed(pair)) == 2 and pair[0] == f"lib/{package}":
-            files += [item for item in listed(pair[1]) if isinstance(item, str)]
+    files = [item for item in listed(arguments(folder).get("scripts")) if isinstance(item, str)]
     executables = {Path(file).name: folder / file for file in files}
-    executables.update(of_cmake(folder, package))
+    programs = [rule for rule in installs_of(folder, package) if rule.is_program]
+    for rule in [*data_files(folder), *programs]:
+        if rule.folder.rstrip("/") == f"lib/{package}":
+            executables[rule.name] = rule.source
     return {name: file for name, file in executables.items() if file.is_file()}
+
+
+def data_files(folder: Path) -> Iterator[Install]:
+    """Yield the ``data_files`` of a setup.cfg and a setup.py: each file, and where it comes."""
+    pairs = [(into, lines.split()) for into, lines in section(folder, "options.data_files")]
+    for pair in (*pairs, *listed(arguments(folder).get("data_files"))):
+        if len(listed(pair)) != 2 or not isinstance(pair[0], str):
+            continue
+        for file in listed(pair[1]):
+            names = matching(folder, file) if isinstance(file, str) and "*" in file else [file]
+            for name in names:
+                if isinstance(name, str):
+                    yield Install(folder / name, pair[0], Path(name).name)
 
 
 def listed(value: Any) -> list[Any]:
     """Return a list for a list or tuple, and an empty one for anything else."""
     return list(value) if isinstance(value, list | tuple) else []
-
-
-def of_cmake(folder: Path, package: str) -> Iterator[tuple[str, Path]]:
-    """Yield the name and the file of each program that a CMakeLists.txt installs."""
-    try:
-        text = (folder / "CMakeLists.txt").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return
-    text = re.sub(r"#[^\n]*", "", text).replace("${PROJECT_NAME}", package)
-    for match in INSTALL.finditer(text):
-        files = match["files"].replace('"', "").split()
-        if match["package"] == package:
-            yield from (
-                ((match["name"] or "").strip('"') or Path(file).name, folder / file)
-                for file in files
-            )
 
 
 def arguments(folder: Path) -> dict[str, Any]:
@@ -127,11 +127,21 @@ def arguments(folder: Path) -> dict[str, Any]:
         tree = ast.parse((folder / "setup.py").read_bytes())
     except (OSError, SyntaxError, ValueError):
         return {}
-    names: dict[str, Any] = {}
+    names: dict[str, Any] = known_functions(folder)
     for statement in tree.body:
         match statement:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 names[name] = value_of(value, names)
+            case ast.AugAssign(target=ast.Name(id=name), op=ast.Add(), value=value):
+                names[name] = added(names.get(name), value_of(value, names))
+            case ast.Expr(
+                ast.Call(
+                    func=ast.Attribute(value=ast.Name(id=name), attr="append" | "extend" as how),
+                    args=[value],
+                )
+            ):
+                more = value_of(value, names)
+                names[name] = added(names.get(name), [more] if how == "append" else more)
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] == "setup":
             return {word.arg: value_of(word.value, names) for word in node.keywords if word.arg}
@@ -156,19 +166,61 @@ def value_of(node: ast.expr, names: dict[str, Any]) -> Any:
             return value_of(inner, names)
         case ast.BinOp(left=left, op=ast.Add(), right=right):
             return added(value_of(left, names), value_of(right, names))
-        case ast.Call(func=function, args=parts) if ast.unparse(function) == "os.path.join":
-            return joined([value_of(part, names) for part in parts], "/")
+        case ast.ListComp(
+            elt=part,
+            generators=[ast.comprehension(target=ast.Name(id=name), iter=among, ifs=[])],
+        ):
+            values = listed(value_of(among, names))[:MAX_TEXT]
+            return [value_of(part, names | {name: value}) for value in values]
+        case ast.Call(keywords=[]):
+            return result_of(node, names)
         case _:
             return None
 
 
+def result_of(call: ast.Call, names: dict[str, Any]) -> Any:
+    """Return what a call of a known function or of ``format`` returns; None for any other one."""
+    values = [value_of(part, names) for part in call.args]
+    if isinstance(call.func, ast.Attribute) and call.func.attr == "format":
+        return formatted(value_of(call.func.value, names), values)
+    function = names.get(ast.unparse(call.func))
+    if callable(function) and values and all(isinstance(value, str) for value in values):
+        return function(*values)
+    return None
+
+
+def known_functions(folder: Path) -> dict[str, Any]:
+    """Return the functions that a setup.py may call, by the names that they have there."""
+
+    def join(*parts: str) -> str | None:
+        return joined(list(parts), "/")
+
+    return {
+        **dict.fromkeys(("os.path.join", "path.join", "join", "osp.join"), join),
+        **dict.fromkeys(("glob", "glob.glob"), partial(matching, folder)),
+        **dict.fromkeys(("str", "os.path.normpath"), join),
+    }
+
+
+def formatted(text: Any, parts: list[Any]) -> str | None:
+    """Return a text with its ``{}`` replaced in turn; None if something is not known."""
+    pieces = text.split("{}") if isinstance(text, str) else []
+    if len(pieces) != len(parts) + 1:
+        return None
+    return joined([piece for pair in zip(pieces, [*parts, ""], strict=True) for piece in pair], "")
+
+
 def joined(parts: list[Any], between: str) -> str | None:
-    """Return texts as one; None if one of them is not known."""
-    return between.join(parts) if all(isinstance(part, str) for part in parts) else None
+    """Return texts as one; None if one of them is not known, or they are too long."""
+    if not all(isinstance(part, str) for part in parts) or sum(map(len, parts)) > MAX_TEXT:
+        return None
+    return between.join(parts)
 
 
 def added(left: Any, right: Any) -> Any:
-    """Return the sum of two texts or two lists; None if they are not known."""
+    """Return the sum of two texts, or of two lists as far as they are known; None for others."""
     if isinstance(left, str) and isinstance(right, str):
-        return left + right
-    return left + right if isinstance(left, list) and isinstance(right, list) else None
+        return joined([left, right], "")
+    if isinstance(left, list) or isinstance(right, list):
+        return (listed(left) + listed(right))[:MAX_TEXT]
+    return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from importlib.machinery import PathFinder
 from pathlib import Path
@@ -125,17 +126,31 @@ def file_of_package(package: str, name: str, workspace: str | None) -> str:
     from aionode.launch import share_directory
 
     share = share_directory(package, workspace)
-    files = sorted(file for file in share.rglob(name) if file.is_file())
+    below = files_below(share)
+    files = [file for file in below if file.name == name]
     if len(files) == 1:
         return str(files[0])
     if files:
         places = ", ".join(str(file.relative_to(share)) for file in files)
         raise CommandError(f"{package}: {name} is there more than once: {places}; give its path")
     endings = ("launch.py", "launch.xml", "launch.yaml", "launch.yml", ".launch")
-    known = sorted(file.name for file in share.rglob("*launch*") if file.name.endswith(endings))
+    known = sorted(file.name for file in below if file.name.endswith(endings))
     raise CommandError(
         f"{package}: no file {name} in {share}; it has: {', '.join(known) or 'none'}"
     )
+
+
+def files_below(share: Path) -> list[Path]:
+    """Return the files in a folder of data, each once, also those in folders that are links."""
+    files: dict[Path, Path] = {}
+    seen: set[Path] = set()
+    for place, folders, names in os.walk(share, followlinks=True):
+        folders.sort()
+        folders[:] = [] if Path(place).resolve() in seen else folders
+        seen.add(Path(place).resolve())
+        for name in sorted(names):
+            files.setdefault(Path(place, name).resolve(), Path(place, name))
+    return sorted(files.values())
 
 
 def argument_text(argument: DeclaredArgument) -> str:

@@ -46,10 +46,16 @@ def get_package_prefix(package_name: str) -> str:
 def get_package_share_directory(package_name: str, print_warning: bool = True) -> str:
     """Return the folder with the data of a package, with a warning if it does not exist.
 
-    Of a package of the workspace, which needs no build, that is its source folder.
+    Of a package of the workspace, which needs no build, that is its source folder, or one of links
+    if its rules put files elsewhere.
     """
-    source = checked(package_name).sources().get(package_name)
-    path = source or installed(package_name) / "share" / package_name
+    packages = checked(package_name)
+    is_source = package_name in packages.sources()
+    path = (
+        packages.share(package_name)
+        if is_source
+        else installed(package_name) / "share" / package_name
+    )
     if print_warning and not path.exists():
         warning = f"Share directory for {package_name} ({path}) does not exist."
         warnings.warn(warning, stacklevel=2)

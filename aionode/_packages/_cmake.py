@@ -1,0 +1,139 @@
+"""Reads what a CMakeLists.txt installs as files, and runs nothing of it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import islice, pairwise
+from pathlib import Path
+from typing import Final, NamedTuple
+
+__all__ = ["MAX_FILES", "Install", "installs_of", "matching"]
+
+MAX_FILES: Final = 10_000
+"""Most files and words of one rule that are looked at."""
+
+MAX_BYTES: Final = 1_000_000
+"""Most bytes of a CMakeLists.txt that are read."""
+
+MAX_WORD: Final = 4096
+"""Longest word, in characters: a path; variables that stand for one another grow without bound."""
+
+COMMAND: Final = re.compile(r"(\w+)\s*\(([^()]*)\)")
+WORD: Final = re.compile(r'"([^"]*)"|([^\s;"]+)')
+VARIABLE: Final = re.compile(r"\$\{(\w+)\}")
+KINDS: Final = ("FILES", "PROGRAMS", "DIRECTORY")
+KEYWORDS: Final = frozenset(
+    {
+        *("DESTINATION", "TYPE", "PERMISSIONS", "FILE_PERMISSIONS", "DIRECTORY_PERMISSIONS"),
+        *("USE_SOURCE_PERMISSIONS", "CONFIGURATIONS", "COMPONENT", "RENAME", "OPTIONAL"),
+        *("FILES_MATCHING", "PATTERN", "REGEX", "EXCLUDE", "EXCLUDE_FROM_ALL", "MESSAGE_NEVER"),
+    }
+)
+"""The words of ``install`` that end the list of files."""
+
+
+class Install(NamedTuple):
+    """A file or folder that is installed.
+
+    Attributes:
+        source: The file or folder.
+        folder: The folder into which it comes, below the prefix.
+        name: Its name there; nothing for a folder whose content alone comes there.
+        is_program: Whether it is installed to be executed.
+    """
+
+    source: Path
+    folder: str
+    name: str
+    is_program: bool = False
+
+
+def installs_of(folder: Path, package: str) -> Iterator[Install]:
+    """Yield what the CMakeLists.txt of a package installs as files and folders.
+
+    Variables are followed that it sets by lists of words and patterns of files.
+    """
+    try:
+        with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
+            text = re.sub(r"#[^\n]*", "", file.read(MAX_BYTES))
+    except OSError:
+        return
+    variables = {
+        "PROJECT_NAME": [package],
+        "CMAKE_INSTALL_PREFIX": ["."],
+        "CMAKE_INSTALL_DATADIR": ["share"],
+        "CMAKE_INSTALL_DATAROOTDIR": ["share"],
+        "CMAKE_CURRENT_SOURCE_DIR": [str(folder)],
+        "CMAKE_SOURCE_DIR": [str(folder)],
+        "PROJECT_SOURCE_DIR": [str(folder)],
+    }
+    for command, rest in COMMAND.findall(text):
+        words = list(islice(words_of(rest, variables), MAX_FILES))
+        match command.lower(), words:
+            case "project", [name, *_]:
+                variables["PROJECT_NAME"] = [name]
+            case "set", [name, *values]:
+                variables[name] = values
+            case "file", ["GLOB" | "GLOB_RECURSE" as kind, name, *patterns]:
+                variables[name] = globbed(folder, patterns, deep=kind == "GLOB_RECURSE")
+            case "install", [kind, *given] if kind in KINDS:
+                yield from install_of(kind, given, folder)
+
+
+def words_of(text: str, variables: dict[str, list[str]]) -> Iterator[str]:
+    """Yield the words of a command, its variables replaced."""
+    for quoted, plain in WORD.findall(text):
+        whole = VARIABLE.fullmatch(plain)
+        if whole is not None:
+            yield from variables.get(whole[1], ())
+        else:
+            yield replaced((quoted or plain)[:MAX_WORD], variables)[:MAX_WORD]
+
+
+def replaced(word: str, variables: dict[str, list[str]]) -> str:
+    """Return a word with the values of its variables; unknown ones stay."""
+    return VARIABLE.sub(
+        lambda match: ";".join(variables.get(match[1], [match[0]]))[:MAX_WORD], word
+    )
+
+
+def globbed(folder: Path, patterns: list[str], *, deep: bool) -> list[str]:
+    """Return the files of ``file(GLOB NAME launch/*.py)``."""
+    if patterns[:1] == ["RELATIVE"]:
+        patterns = patterns[2:]
+    files: list[str] = []
+    for pattern in patterns:
+        if pattern not in ("CONFIGURE_DEPENDS", "LIST_DIRECTORIES", "true", "false"):
+            parent, _, name = pattern.rpartition("/")
+            whole = f"{parent}/**/{name}".lstrip("/") if deep and parent else pattern
+            files += matching(folder, f"**/{name}" if deep and not parent else whole)
+    return files
+
+
+def matching(folder: Path, pattern: str) -> list[str]:
+    """Return the files below a folder that a pattern fits, as `glob.glob` names them."""
+    import glob  # not for those who start nothing by its package
+
+    within = pattern.removeprefix(f"{folder}/")
+    if within.startswith("/") or ".." in within.split("/"):
+        return []  # all the disk could be searched
+    found = glob.iglob(within, root_dir=folder, recursive=True)  # noqa: PTH207  # Path.glob names hidden files
+    return sorted(islice(found, MAX_FILES))
+
+
+def install_of(kind: str, words: list[str], folder: Path) -> Iterator[Install]:
+    """Yield what one ``install`` names."""
+    end = next((at for at, word in enumerate(words) if word in KEYWORDS), len(words))
+    files, rest = words[:end], words[end:]
+    options = dict(pairwise(rest))
+    if "DESTINATION" not in options:
+        return
+    into = options["DESTINATION"]
+    for file in files:
+        name = Path(file).name
+        if kind == "DIRECTORY":
+            name = "" if file.endswith("/") or name == "." else name
+        else:
+            name = options.get("RENAME", name)
+        yield Install(folder / file, into, name, kind != "DIRECTORY")
