@@ -28,6 +28,7 @@ def is_private(name: str) -> bool:
 OTHERS: Final = frozenset(
     {
         "_AXES2TUPLE",  # tf_transformations
+        "_Service__service",  # rclpy
         "_TYPE_SUPPORT",  # the classes that ROS generates
         "_allFramesAsDot",  # tf2
         "_chain",

@@ -169,9 +169,11 @@ def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | No
             response = await await_or_execute(
                 service.callback, request, service.srv_type.Response()
             )
-            service.send_response(response, header)
-        finally:
+        except BaseException:
             service.handle.give_up(header.request_id)
+            raise
+        # A program may put a function of its own in this place, and answer later.
+        service.send_response(response, header)
 
     return answer
 

@@ -55,6 +55,11 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
         # until its future is here. A handler of a signal may call while this thread holds it.
         self._lock = threading.RLock()
 
+    @property
+    def __client(self) -> ClientHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
     def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:
         """Send a request and block the thread until the response is here.
 

@@ -7,11 +7,13 @@ of the entities until an executor takes it.
 from __future__ import annotations
 
 import inspect
+import itertools
 import os
 import threading
 import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Self, cast
 
 from aionode.clock import MachineTime
@@ -108,6 +110,7 @@ class Executor:
         self._tasks_lock = threading.RLock()
         self._Executor__wakeup = Wakeup()
         self._is_shutdown = False
+        self._Executor__spins = 0
         # Used by the thread that spins; only one thread may at a time.
         self._cb_iter: Generator[Ready | Work, None, None] | None = None
         self._last_args: tuple[Any, ...] = ()
@@ -197,10 +200,24 @@ class Executor:
 
     # Spinning
 
+    @property
+    def is_spinning(self) -> bool:
+        """Whether a thread is in `spin` or `spin_until_future_complete`; of newer rclpy."""
+        return self._Executor__spins > 0
+
+    @contextmanager
+    def _Executor__spinning(self) -> Iterator[None]:
+        self._Executor__spins += 1
+        try:
+            yield
+        finally:
+            self._Executor__spins -= 1
+
     def spin(self) -> None:
         """Call callbacks until the executor or its context is shut down."""
-        while self._context.ok() and not self._is_shutdown:
-            self.spin_once()
+        with self._Executor__spinning():
+            while self._context.ok() and not self._is_shutdown:
+                self.spin_once()
 
     def spin_until_future_complete(
         self, future: Future[Any], timeout_sec: float | None = None
@@ -213,6 +230,10 @@ class Executor:
         """
         # With an executor of its own, that is one of its tasks: a call more for `spin_once`.
         future.add_done_callback(lambda _: self.wake())
+        with self._Executor__spinning():
+            self._Executor__spin_until(future, timeout_sec)
+
+    def _Executor__spin_until(self, future: Future[Any], timeout_sec: float | None) -> None:
         if timeout_sec is None or timeout_sec < 0:
             while self._Executor__goes_on(future):
                 self._spin_once_impl(timeout_sec, future.done)
@@ -344,6 +365,7 @@ class Executor:
             if not ready and not yielded:
                 ready = self._Executor__ready_after_wait(used, ends_ns)
             # Before the calls, which may take longer than the limit.
+            ready = self._Executor__in_turn(ready)
             over = ends_ns is not None and (timeout_sec == 0 or steady_ns() >= ends_ns)
             for call in ready:
                 # A call of this round may have begun another one, of the same group.
@@ -352,6 +374,10 @@ class Executor:
                     yield call
             if over:
                 raise TimeoutException
+
+    def _Executor__in_turn(self, ready: list[Ready]) -> list[Ready]:
+        """Return what is ready in the order in which it is called."""
+        return ready
 
     def _Executor__raise_if_over(self, condition: Callable[[], bool] = never) -> None:
         if self._is_shutdown:
@@ -546,6 +572,8 @@ class MultiThreadedExecutor(Executor):
             )
         self._futures: list[Task[Any]] = []
         self._executor = ThreadPoolExecutor(num_threads)
+        self._Executor__num_threads = num_threads
+        self._Executor__turns = itertools.count(1)
 
     def _spin_once_impl(
         self,
@@ -553,7 +581,8 @@ class MultiThreadedExecutor(Executor):
         condition: Callable[[], bool] = never,
     ) -> None:
         try:
-            task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
+            self._Executor__wait_for_thread(timeout_sec, condition)
+            task, entity, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
         except (
             ExternalShutdownException,
             ShutdownException,
@@ -561,6 +590,8 @@ class MultiThreadedExecutor(Executor):
             ConditionReachedException,
         ):
             return
+        if entity is not None:
+            entity._executor_turn = next(self._Executor__turns)
         task._scheduled = True
         self._executor.submit(self._Executor__step, task)
         if task not in self._futures:
@@ -569,6 +600,36 @@ class MultiThreadedExecutor(Executor):
             if future.done():
                 self._futures.remove(future)
                 future.result()  # raises what the callback raised
+
+    def _Executor__in_turn(self, ready: list[Ready]) -> list[Ready]:
+        """Return what is ready, first what has waited longest since its last call."""
+        return sorted(ready, key=lambda call: getattr(call[0], "_executor_turn", 0))
+
+    def _Executor__wait_for_thread(
+        self, timeout_sec: float | TimeoutObject | None, condition: Callable[[], bool]
+    ) -> None:
+        """Wait until a thread is free, so that what is ready is taken when it can be called.
+
+        Else calls would queue up that nobody can stop: a timer that takes longer than its period
+        would keep services and Ctrl-C waiting for all that it has missed.
+        """
+        if isinstance(timeout_sec, TimeoutObject):
+            timeout_sec = timeout_sec.timeout
+        ends_ns = None
+        if timeout_sec is not None and timeout_sec >= 0:
+            ends_ns = steady_ns() + int(timeout_sec * 1e9)
+        while sum(task._scheduled for task in self._futures) >= self._Executor__num_threads:
+            self._Executor__wakeup.take(False)  # whatever it was for is looked at now
+            self._Executor__raise_if_over(condition)
+            self._cb_iter = None  # more may be ready when a thread is free
+            left_ns = None if ends_ns is None else ends_ns - steady_ns()
+            if left_ns is not None and left_ns <= 0:
+                raise TimeoutException
+            if sum(task._scheduled for task in self._futures) < self._Executor__num_threads:
+                return  # it was set free before the wake-up could be noted
+            self._Executor__io.wait(
+                self._Executor__wakeup, None if left_ns is None else left_ns / 1e9
+            )
 
     def _Executor__step(self, task: Task[Any]) -> None:
         try:

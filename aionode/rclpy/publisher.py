@@ -47,6 +47,11 @@ class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
             callback_group, publisher_impl, topic
         )
 
+    @property
+    def __publisher(self) -> PublisherHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
     def publish(self, msg: MsgT | bytes) -> None:
         """Send a message, or one that is encoded already. Nobody needs to spin for that.
 

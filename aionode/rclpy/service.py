@@ -47,6 +47,11 @@ class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
         self._executor_event = False
         self.qos_profile = qos_profile
 
+    @property
+    def __service(self) -> ServiceHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
     configure_introspection = in_use(ServiceHandle.configure_introspection)
 
     def send_response(

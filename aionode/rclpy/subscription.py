@@ -73,6 +73,11 @@ class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
         )
 
     @property
+    def __subscription(self) -> SubscriptionHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
+    @property
     def callback(self) -> Callable[..., object]:
         """The function that is called with each message, or with a message and its `MessageInfo`.
 

@@ -224,6 +224,10 @@ class Task(Future[T]):
                 self._finish()
                 self.set_exception(error)
                 return
+            except BaseException as error:  # the end of the program, which runs no step again
+                self._finish()
+                self.set_exception(error)
+                raise
             self._finish()
             self.set_result(result)
         finally:

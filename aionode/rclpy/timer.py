@@ -86,6 +86,11 @@ class Timer(HandleOwner[TimerHandle]):
         self._inspected: tuple[Any, str | None] | None = None
 
     @property
+    def __timer(self) -> TimerHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
+    @property
     def clock(self) -> Clock:
         """The clock that it follows."""
         return self._clock

@@ -128,6 +128,10 @@ class CallHandle(EndpointHandle[BareT]):
         super()._destroy()
 
 
+MOST_TAKEN = 10_000
+"""Requests that may wait for a late answer; of more, the oldest gets none."""
+
+
 class ServiceHandle(CallHandle[BareEndpoint]):
     """A service server: requests wait in it until they are taken."""
 
@@ -171,6 +175,8 @@ class ServiceHandle(CallHandle[BareEndpoint]):
             info = request.sample_info
             request_id = rmw_request_id_t(info.sequence, info.gid)
             self._taken[request_id] = request
+            if len(self._taken) > MOST_TAKEN:
+                self._taken.pop(next(iter(self._taken)), None)
             self._introspection.tell(REQUEST_RECEIVED, info.gid, info.sequence, message)
             return message, rmw_service_info_t(request_id, info.source_ns, received_ns)
 

@@ -143,17 +143,40 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
                 message.feedback = feedback
                 self._action_server._handle.feedback.publish(message)
 
-    def succeed(self) -> None:
-        """End it with success."""
-        self._update_state(GoalEvent.SUCCEED)
+    def executing(self) -> None:
+        """Say that it is being executed, where no execute callback says so: of newer rclpy."""
+        self._update_state(GoalEvent.EXECUTE)
 
-    def abort(self) -> None:
-        """End it without success."""
-        self._update_state(GoalEvent.ABORT)
+    def succeed(self, response: Any = None) -> None:
+        """End it with success; newer rclpy may give the result here."""
+        self._end(GoalEvent.SUCCEED, response)
 
-    def canceled(self) -> None:
-        """End it as cancelled."""
-        self._update_state(GoalEvent.CANCELED)
+    def abort(self, response: Any = None) -> None:
+        """End it without success; newer rclpy may give the result here."""
+        self._end(GoalEvent.ABORT, response)
+
+    def canceled(self, response: Any = None) -> None:
+        """End it as cancelled; newer rclpy may give the result here."""
+        self._end(GoalEvent.CANCELED, response)
+
+    def _end(self, event: GoalEvent, response: Any) -> None:
+        expected = self._action_server.action_type.Result
+        if response is not None and not isinstance(response, expected):
+            raise TypeError(
+                f"the result of a goal is a {type(response).__name__}; give a Result of its action"
+            )
+        self._update_state(event)
+        if response is not None:
+            self._set_result(response)
+
+    def _set_result(self, result: Any) -> None:
+        """Answer those who wait for the result; the first one counts."""
+        if self._result.done():
+            return
+        response = self._action_server.action_type.Impl.GetResultService.Response()
+        response.status = self.status
+        response.result = result
+        self._result.set_result(response)
 
     def destroy(self) -> None:
         """Forget it."""
@@ -316,10 +339,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         if goal_handle.is_active:
             self._logger.warning(f"Goal state not set, assuming aborted. Goal ID: {goal_id}")
             goal_handle.abort()
-        response = self._action_type.Impl.GetResultService.Response()
-        response.status = goal_handle.status
-        response.result = result
-        goal_handle._result.set_result(response)
+        goal_handle._set_result(result)
 
     async def _execute_cancel_request(self, header: Any, request: Any) -> None:
         with self._lock:

@@ -1,0 +1,218 @@
+"""What newer versions of rclpy have than that of PyPI, and what programs do with its parts."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+import aionode.rclpy
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
+from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
+from aionode.rclpy.callback_groups import ReentrantCallbackGroup
+from aionode.rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from aionode.rclpy.node import Node
+from aionode.rclpy.service import Service
+from aionode.rclpy.task import Future
+from tests.support.peers import isolated_environment
+
+PATIENCE_S = 20.0
+
+
+@pytest.fixture
+def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[aionode.rclpy.Context]:
+    """A context out of earshot."""
+    for name, value in isolated_environment().items():
+        monkeypatch.setenv(name, value)
+    context = aionode.rclpy.Context()
+    aionode.rclpy.init(args=[], context=context)
+    yield context
+    aionode.rclpy.shutdown(context=context)
+
+
+@pytest.fixture
+def node(context: aionode.rclpy.Context) -> Node:
+    """A node."""
+    return Node("node", context=context)
+
+
+@pytest.fixture
+def wait(context: aionode.rclpy.Context, node: Node) -> Callable[[Future[Any]], Any]:
+    """Return a function that spins the node until a future is done, and returns its result."""
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+
+    def until(future: Future[Any]) -> Any:
+        executor.spin_until_future_complete(future, timeout_sec=PATIENCE_S)
+        assert future.done()
+        return future.result()
+
+    return until
+
+
+@pytest.mark.parametrize(("end", "status"), [("succeed", 4), ("abort", 6), ("canceled", 5)])
+def test_a_goal_takes_its_result_where_it_ends(
+    node: Node, wait: Callable[[Future[Any]], Any], end: str, status: int
+) -> None:
+    """The result counts at once, whatever the callback returns later."""
+    result = Fibonacci.Result()
+    result.sequence = [1, 2]
+    may_end: Future[None] = Future()
+
+    async def execute(goal: Any) -> Any:
+        await may_end
+        getattr(goal, end)(result)
+        return Fibonacci.Result()
+
+    ActionServer(node, Fibonacci, "count", execute, cancel_callback=lambda _: CancelResponse.ACCEPT)
+    client: Any = ActionClient(node, Fibonacci, "count")
+    accepted = wait(client.send_goal_async(Fibonacci.Goal()))
+    if end == "canceled":
+        wait(accepted.cancel_goal_async())
+    may_end.set_result(None)
+    answer = wait(accepted.get_result_async())
+
+    assert (answer.status, list(answer.result.sequence)) == (status, [1, 2])
+
+
+def test_a_goal_may_be_executed_without_a_callback(
+    node: Node, wait: Callable[[Future[Any]], Any]
+) -> None:
+    """A state machine of its own ends it some time."""
+    goals: list[Any] = []
+    ActionServer(node, Fibonacci, "count", lambda _: None, handle_accepted_callback=goals.append)
+    client: Any = ActionClient(node, Fibonacci, "count")
+    result = wait(client.send_goal_async(Fibonacci.Goal())).get_result_async()
+
+    goals[0].executing()
+    goals[0].succeed(Fibonacci.Result())
+
+    assert wait(result).status == 4
+
+
+def test_a_result_of_another_class_is_refused(
+    node: Node, wait: Callable[[Future[Any]], Any]
+) -> None:
+    """The goal goes on: its callback can still end it."""
+    problems: list[str] = []
+
+    def execute(goal: Any) -> Any:
+        try:
+            goal.succeed("done")
+        except TypeError as error:
+            problems.append(str(error))
+        goal.succeed()
+        return Fibonacci.Result()
+
+    ActionServer(node, Fibonacci, "count", execute)
+    client: Any = ActionClient(node, Fibonacci, "count")
+
+    wait(wait(client.send_goal_async(Fibonacci.Goal())).get_result_async())
+    assert problems == ["the result of a goal is a str; give a Result of its action"]
+
+
+@pytest.mark.parametrize("place", ["instance", "class", "handle"])
+def test_a_request_may_be_answered_later_from_anywhere(
+    node: Node,
+    wait: Callable[[Future[Any]], Any],
+    place: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Bridges to asyncio put their own function in the place of `send_response`."""
+    kept: list[tuple[Any, Any]] = []
+    service: Any = node.create_service(AddTwoInts, "add", lambda request, response: response)
+    send = service.send_response
+    if place == "handle":
+        handle = service._Service__service
+
+        def send(response: Any, header: Any) -> None:
+            handle.service_send_response(response, header.request_id)
+
+    if place == "class":
+        monkeypatch.setattr(Service, "send_response", lambda _, *parts: kept.append(parts))
+    else:
+        service.send_response = lambda *parts: kept.append(parts)
+    answer = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=2))
+    first: Future[None] = Future()
+
+    def look() -> None:
+        if kept and not first.done():
+            first.set_result(None)
+
+    node.create_timer(0.01, look)
+    wait(first)
+    ((response, header),) = kept
+    response.sum = 3
+
+    worker = threading.Thread(target=send, args=(response, header))
+    worker.start()
+    worker.join()
+
+    assert wait(answer).sum == 3
+
+
+def test_an_executor_says_whether_it_spins(context: aionode.rclpy.Context, node: Node) -> None:
+    """Programs decide by it whether they may wait for a callback."""
+    executor = SingleThreadedExecutor(context=context)
+    executor.add_node(node)
+    seen: Future[bool] = Future()
+
+    def look() -> None:
+        if not seen.done():
+            seen.set_result(executor.is_spinning)
+
+    node.create_timer(0.0, look)
+
+    assert not executor.is_spinning
+    executor.spin_until_future_complete(seen, timeout_sec=PATIENCE_S)
+
+    assert seen.result()
+    assert not executor.is_spinning
+
+
+def test_the_end_of_the_program_ends_the_spin_of_several_threads(
+    context: aionode.rclpy.Context, node: Node
+) -> None:
+    """As it ends that of one."""
+
+    def leave() -> None:
+        raise SystemExit(7)
+
+    node.create_timer(0.0, leave)
+    with MultiThreadedExecutor(2, context=context) as executor:
+        executor.add_node(node)
+        with pytest.raises(SystemExit) as caught:
+            executor.spin()
+
+    assert caught.value.code == 7
+
+
+def test_a_busy_pool_takes_nothing_that_it_cannot_call(
+    context: aionode.rclpy.Context, node: Node
+) -> None:
+    """Nobody could stop what queues up; a timer that is late runs once."""
+    may_end, begun = threading.Event(), threading.Semaphore(0)
+    calls: list[int] = []
+
+    def work(number: int) -> None:
+        calls.append(number)
+        begun.release()
+        may_end.wait(PATIENCE_S)
+
+    group = ReentrantCallbackGroup()
+    for number in range(4):
+        node.create_timer(0.0, lambda number=number: work(number), callback_group=group)
+    with MultiThreadedExecutor(2, context=context) as executor:
+        executor.add_node(node)
+        spinning = threading.Thread(target=executor.spin)
+        spinning.start()
+        for _ in range(2):
+            begun.acquire()
+        executor.shutdown(wait_for_threads=False)
+        spinning.join(PATIENCE_S)
+        may_end.set()
+
+    assert (len(calls), spinning.is_alive()) == (2, False)
