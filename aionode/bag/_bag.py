@@ -6,14 +6,15 @@ from copy import copy
 from itertools import islice
 from pathlib import Path
 from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
-from typing import TYPE_CHECKING, Any, Final, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Final, Generic, Self, TypeVar
 
 from aionode._process.concurrency import run_in_thread
 from aionode.bag._losses import LOSSES, losses_from
 from aionode.bag._metadata import FILE_NAME, read_metadata, topics_in
 from aionode.bag._order import in_order
 from aionode.bag._record import MOST_NS, Record, TopicInfo, time_of
-from aionode.bag._source import McapSource, RosbagsSource
+from aionode.bag._source import CHECK, McapSource
+from aionode.bag._sqlite import SqliteSource
 from aionode.clock import Duration, Time
 from aionode.errors import BagError
 
@@ -28,6 +29,9 @@ if TYPE_CHECKING:
 __all__ = ["Bag", "Records", "open"]
 
 T = TypeVar("T")
+
+END_NS: Final = 1 << 64
+"""A time after all that a bag can have."""
 
 BATCH: Final = 256
 """Records that an async iteration reads at once, in a thread."""
@@ -56,12 +60,13 @@ class Bag:
     ) -> None:
         self.path = path
         self.metadata = metadata or {}
-        self.custom_data: dict[str, str] = dict(self.metadata.get("custom_data") or {})
+        custom = self.metadata.get("custom_data")
+        self.custom_data: dict[str, str] = dict(custom) if isinstance(custom, dict) else {}
         self.losses = losses_from(self.custom_data)
         if self.losses is not None:
             del self.custom_data[LOSSES]
         self._sources = sources
-        self.connections = merged_topics(sources, listed_topics(self.metadata))
+        self.connections = merged_topics(sources, topics_in(self.metadata))
         self.topics: dict[str, TopicInfo] = {}
         for topic in self.connections:
             known = self.topics.get(topic.name)
@@ -118,16 +123,11 @@ class Bag:
     @property
     def duration(self) -> Duration:
         """The time from the first message to the last."""
-        return Duration(nanoseconds=self.end_ns - self.start_ns)
+        return Duration(nanoseconds=min(max(self.end_ns - self.start_ns, 0), MOST_NS))
 
     @property
     def files(self) -> list[tuple[int, str]]:
         """Its files in order of time, each after the time of its first message in nanoseconds."""
-        if len(self._sources) == 1 and self.metadata.get("files"):
-            return sorted(
-                (int(file["starting_time"]["nanoseconds_since_epoch"]), str(file["path"]))
-                for file in self.metadata["files"]
-            )
         return sorted((source.start_ns, source.path.name) for source in self._sources)
 
     def read(
@@ -145,7 +145,7 @@ class Bag:
             end: The time before which the records end, or how long after the start of the bag.
 
         Raises:
-            BagError: the bag has no such topic. While reading: a file is damaged.
+            BagError: the bag has no such topic. After the last record: some could not be read.
         """
         wanted = None
         if topics is not None:
@@ -154,14 +154,14 @@ class Bag:
             if unknown:
                 there = ", ".join(sorted(self.topics)) or "none"
                 raise BagError(str(self.path), f"no topic {unknown[0]}", f"its topics: {there}")
-        return Records(self._sources, wanted, self._edge(start, 0), self._edge(end, MOST_NS))
+        return Records(self, self._sources, wanted, self._edge(start, 0), self._edge(end, END_NS))
 
     def _edge(self, value: Time | Duration | None, default: int) -> int:
         if value is None:
             return default
         if isinstance(value, Duration):
             return max(self.start_ns + value.nanoseconds, 0)
-        return value.nanoseconds
+        return END_NS if value.nanoseconds == MOST_NS else value.nanoseconds
 
     def close(self) -> None:
         """Close its files. Closing it again has no effect."""
@@ -174,12 +174,18 @@ class Records:
     """Some records of a bag: iterate over them, with ``for`` or with ``async for``.
 
     Each iteration begins anew. ``async for`` reads in a thread, so the event loop never waits for
-    the disk.
+    the disk. What is damaged is left out: the other records come, and the error after them.
     """
 
     def __init__(
-        self, sources: list[Source], topics: AbstractSet[str] | None, start_ns: int, end_ns: int
+        self,
+        bag: Bag,
+        sources: list[Source],
+        topics: AbstractSet[str] | None,
+        start_ns: int,
+        end_ns: int,
     ) -> None:
+        self._bag = bag
         self._sources = sources
         self._limits = (topics, start_ns, end_ns)
 
@@ -187,54 +193,90 @@ class Records:
         """Iterate over the records in order of time.
 
         Raises:
-            BagError: a file is damaged.
+            BagError: after the last record: some could not be read.
         """
-        _, start_ns, end_ns = self._limits
+        topics, start_ns, end_ns = self._limits
         wanted = [s for s in self._sources if s.start_ns < end_ns and s.end_ns >= start_ns]
-        return in_order([(source.start_ns, source.records(*self._limits)) for source in wanted])
+        problems: list[BagError] = []
+        count = 0
+        streams = [(source.start_ns, source.records(*self._limits, problems)) for source in wanted]
+        for count, record in enumerate(in_order(streams), 1):  # noqa: B007  # the last one is used
+            yield record
+        if len(problems) == 1:
+            raise problems[0]
+        if problems:
+            first = problems[0]
+            more = f"{first.problem}, and {len(problems) - 1} more problems"
+            raise BagError(first.path, more, first.remedy)
+        promised = sum(
+            topic.message_count
+            for topic in self._bag.connections
+            if topics is None or topic.name in topics
+        )
+        if count != promised and start_ns <= self._bag.start_ns and end_ns == END_NS:
+            problem = f"it says that it has {promised} messages, and {count} can be read"
+            raise BagError(str(self._bag.path), problem, CHECK)
 
     async def __aiter__(self) -> AsyncIterator[Record]:
         """Iterate over the records in order of time; they are read in a thread.
 
         Raises:
-            BagError: a file is damaged.
+            BagError: after the last record: some could not be read.
         """
-        records = iter(self)
-        while batch := await run_in_thread(next_batch, records, lambda record: len(record.raw)):
+        batches = Batches(iter(self), lambda record: len(record.raw))
+        while batch := await run_in_thread(batches.next):
             for record in batch:
                 yield record
 
 
-def next_batch(records: Iterator[T], size_of: Callable[[T], int], most: int = BATCH) -> list[T]:
-    """Return the next records, as many as one call should read, by their sizes in bytes.
+class Batches(Generic[T]):
+    """Records, as many at a time as one call should read.
 
-    In between it lets other threads run: the event loop may wait for its turn.
+    Args:
+        records: The records.
+        size_of: The size of each in bytes.
+        most: How many are read at once.
     """
-    batch: list[T] = []
-    size = 0
-    for record in islice(records, most):
-        batch.append(record)
-        if not len(batch) % TURN:
-            sleep(0)
-        size += size_of(record)
-        if size >= BATCH_BYTES:
-            break
-    return batch
 
+    def __init__(
+        self, records: Iterator[T], size_of: Callable[[T], int], most: int = BATCH
+    ) -> None:
+        self._records = records
+        self._size_of = size_of
+        self._most = most
+        self._error: BagError | None = None
 
-def listed_topics(metadata: dict[str, Any]) -> list[TopicInfo]:
-    """Return the topics that ``metadata.yaml`` lists; none if it has none."""
-    if not metadata:
-        return []
-    try:
-        return topics_in(metadata)
-    except (KeyError, TypeError, ValueError):
-        return []  # only the files tell
+    def next(self) -> list[T]:
+        """Return the next records; none at the end.
+
+        In between it lets other threads run: the event loop may wait for its turn.
+
+        Raises:
+            BagError: some could not be read; those that could were returned before.
+        """
+        if self._error is not None:
+            raise self._error
+        batch: list[T] = []
+        size = 0
+        try:
+            for record in islice(self._records, self._most):
+                batch.append(record)
+                if not len(batch) % TURN:
+                    sleep(0)
+                size += self._size_of(record)
+                if size >= BATCH_BYTES:
+                    break
+        except BagError as error:
+            if not batch:
+                raise
+            self._error = error
+        return batch
 
 
 def merged_topics(sources: list[Source], listed: list[TopicInfo]) -> list[TopicInfo]:
     """Return the topics of all files, each once, with its messages added up.
 
+    Its name and type are what makes it one: files and metadata may tell of its QoS differently.
     Topics without messages may be in the metadata alone; hashes may be there alone, too.
     """
     topics: dict[tuple[str, str], TopicInfo] = {}
@@ -246,13 +288,14 @@ def merged_topics(sources: list[Source], listed: list[TopicInfo]) -> list[TopicI
                 merged[topic.key] = topics[topic.name, topic.type] = copy(topic)
             else:
                 known.message_count += topic.message_count
+                known.qos = known.qos or topic.qos
     for topic in listed:
         known = topics.get((topic.name, topic.type))
         if known is None:
             merged[topic.key] = topic
-            topic.message_count = 0
-        elif not known.type_hash:
-            known.type_hash = topic.type_hash
+        else:
+            known.type_hash = known.type_hash or topic.type_hash
+            known.qos = known.qos or topic.qos
     return list(merged.values())
 
 
@@ -273,12 +316,25 @@ def open(path: str | PathLike[str]) -> Bag:  # noqa: A001  # as in `bag.open(pat
     if not place.is_dir():
         return Bag(place, [source_of(place)])
     metadata = read_metadata(place)
-    if metadata["storage_identifier"] != "mcap":
-        return Bag(place, [RosbagsSource(place)], metadata)
+    mode = str(metadata.get("compression_mode") or "").lower()
+    form = str(metadata.get("compression_format") or "").lower()
+    if mode == "message" and form != "zstd":
+        raise BagError(str(path), f"its messages are compressed by {form!r}", "only zstd is read")
+    storage = metadata["storage_identifier"]
+    kinds: dict[str, type[McapSource | SqliteSource]] = {
+        "mcap": McapSource,
+        "sqlite3": SqliteSource,
+    }
+    kind = kinds.get(storage)
+    if kind is None:
+        problem = f"{FILE_NAME} names the storage {storage!r}"
+        raise BagError(str(path), problem, "mcap and sqlite3 are read")
     sources: list[Source] = []
     try:
-        for name in metadata["relative_file_paths"]:
-            sources.append(McapSource(place / Path(name).name))  # noqa: PERF401  # closed if one fails
+        for name in dict.fromkeys(Path(name).name for name in metadata["relative_file_paths"]):
+            if mode == "file" and not (place / name).exists():
+                name = name.removesuffix(".zstd")  # noqa: PLW2901  # it was decompressed by hand
+            sources.append(kind(place / name, compressed_messages=mode == "message"))
     except FileNotFoundError as error:
         close_all(sources)
         problem = f"{FILE_NAME} names {Path(error.filename).name}, which is not there"
@@ -305,5 +361,5 @@ def source_of(path: Path) -> Source:
     if suffix == ".mcap":
         return McapSource(path)
     if suffix == ".db3":
-        return RosbagsSource(path)
+        return SqliteSource(path)
     raise BagError(str(path), "the file is neither .mcap nor .db3", "give a folder or such a file")

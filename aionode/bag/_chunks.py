@@ -6,33 +6,32 @@ does, which takes many milliseconds, the event loop hardly runs.
 
 from __future__ import annotations
 
+import os
 import struct
 import zlib
+from io import BytesIO
 from operator import itemgetter
 from typing import IO, TYPE_CHECKING, Final
 
-import lz4.frame
-import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Chunk
+
+from aionode.bag._compression import decompressed
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
 
     from mcap.records import ChunkIndex
 
-__all__ = ["HEAD", "MESSAGE", "Row", "checked_content", "rows_of"]
+__all__ = ["HEAD", "MESSAGE", "Row", "checked_content", "rows_of", "size_of"]
 
 HEAD: Final = struct.Struct("<BQ")
 """The head of each record: its kind and its length."""
 
 MESSAGE: Final = struct.Struct("<HIQQ")
 """The head of a message: channel, sequence, and the times of logging and publishing."""
-
-MOST_CHUNK: Final = 1 << 32
-"""A chunk that claims to be larger, in bytes, is damaged."""
 
 Row = tuple[int, int, int, int, int, int]
 """A message: log time, channel, sequence, publish time, and where its bytes begin and end."""
@@ -44,28 +43,17 @@ def checked_content(chunk: Chunk) -> bytes:
     Raises:
         McapError: it is damaged; so are errors of the compression's library.
     """
-    if chunk.uncompressed_size > MOST_CHUNK:
-        raise McapError("the chunk is too large")
-    content = decompressed(chunk)
+    content = decompressed(chunk.compression, chunk.data, chunk.uncompressed_size)
     if len(content) != chunk.uncompressed_size or (
         chunk.uncompressed_crc and zlib.crc32(content) != chunk.uncompressed_crc
     ):
-        raise McapError("the chunk is damaged")
+        raise McapError("its checksum does not fit")
     return content
 
 
-def decompressed(chunk: Chunk) -> bytes:
-    """Return the records of a chunk, which may be damaged."""
-    if chunk.compression == "zstd":
-        return zstandard.ZstdDecompressor().decompress(
-            chunk.data, max_output_size=chunk.uncompressed_size
-        )
-    if chunk.compression == "lz4":
-        plain: bytes = lz4.frame.decompress(chunk.data)
-        return plain
-    if chunk.compression:
-        raise McapError(f"unknown compression {chunk.compression}")
-    return chunk.data
+def size_of(file: IO[bytes]) -> int:
+    """Return the size of an open file in bytes."""
+    return os.fstat(file.fileno()).st_size
 
 
 def rows_of(
@@ -80,8 +68,14 @@ def rows_of(
         start_ns: The time of the first message that is wanted.
         end_ns: The time before which they end.
     """
-    file.seek(index.chunk_start_offset + HEAD.size)
-    content = checked_content(Chunk.read(ReadDataStream(file)))
+    size = size_of(file)
+    if not 0 <= index.chunk_start_offset <= size - HEAD.size:
+        raise McapError(f"it would begin beyond the {size} bytes of the file")
+    file.seek(index.chunk_start_offset)
+    opcode, length = HEAD.unpack(file.read(HEAD.size))
+    if opcode != Opcode.CHUNK or length > size - index.chunk_start_offset - HEAD.size:
+        raise McapError("there is no whole chunk")
+    content = checked_content(Chunk.read(ReadDataStream(BytesIO(file.read(length)))))
     rows = list(wanted_rows(content, channels, start_ns, end_ns))
     rows.sort(key=itemgetter(0))
     return content, iter(rows)
@@ -99,8 +93,8 @@ def wanted_rows(
         at = body + length
         if opcode != Opcode.MESSAGE:
             continue
-        if at > size:
-            raise McapError("a message goes beyond its chunk")
+        if at > size or length < MESSAGE.size:
+            raise McapError("a message goes beyond its chunk, or is none")
         channel, sequence, log_ns, publish_ns = message(content, body)
         if start_ns <= log_ns < end_ns and (channels is None or channel in channels):
             yield log_ns, channel, sequence, publish_ns, body + MESSAGE.size, at

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import yaml
 
-from aionode.bag._qos import profiles_from, to_builtins, yaml_text
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
+from aionode.bag._compression import expect_no_pointer
+from aionode.bag._qos import readable_profiles, to_builtins, yaml_text
 from aionode.bag._record import TopicInfo
 from aionode.errors import BagError
 
@@ -133,34 +136,45 @@ def read_metadata(folder: Path) -> dict[str, Any]:
     """
     path = folder / FILE_NAME
     try:
-        content = yaml.load(path.read_bytes(), getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # noqa: S506  # a safe loader
-        metadata: dict[str, Any] = content[ROOT]
+        text = read_file(path)
+        expect_no_pointer(path, text)
+        content = loaded_yaml(text)
+        metadata: dict[str, Any] = dict(content[ROOT])
         metadata["relative_file_paths"] = [str(name) for name in metadata["relative_file_paths"]]
         metadata["storage_identifier"] = str(metadata["storage_identifier"])
     except FileNotFoundError as error:
         raise BagError(
             str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` writes one"
         ) from error
-    except (OSError, yaml.YAMLError, KeyError, TypeError) as error:
-        problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {error})"
+    except BagError:
+        raise
+    except (OSError, yaml.YAMLError, LookupError, TypeError, ValueError) as error:
+        what = " ".join(str(error).split())
+        problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {what})"
         raise BagError(str(folder), problem, "`aionode bag reindex` writes a new one") from error
     return metadata
 
 
 def topics_in(metadata: Mapping[str, Any]) -> list[TopicInfo]:
-    """Return the topics that the metadata of a bag list.
+    """Return the topics that the metadata of a bag list; what rosbag2 does not write is left out.
 
-    Raises:
-        KeyError, TypeError, ValueError: they are not what rosbag2 writes.
+    How many messages they have only the files tell.
     """
-    return [
-        TopicInfo(
-            name=entry["topic_metadata"]["name"],
-            type=entry["topic_metadata"]["type"],
-            type_hash=entry["topic_metadata"].get("type_description_hash", "") or "",
-            qos=profiles_from(entry["topic_metadata"].get("offered_qos_profiles") or []),
-            message_count=int(entry["message_count"]),
-            serialization_format=entry["topic_metadata"]["serialization_format"],
+    listed = metadata.get("topics_with_message_count")
+    topics = []
+    for entry in listed if isinstance(listed, list) else ():
+        told = entry.get("topic_metadata") if isinstance(entry, dict) else None
+        if not isinstance(told, dict) or not isinstance(told.get("name"), str):
+            continue
+        qos, problem = readable_profiles(told.get("offered_qos_profiles") or [])
+        topics.append(
+            TopicInfo(
+                name=told["name"],
+                type=str(told.get("type", "")),
+                type_hash=str(told.get("type_description_hash") or ""),
+                qos=qos,
+                serialization_format=str(told.get("serialization_format", "cdr")),
+                problem=problem,
+            )
         )
-        for entry in metadata["topics_with_message_count"]
-    ]
+    return topics

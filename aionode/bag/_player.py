@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode._process.concurrency import SLICE_NS, checkpoint, run_in_thread
-from aionode.bag._bag import next_batch, open  # noqa: A004  # as in `bag.open(path)`
+from aionode.bag._bag import Batches, open  # noqa: A004  # as in `bag.open(path)`
 from aionode.bag._copy import merged_records
 from aionode.bag._player_files import FilesInPlay, in_order_sent
 from aionode.bag._player_requests import SOURCES, RequestSender
@@ -399,10 +399,11 @@ class Player:
             BagError: a file is damaged.
         """
         async with asyncio.TaskGroup() as tasks:
-            reading = tasks.create_task(run_in_thread(batch_or_error, records))
+            batches = Batches(records, lambda item: len(item[1].raw), READ_AHEAD)
+            reading = tasks.create_task(run_in_thread(batch_or_error, batches))
             try:
                 while isinstance(batch := await reading, list) and batch:
-                    reading = tasks.create_task(run_in_thread(batch_or_error, records))
+                    reading = tasks.create_task(run_in_thread(batch_or_error, batches))
                     if not await self._publish_batch(batch):
                         seek_ns, self._seek_ns = self._seek_ns, None
                         return seek_ns
@@ -497,6 +498,8 @@ class Player:
 
     def _offered(self, topic: TopicInfo) -> QoSProfile:
         """Return the recorded profile, if there is one for all publishers."""
+        if topic.problem:
+            self._warn(f"{topic.name}: {topic.problem}, so the default is taken")
         profiles = list(dict.fromkeys(topic.qos))
         if len(profiles) == 1:
             return profiles[0]
@@ -508,9 +511,9 @@ class Player:
         self.node.get_logger().warning(text)
 
 
-def batch_or_error(records: Iterator[tuple[int, Record]]) -> list[tuple[int, Record]] | BagError:
-    """Return the next records, or why they cannot be read."""
+def batch_or_error(batches: Batches[tuple[int, Record]]) -> list[tuple[int, Record]] | BagError:
+    """Return the next records, or why some could not be read."""
     try:
-        return next_batch(records, lambda item: len(item[1].raw), READ_AHEAD)
+        return batches.next()
     except BagError as error:
         return error

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 import yaml
 
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.clock import CONST_INFINITE_NS, Duration
 from aionode.errors import InvalidQoSProfileException
 from aionode.qos import (
@@ -26,6 +27,7 @@ __all__ = [
     "profiles_from",
     "profiles_to_yaml",
     "qos_overrides",
+    "readable_profiles",
     "to_builtins",
     "yaml_text",
 ]
@@ -39,6 +41,9 @@ POLICIES: Final = {
     "liveliness": LivelinessPolicy,
 }
 DURATIONS: Final = ("deadline", "lifespan", "liveliness_lease_duration")
+SHOWN: Final = 200
+"""So much of what is no profile is in an error, in characters."""
+
 FOXY_INFINITE: Final = {"sec": 2147483647, "nsec": 4294967295}
 """The infinite time of DDS, which Foxy wrote."""
 
@@ -88,7 +93,7 @@ def profiles_from(value: object) -> tuple[QoSProfile, ...]:
     """
     if isinstance(value, str):
         try:
-            value = yaml.safe_load(value) or []
+            value = loaded_yaml(value) or []
         except yaml.YAMLError as error:
             raise ValueError(f"offered_qos_profiles is not valid YAML: {error}") from error
     if value is None:
@@ -96,6 +101,14 @@ def profiles_from(value: object) -> tuple[QoSProfile, ...]:
     if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
         raise ValueError("offered_qos_profiles is not a list of profiles")
     return tuple(profile_from(item) for item in value)
+
+
+def readable_profiles(value: object) -> tuple[tuple[QoSProfile, ...], str]:
+    """Return the profiles of a topic, and why there are none if they cannot be read."""
+    try:
+        return profiles_from(value), ""
+    except ValueError as error:
+        return (), f"its QoS cannot be read: {error}"
 
 
 def profile_from(item: Mapping[str, Any]) -> QoSProfile:
@@ -121,8 +134,15 @@ def profile_from(item: Mapping[str, Any]) -> QoSProfile:
             item.get("avoid_ros_namespace_conventions", False)
         )
         return QoSProfile(**fields)
-    except (KeyError, TypeError, AttributeError, InvalidQoSProfileException) as error:
-        raise ValueError(f"{dict(item)} is no QoS profile: {error}") from error
+    except (
+        KeyError,
+        TypeError,
+        ValueError,
+        ArithmeticError,
+        AttributeError,
+        InvalidQoSProfileException,
+    ) as error:
+        raise ValueError(f"{str(dict(item))[:SHOWN]} is no QoS profile: {error}") from error
 
 
 def qos_overrides(path: str | PathLike[str]) -> dict[str, QoSProfile]:
@@ -136,7 +156,7 @@ def qos_overrides(path: str | PathLike[str]) -> dict[str, QoSProfile]:
         ValueError: it is no such file.
     """
     try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8")) or {}
+        content = loaded_yaml(read_file(path)) or {}
         return {f"/{name.removeprefix('/')}": profile_from(it) for name, it in content.items()}
     except (yaml.YAMLError, AttributeError, TypeError) as error:
         raise ValueError(f"no QoS profiles by topic: {error}") from error

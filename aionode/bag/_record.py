@@ -17,7 +17,7 @@ MOST_NS: Final = 2**63 - 1
 
 def time_of(ns: int) -> Time:
     """Return nanoseconds since 1970 as a `Time`; a time that no `Time` can show is cut off."""
-    return Time(nanoseconds=min(ns, MOST_NS), clock_type=ClockType.ROS_TIME)
+    return Time(nanoseconds=min(max(ns, 0), MOST_NS), clock_type=ClockType.ROS_TIME)
 
 
 class TopicInfo(msgspec.Struct, kw_only=True, eq=False):
@@ -32,6 +32,7 @@ class TopicInfo(msgspec.Struct, kw_only=True, eq=False):
         serialization_format: How messages are encoded: ``cdr``.
         encoding: The format of `definition`: ``ros2msg``, ``ros2idl``, or empty without one.
         definition: The text of the type, with all types that it uses.
+        problem: What of the topic could not be read, so that it is missing here; empty if nothing.
     """
 
     name: str
@@ -42,6 +43,7 @@ class TopicInfo(msgspec.Struct, kw_only=True, eq=False):
     serialization_format: str = "cdr"
     encoding: str = ""
     definition: str = ""
+    problem: str = ""
     _class: Any = None
 
     @property

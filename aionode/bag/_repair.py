@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 from io import BytesIO
+from os import SEEK_END
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO, Final, NamedTuple
 
@@ -12,14 +14,16 @@ from mcap.opcode import Opcode
 from mcap.records import Channel, Chunk, ChunkIndex, MessageIndex, MetadataIndex, Schema
 from mcap.records import Metadata as MetadataRecord
 
-from aionode.bag._bag import merged_topics, source_of
+from aionode.bag._bag import Bag, merged_topics, source_of
 from aionode.bag._chunks import HEAD, MESSAGE, checked_content
 from aionode.bag._mcap_writer import MAGIC, McapWriter, Span, index_record
 from aionode.bag._metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
-from aionode.bag._source import DAMAGE
+from aionode.bag._source import CHECK, DAMAGE
+from aionode.bag._summary import read_summary
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from os import PathLike
 
 __all__ = ["Checked", "check", "reindex"]
@@ -27,6 +31,9 @@ __all__ = ["Checked", "check", "reindex"]
 FIRST: Final = len(MAGIC) + HEAD.size
 LONGEST_HEADER: Final = 64
 """The first record of a file is the header, which is shorter than this, in bytes."""
+
+UNKNOWN: Final = 0x80
+"""The first kind of record that the format leaves to programs, and that all others pass over."""
 
 END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
 
@@ -38,7 +45,7 @@ class Checked(NamedTuple):
         file: Its name.
         repaired: Whether it was damaged, and can be read now.
         messages: How many messages it has.
-        removed_bytes: How many bytes at its end could not be used.
+        removed_bytes: How many bytes could not be used: at its end, or in damaged chunks.
     """
 
     file: str
@@ -50,14 +57,15 @@ class Checked(NamedTuple):
 def check(path: str | PathLike[str]) -> list[Checked]:
     """Check a bag, and repair what a power cut left: files without an end, missing metadata.
 
-    A damaged MCAP file is cut after its last complete chunk, and gets a new summary. Other files
-    stay as they are.
+    All messages are read. A damaged MCAP file is cut after its last complete chunk, and gets a new
+    summary; damaged chunks before that are made records that readers pass over. Other files stay
+    as they are.
 
     Args:
         path: A folder, or a single file.
 
     Raises:
-        BagError: a file cannot be repaired.
+        BagError: a file cannot be repaired; the others were checked all the same.
         FileNotFoundError: there is nothing of this name.
         OSError: a file cannot be read or written.
     """
@@ -66,7 +74,15 @@ def check(path: str | PathLike[str]) -> list[Checked]:
         raise FileNotFoundError(f"bag {path}: there is no such file or folder")
     if not place.is_dir():
         return [check_file(place)]
-    checked = [check_file(file) for file in files_of(place)]
+    checked: list[Checked] = []
+    failures: list[BagError] = []
+    for file in files_of(place):
+        try:
+            checked.append(check_file(file))
+        except BagError as error:
+            failures.append(error)
+    if failures:
+        raise failures[0]
     for left in (".reserve", f".{FILE_NAME}"):
         (place / left).unlink(missing_ok=True)
     if not is_indexed(place, checked):
@@ -102,16 +118,24 @@ def files_of(folder: Path) -> list[Path]:
 
 def check_file(file: Path) -> Checked:
     """Check one file, and repair it if it is a damaged MCAP file."""
-    size = file.stat().st_size
     try:
-        source = source_of(file)
-    except BagError:
-        if file.suffix != ".mcap":
+        return Checked(file.name, False, readable_messages(file), 0)  # a tuple
+    except BagError as error:
+        if file.suffix != ".mcap" or error.remedy != CHECK:
             raise
-        return repaired(file, size)
-    count = sum(topic.message_count for topic in source.topics)
-    source.close()
-    return Checked(file.name, repaired=False, messages=count, removed_bytes=0)
+    found = repaired(file, file.stat().st_size)
+    readable_messages(file)
+    return found
+
+
+def readable_messages(file: Path) -> int:
+    """Read all messages of a file, and return how many there are.
+
+    Raises:
+        BagError: it is damaged.
+    """
+    with Bag(file, [source_of(file)]) as opened:
+        return sum(1 for _ in opened.read())
 
 
 def repaired(file: Path, size: int) -> Checked:
@@ -122,9 +146,22 @@ def repaired(file: Path, size: int) -> Checked:
         return Checked(file.name, repaired=True, messages=0, removed_bytes=size)
     with file.open("rb") as stream:
         scan = Scan(file, stream, size)
+        stream.seek(-len(MAGIC), SEEK_END)
+        has_end = stream.read() == MAGIC
+    for at, _ in scan.damaged:
+        pass_over(file, at)
     writer = McapWriter.resume(file, scan)
     writer.close()
-    return Checked(file.name, repaired=True, messages=scan.messages, removed_bytes=size - scan.end)
+    removed = 0 if has_end else size - scan.end
+    removed += sum(length for _, length in scan.damaged)
+    return Checked(file.name, repaired=True, messages=scan.messages, removed_bytes=removed)
+
+
+def pass_over(file: Path, at: int) -> None:
+    """Make a record one that readers pass over: its bytes stay, and its kind is nobody's."""
+    with file.open("r+b") as stream:
+        stream.seek(at)
+        stream.write(bytes([UNKNOWN]))
 
 
 def has_hardly_begun(file: Path) -> bool:
@@ -138,6 +175,18 @@ def has_hardly_begun(file: Path) -> bool:
         return not any(part.strip(b"\0") for part in iter(lambda: stream.read(1 << 20), b""))
 
 
+def heads(stream: BinaryIO, at: int, size: int) -> Iterator[tuple[int, int, int]]:
+    """Yield the kind, the offset and the length of each record that may be whole."""
+    while at <= size - HEAD.size:
+        stream.seek(at)
+        opcode, length = HEAD.unpack(stream.read(HEAD.size))
+        is_known = 0 < opcode <= Opcode.DATA_END or opcode == UNKNOWN
+        if opcode in END or not is_known or at + HEAD.size + length > size:
+            return
+        yield opcode, at, length
+        at += HEAD.size + length
+
+
 class Scan:
     """The records of a file that can be used.
 
@@ -148,6 +197,7 @@ class Scan:
         channels: Its channels by number.
         metadata: Its metadata records.
         rest: The index of the last chunk, if that was cut off.
+        damaged: Where chunks stand that are not whole, and how long they are.
 
     Raises:
         BagError: it is no MCAP file, or one without chunks.
@@ -160,47 +210,58 @@ class Scan:
         self.channels: dict[int, Channel] = {}
         self.metadata: list[MetadataIndex] = []
         self.rest = b""
+        self.damaged: list[tuple[int, int]] = []
         self._entries: dict[int, list[int]] = {}
         self._offsets: dict[int, int] = {}
         self._chunk: ChunkIndex | None = None
         if stream.read(len(MAGIC)) != MAGIC:
             raise BagError(str(file), "it does not begin as an MCAP file, so nothing can be saved")
-        while (head := stream.read(HEAD.size)) and len(head) == HEAD.size:
-            opcode, length = HEAD.unpack(head)
-            if opcode in END or not 0 < opcode <= Opcode.DATA_END:
-                break
-            if self.end + HEAD.size + length > size:
-                break
+        with contextlib.suppress(*DAMAGE):  # of the summary, which may be what is damaged
+            _, self.schemas, self.channels, _ = read_summary(stream)
+        stream.seek(self.end)
+        self._read(file, stream, size)
+        self._finish_last_chunk()
+        if self.end == len(MAGIC):
+            raise BagError(str(file), "it has no complete record, so nothing can be saved")
+
+    def _read(self, file: Path, stream: BinaryIO, size: int) -> None:
+        """Take one record after another, as long as they can be used."""
+        damaged: list[tuple[int, int]] = []  # since the last record that can be used
+        for opcode, at, length in heads(stream, self.end, size):
             if opcode == Opcode.MESSAGE:
                 problem = "its messages are not in chunks, so they have no index to repair"
                 raise BagError(str(file), problem, "`mcap recover` can rewrite it")
             try:
-                self._take(opcode, stream.read(length))
-            except (*DAMAGE, ValueError):
-                break
-            self.end += HEAD.size + length
-        self._finish_chunk()
-        if self.end == len(MAGIC):
-            raise BagError(str(file), "it has no complete record, so nothing can be saved")
+                self._take(opcode, at, stream.read(length))
+            except DAMAGE:
+                if opcode == Opcode.CHUNK:
+                    damaged.append((at, HEAD.size + length))
+                elif opcode != Opcode.MESSAGE_INDEX:
+                    break
+            else:
+                if opcode != Opcode.MESSAGE_INDEX or not damaged:
+                    self.end = at + HEAD.size + length
+                    self.damaged += damaged
+                    damaged = []
 
     @property
     def messages(self) -> int:
         """The number of messages in the chunks."""
         return sum(sum(span.counts.values()) for span in self.spans)
 
-    def _take(self, opcode: int, data: bytes) -> None:
-        """Take one record; it raises one of `DAMAGE` if that is none."""
+    def _take(self, opcode: int, at: int, data: bytes) -> None:
+        """Take the record at an offset; it raises one of `DAMAGE` if that is none."""
         fields = ReadDataStream(BytesIO(data))
         if opcode == Opcode.MESSAGE_INDEX and self._chunk is not None:
             index = MessageIndex.read(fields)
             flat = [value for entry in index.records for value in entry]
             if self._entries.get(index.channel_id) != flat:
                 raise McapError("the index is not that of the chunk")
-            self._offsets[index.channel_id] = self.end
+            self._offsets[index.channel_id] = at
             return
         self._finish_chunk()
         if opcode == Opcode.CHUNK:
-            self._take_chunk(Chunk.read(fields), HEAD.size + len(data))
+            self._take_chunk(Chunk.read(fields), at, HEAD.size + len(data))
         elif opcode == Opcode.SCHEMA:
             schema = Schema.read(fields)
             self.schemas[schema.id] = schema
@@ -211,9 +272,9 @@ class Scan:
             record = MetadataRecord.read(fields)
             if b"\0\0\0\0\0\0\0\0" in data[8:]:  # it has no checksum
                 raise McapError("zeros in a text")
-            self.metadata.append(MetadataIndex(self.end, HEAD.size + len(data), record.name))
+            self.metadata.append(MetadataIndex(at, HEAD.size + len(data), record.name))
 
-    def _take_chunk(self, chunk: Chunk, length: int) -> None:
+    def _take_chunk(self, chunk: Chunk, start: int, length: int) -> None:
         """Take a chunk that is whole."""
         content = checked_content(chunk)
         entries: dict[int, list[int]] = {}
@@ -238,7 +299,7 @@ class Scan:
         self._entries, self._offsets = entries, {}
         self._chunk = ChunkIndex(
             chunk_length=length,
-            chunk_start_offset=self.end,
+            chunk_start_offset=start,
             compression=chunk.compression,
             compressed_size=len(chunk.data),
             message_end_time=chunk.message_end_time,
@@ -249,22 +310,33 @@ class Scan:
         )
 
     def _finish_chunk(self) -> None:
-        """Note the last chunk with its index, of which the end may be missing."""
+        """Note a chunk with its index; one that is not whole is left out, and readers search."""
         index, self._chunk = self._chunk, None
         if index is None:
             return
-        chunk_end = index.chunk_start_offset + index.chunk_length
-        if self._offsets.keys() != self._entries.keys():
-            records = [index_record(*entry) for entry in self._entries.items()]
-            at = chunk_end
-            for channel, record in zip(self._entries, records, strict=True):
-                self._offsets[channel] = at
-                at += len(record)
-            self.rest = b"".join(records)
-            self.end = chunk_end
-            index.message_index_length = len(self.rest)
-        else:
+        if self._offsets.keys() == self._entries.keys():
+            chunk_end = index.chunk_start_offset + index.chunk_length
             index.message_index_length = self.end - chunk_end
+        else:
+            self._offsets.clear()
+        self._note(index)
+
+    def _finish_last_chunk(self) -> None:
+        """Note the last chunk with its index, of which the end may be missing."""
+        index = self._chunk
+        if index is None or self._offsets.keys() == self._entries.keys():
+            self._finish_chunk()
+            return
+        at = self.end = index.chunk_start_offset + index.chunk_length
+        records = [index_record(*entry) for entry in self._entries.items()]
+        for channel, record in zip(self._entries, records, strict=True):
+            self._offsets[channel] = at
+            at += len(record)
+        self.rest = b"".join(records)
+        index.message_index_length = len(self.rest)
+        self._note(index)
+
+    def _note(self, index: ChunkIndex) -> None:
         counts = {channel: len(entries) // 2 for channel, entries in self._entries.items()}
         self.spans.append(Span(index, counts))
 
@@ -272,7 +344,7 @@ class Scan:
 def reindex(path: str | PathLike[str]) -> None:
     """Write the ``metadata.yaml`` of a bag anew, from its files.
 
-    What only the old one has is lost: custom data.
+    The custom data of the old one are kept, if it can be read.
 
     Args:
         path: The folder.
@@ -293,11 +365,20 @@ def reindex(path: str | PathLike[str]) -> None:
             count = sum(topic.message_count for topic in source.topics)
             parts.append((file.name, source.start_ns, source.end_ns, count))
         storage = "mcap" if ".mcap" in parts[0][0] else "sqlite3"
-        topics = merged_topics(sources, [])
-        metadata = metadata_of(topics, parts, custom_data={}, ros_distro="", storage=storage)
+        topics, custom = merged_topics(sources, []), custom_data_in(folder)
+        metadata = metadata_of(topics, parts, custom_data=custom, ros_distro="", storage=storage)
         if parts[0][0].endswith(".zstd"):
             metadata |= {"compression_format": "zstd", "compression_mode": "FILE"}
         write_metadata(folder, metadata)
     finally:
         for source in sources:
             source.close()
+
+
+def custom_data_in(folder: Path) -> dict[str, str]:
+    """Return the custom data in the metadata of a folder; none if they cannot be read."""
+    with contextlib.suppress(BagError):
+        custom = read_metadata(folder).get("custom_data")
+        if isinstance(custom, dict):
+            return {str(key): str(value) for key, value in custom.items()}
+    return {}

@@ -1,32 +1,36 @@
-"""Reads the files of bags: MCAP by the library `mcap`, sqlite3 by the library `rosbags`."""
+"""Reads the MCAP files of bags, and what all files of bags have in common."""
 
 from __future__ import annotations
 
 import struct
 import zlib
+from collections import Counter
 from contextlib import ExitStack
-from itertools import count
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import IO, TYPE_CHECKING, Any, Final, Protocol
+from io import BytesIO
+from typing import TYPE_CHECKING, Final, Protocol
 
 import zstandard
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
-from mcap.reader import make_reader
+from mcap.opcode import Opcode
+from mcap.records import Message
 
-from aionode.bag._chunks import rows_of
+from aionode.bag._chunks import HEAD, MESSAGE, rows_of, size_of
+from aionode.bag._compression import plain_file, plain_message
 from aionode.bag._order import in_order
-from aionode.bag._qos import profiles_from
+from aionode.bag._qos import readable_profiles
 from aionode.bag._record import MOST_NS, Record, TopicInfo
+from aionode.bag._summary import MAGIC, read_summary
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from collections.abc import Set as AbstractSet
+    from pathlib import Path
 
     from mcap.records import Channel, ChunkIndex, Schema
 
-__all__ = ["McapSource", "RosbagsSource", "Source", "topic_of"]
+__all__ = ["CHECK", "DAMAGE", "McapSource", "Source", "damaged", "topic_of"]
 
 CHECK: Final = "`aionode bag check` repairs what a power cut left"
 DAMAGE: Final = (
@@ -36,18 +40,18 @@ DAMAGE: Final = (
     zstandard.ZstdError,
     EOFError,
     RuntimeError,  # of lz4
+    MemoryError,
     OverflowError,
-    UnicodeDecodeError,
-    KeyError,
-    IndexError,
+    ValueError,
+    TypeError,
+    LookupError,
     AssertionError,
-    OSError,  # of a search before the beginning of a file that is cut short
 )
 """Exceptions of the libraries for a damaged file."""
 
 
 class Source(Protocol):
-    """One file of a bag, or one bag that another library reads.
+    """One file of a bag.
 
     Attributes:
         path: Where it is.
@@ -62,9 +66,16 @@ class Source(Protocol):
     end_ns: int
 
     def records(
-        self, topics: AbstractSet[str] | None, start_ns: int, end_ns: int
+        self,
+        topics: AbstractSet[str] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
     ) -> Iterator[Record]:
-        """Yield the records of some topics from one time on until before another, in order."""
+        """Yield the records of some topics from one time on until before another, in order.
+
+        What is damaged is left out, and added to `problems`.
+        """
 
     def close(self) -> None:
         """Close its files."""
@@ -73,15 +84,17 @@ class Source(Protocol):
 def topic_of(schema: Schema | None, channel: Channel, messages: int) -> TopicInfo:
     """Return the topic that a channel of an MCAP file is."""
     definition = "" if schema is None else schema.data.decode(errors="replace")
+    qos, problem = readable_profiles(channel.metadata.get("offered_qos_profiles", ""))
     return TopicInfo(
         name=channel.topic,
         type="" if schema is None else schema.name,
         type_hash=channel.metadata.get("topic_type_hash", ""),
-        qos=profiles_from(channel.metadata.get("offered_qos_profiles", "")),
+        qos=qos,
         message_count=messages,
         serialization_format=channel.message_encoding,
         encoding=schema.encoding if definition and schema is not None else "",
         definition=definition,
+        problem=problem,
     )
 
 
@@ -90,50 +103,51 @@ class McapSource:
 
     Args:
         path: The file; one that ends in ``.zstd`` is decompressed into a temporary folder.
+        compressed_messages: Whether each message is compressed by itself.
 
     Raises:
         BagError: it is no MCAP file, or was not closed.
         OSError: it cannot be read.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, compressed_messages: bool = False) -> None:
         self.path = path
-        self._open = ExitStack()
-        try:
-            self._file = self._open.enter_context(plain_file(path, self._open))
-            self._reader = make_reader(self._file, validate_crcs=True)
-            summary = self._reader.get_summary()
-            if summary is None or summary.statistics is None:
-                raise BagError(str(path), "the file has no summary", CHECK)  # noqa: TRY301  # closed below
-            counts = summary.statistics.channel_message_counts
-            schemas = summary.schemas
-            self._channels = {
-                number: topic_of(schemas.get(channel.schema_id), channel, counts.get(number, 0))
-                for number, channel in summary.channels.items()
-            }
-        except (FileNotFoundError, PermissionError):
-            self._open.close()
-            raise
-        except DAMAGE as error:
-            self._open.close()
-            raise damaged(path, error) from error
-        except BaseException:
-            self._open.close()
-            raise
-        self._chunks = summary.chunk_indexes
+        self._compressed_messages = compressed_messages
+        with ExitStack() as stack:
+            _, self._file = plain_file(path, stack)
+            try:
+                summary = read_summary(self._file)
+                statistics = summary.statistics
+                if statistics is None:
+                    raise BagError(str(path), "the file has no summary", CHECK)  # noqa: TRY301  # more that it may lack
+                self._chunks = summary.chunks
+                counts = statistics.channel_message_counts
+                if statistics.message_count and not counts:  # a writer may leave them out
+                    counts = self._counted()
+                self._channels = {
+                    number: topic_of(
+                        summary.schemas.get(channel.schema_id), channel, counts.get(number, 0)
+                    )
+                    for number, channel in summary.channels.items()
+                }
+            except BagError:
+                raise
+            except DAMAGE as error:
+                raise damaged(path, error) from error
+            self._open = stack.pop_all()
         self.topics = list(self._channels.values())
-        has_messages = summary.statistics.message_count > 0
-        self.start_ns = summary.statistics.message_start_time if has_messages else MOST_NS
-        self.end_ns = summary.statistics.message_end_time if has_messages else 0
+        has_messages = statistics.message_count > 0
+        self.start_ns = statistics.message_start_time if has_messages else MOST_NS
+        self.end_ns = statistics.message_end_time if has_messages else 0
 
     def records(
-        self, topics: AbstractSet[str] | None, start_ns: int, end_ns: int
+        self,
+        topics: AbstractSet[str] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
     ) -> Iterator[Record]:
-        """Yield the records of some topics from one time on until before another, in order.
-
-        Raises:
-            BagError: the file is damaged.
-        """
+        """Yield the records of some topics from one time on until before another, in order."""
         wanted = None
         if topics is not None:
             wanted = {
@@ -146,45 +160,113 @@ class McapSource:
             and chunk.message_end_time >= start_ns
             and has_any(chunk, wanted)
         ]
-        if not self._chunks:
-            return self._without_chunks(topics, start_ns, end_ns)
-        return in_order(
-            [
-                (chunk.message_start_time, self._in_chunk(chunk, wanted, start_ns, end_ns))
-                for chunk in chunks
-            ]
+        records = (
+            in_order(
+                [
+                    (
+                        chunk.message_start_time,
+                        self._in_chunk(chunk, wanted, start_ns, end_ns, problems),
+                    )
+                    for chunk in chunks
+                ]
+            )
+            if self._chunks
+            else self._without_chunks(wanted, start_ns, end_ns, problems)
         )
+        return self._plain(records, problems) if self._compressed_messages else records
 
     def _in_chunk(
-        self, chunk: ChunkIndex, wanted: AbstractSet[int] | None, start_ns: int, end_ns: int
+        self,
+        chunk: ChunkIndex,
+        wanted: AbstractSet[int] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
     ) -> Iterator[Record]:
         channels = self._channels
+        where = f"the chunk at byte {chunk.chunk_start_offset}"
         try:
             content, rows = rows_of(self._file, chunk, wanted, start_ns, end_ns)
-            for time_ns, channel, sequence, publish_ns, begin, end in rows:
-                yield Record(channels[channel], time_ns, publish_ns, sequence, content[begin:end])
         except DAMAGE as error:
-            raise damaged(self.path, error) from error
+            problems.append(damaged(self.path, error, where))
+            return
+        unknown: set[int] = set()
+        for time_ns, channel, sequence, publish_ns, begin, end in rows:
+            info = channels.get(channel)
+            if info is None:
+                unknown.add(channel)
+                continue
+            yield Record(info, time_ns, publish_ns, sequence, content[begin:end])
+        if unknown:
+            wrong = LookupError(f"channel {min(unknown)} of a message is not in the summary")
+            problems.append(damaged(self.path, wrong, where))
 
     def _without_chunks(
-        self, topics: AbstractSet[str] | None, start_ns: int, end_ns: int
+        self,
+        wanted: AbstractSet[int] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
     ) -> Iterator[Record]:
-        messages = self._reader.iter_messages(
-            topics=None if topics is None else sorted(topics),
-            starting_at=start_ns,
-            ending_before=end_ns,
-        )
+        """Yield messages that stand in the file by themselves."""
+        rows: list[tuple[int, int, int]] = []  # time, and where it is
         try:
-            for _, channel, message in messages:
-                yield Record(
-                    self._channels[channel.id],
-                    message.log_time,
-                    message.publish_time,
-                    message.sequence,
-                    message.data,
-                )
+            for at, length, channel, time_ns in self._lone_messages():
+                if start_ns <= time_ns < end_ns and (wanted is None or channel in wanted):
+                    rows.append((time_ns, at, length))
         except DAMAGE as error:
-            raise damaged(self.path, error) from error
+            problems.append(damaged(self.path, error))
+        rows.sort()
+        for time_ns, at, length in rows:
+            self._file.seek(at)
+            message = Message.read(ReadDataStream(BytesIO(self._file.read(length))), length)
+            info = self._channels.get(message.channel_id)
+            if info is None:
+                unknown = LookupError(f"channel {message.channel_id} is not in the summary")
+                problems.append(damaged(self.path, unknown, f"the message at byte {at}"))
+                continue
+            yield Record(info, time_ns, message.publish_time, message.sequence, message.data)
+
+    def _lone_messages(self) -> Iterator[tuple[int, int, int, int]]:
+        """Yield where each message stands, how long it is, its channel and its time.
+
+        Raises:
+            McapError: the file is damaged.
+        """
+        at, size = len(MAGIC), size_of(self._file)
+        while at < size:
+            self._file.seek(at)
+            opcode, length = HEAD.unpack(self._file.read(HEAD.size))
+            at += HEAD.size
+            if opcode == Opcode.DATA_END:
+                return
+            if length > size - at or (opcode == Opcode.MESSAGE and length < MESSAGE.size):
+                raise McapError(f"the record at byte {at - HEAD.size} goes beyond the end")
+            if opcode == Opcode.MESSAGE:
+                channel, _, time_ns, _ = MESSAGE.unpack(self._file.read(MESSAGE.size))
+                yield at, length, channel, time_ns
+            at += length
+
+    def _counted(self) -> dict[int, int]:
+        """Return how many messages each channel has, counted in the file."""
+        counts: Counter[int] = Counter()
+        if not self._chunks:
+            counts.update(channel for _, _, channel, _ in self._lone_messages())
+        for chunk in self._chunks:
+            _, rows = rows_of(self._file, chunk, None, 0, 1 << 64)
+            counts.update(row[1] for row in rows)
+        return counts
+
+    def _plain(self, records: Iterator[Record], problems: list[BagError]) -> Iterator[Record]:
+        """Yield records whose messages are compressed by themselves."""
+        for record in records:
+            try:
+                record.raw = plain_message(record.raw)
+            except DAMAGE as error:
+                where = f"the message of {record.topic!r} at {record.time_ns} ns"
+                problems.append(damaged(self.path, error, where))
+            else:
+                yield record
 
     def close(self) -> None:
         """Close the file."""
@@ -197,98 +279,8 @@ def has_any(chunk: ChunkIndex, wanted: AbstractSet[int] | None) -> bool:
     return wanted is None or not offsets or not wanted.isdisjoint(offsets)
 
 
-def plain_file(path: Path, stack: ExitStack) -> IO[bytes]:
-    """Return a file that is open for reading; a compressed one is decompressed first."""
-    if path.suffix != ".zstd":
-        return path.open("rb")
-    folder = stack.enter_context(TemporaryDirectory(prefix="aionode-bag-"))
-    plain = Path(folder) / path.stem
-    with path.open("rb") as compressed, plain.open("wb") as out:
-        zstandard.ZstdDecompressor().copy_stream(compressed, out)
-    return plain.open("rb")
-
-
-def damaged(path: Path, error: Exception) -> BagError:
-    """Return the error for a file that is no complete MCAP file."""
+def damaged(path: Path, error: Exception, where: str = "the file") -> BagError:
+    """Return the error for a file that is not complete, or for a part of one."""
     what = str(error) or type(error).__name__
-    return BagError(str(path), f"the file is damaged, or was not closed ({what})", CHECK)
-
-
-class RosbagsSource:
-    """A bag that the library `rosbags` reads: sqlite3 in any version, split or compressed.
-
-    Args:
-        path: The folder, or a file.
-
-    Raises:
-        BagError: `rosbags` cannot read it.
-        OSError: it cannot be read.
-    """
-
-    def __init__(self, path: Path) -> None:
-        from rosbags.rosbag2 import Reader, ReaderError
-
-        self.path = path
-        self._error = ReaderError
-        self._reader: Any = None
-        try:
-            self._reader = Reader(path)
-            self._reader.open()
-        except ReaderError as error:
-            raise BagError(str(path), f"it cannot be read: {error}") from error
-        connections = self._reader.connections
-        self._topics = {
-            number: topic_from(connection) for number, connection in enumerate(connections)
-        }
-        self.topics = list(self._topics.values())
-        has_messages = self._reader.message_count > 0
-        self.start_ns = self._reader.start_time if has_messages else MOST_NS
-        self.end_ns = self._reader.end_time - 1 if has_messages else 0
-
-    def records(
-        self, topics: AbstractSet[str] | None, start_ns: int, end_ns: int
-    ) -> Iterator[Record]:
-        """Yield the records of some topics from one time on until before another, in order.
-
-        Raises:
-            BagError: the file is damaged.
-        """
-        wanted = {
-            id(connection): self._topics[number]
-            for number, connection in zip(count(), self._reader.connections)
-            if topics is None or connection.topic in topics
-        }
-        connections = [
-            connection for connection in self._reader.connections if id(connection) in wanted
-        ]
-        if not connections:
-            return
-        try:
-            for connection, time_ns, raw in self._reader.messages(connections, start_ns, end_ns):
-                yield Record(wanted[id(connection)], time_ns, time_ns, 0, bytes(raw))
-        except self._error as error:
-            raise BagError(str(self.path), f"it cannot be read: {error}") from error
-
-    def close(self) -> None:
-        """Close its files."""
-        self._reader.close()
-
-
-FORMATS: Final[dict[str, str]] = {"MSG": "ros2msg", "IDL": "ros2idl"}
-
-
-def topic_from(connection: Any) -> TopicInfo:
-    """Return the topic that a connection of `rosbags` is."""
-    from rosbags.rosbag2.metadata import dump_qos_v9
-
-    definition = connection.msgdef
-    return TopicInfo(
-        name=connection.topic,
-        type=connection.msgtype,
-        type_hash=connection.digest or "",
-        qos=profiles_from(dump_qos_v9(connection.ext.offered_qos_profiles)),
-        message_count=connection.msgcount,
-        serialization_format=connection.ext.serialization_format,
-        encoding=FORMATS.get(definition.format.name, ""),
-        definition=definition.data if definition.format.name in FORMATS else "",
-    )
+    or_open = ", or was not closed" if where == "the file" else ""
+    return BagError(str(path), f"{where} is damaged{or_open} ({what})", CHECK)
