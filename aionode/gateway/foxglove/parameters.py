@@ -146,14 +146,8 @@ class Parameters:
             for msg in (*event.new_parameters, *event.changed_parameters)
         ]
         shown += [{"name": f"{event.node}.{msg.name}"} for msg in event.deleted_parameters]
-        wanted = [item for item in shown if self._is_wanted(event.node, item["name"])]
+        wanted = [item for item in shown if self._follows_all or item["name"] in self._followed]
         return frames.op_frame("parameterValues", {"parameters": wanted}) if wanted else None
-
-    def _is_wanted(self, node: str, name: str) -> bool:
-        """Return whether the client follows a parameter that it may see."""
-        own = name.removeprefix(f"{node}.")
-        is_followed = self._follows_all or name in self._followed
-        return is_followed and self._session._sees(f"{node}:{own}", [])
 
     def _send(self, shown: list[dict[str, Any]], request_id: str | None) -> None:
         fields: dict[str, Any] = {"parameters": shown}

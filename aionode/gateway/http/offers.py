@@ -28,7 +28,7 @@ VERBS: Final[dict[Kind, tuple[Verb, ...]]] = {
 
 def may(session: Session, verb: Verb, name: str, type_name: str) -> bool:
     """Return whether the policy lets the caller do something."""
-    return session._robot.policy.decide(session.identity, verb, name, type_name).allowed
+    return session.decision(verb, name, type_name).allowed
 
 
 async def offers(session: Session) -> list[Offer]:

@@ -473,7 +473,14 @@ class Policy(Part, frozen=True):
         return Identity(client.name, frozenset(client.groups), credentials.address)
 
     def decide(
-        self, identity: Identity, verb: Verb, name: str, type_name: str, message: Any = None
+        self,
+        identity: Identity,
+        verb: Verb,
+        name: str,
+        type_name: str,
+        message: Any = None,
+        *,
+        private: bool = False,
     ) -> Decision:
         """Return whether a request of a client is allowed, and within which limits.
 
@@ -484,10 +491,11 @@ class Policy(Part, frozen=True):
             type_name: The name of its type; empty for nodes and parameters, and while it is not
                 known.
             message: The message or mapping that the client sends; None before there is one.
+            private: Whether only rules allow it that have the name itself, and no pattern.
         """
         if len(name) > MOST_CHARACTERS:
             return Decision(allowed=False, reason="the name is too long", code="too_large")
-        rule = first_rule(self, identity, verb, name, type_name)
+        rule = first_rule(self, identity, verb, name, type_name, private=private)
         if rule is None or rule in self.refuse:
             because = rule.because if rule is not None else ""
             reason = because or f"the policy does not allow {identity.name} to do this"
@@ -504,7 +512,13 @@ class Policy(Part, frozen=True):
 
 @lru_cache(maxsize=MOST_REMEMBERED)
 def first_rule(
-    policy: Policy, identity: Identity, verb: Verb, name: str, type_name: str
+    policy: Policy,
+    identity: Identity,
+    verb: Verb,
+    name: str,
+    type_name: str,
+    *,
+    private: bool = False,
 ) -> Rule | None:
     """Return the rule that decides: the first that refuses, else the first that allows.
 
@@ -522,6 +536,8 @@ def first_rule(
         allowing = VERBS if type_name else UNTYPED
     for rule in policy.allow:
         if verb == "see" and rule.type and not type_name:
+            continue
+        if private and not any(name in listed(getattr(rule, v)) for v in allowing):
             continue
         if rule.is_about(identity) and any(rule.covers(v, name, type_name) for v in allowing):
             return rule

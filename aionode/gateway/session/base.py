@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
@@ -90,13 +90,22 @@ class SessionBase:
 
     # The policy
 
+    def decision(self, verb: Verb, name: str, type_name: str, message: Any = None) -> Decision:
+        """Return the decision of the policy about the client; see `Policy.decide`.
+
+        The audit log has what all clients send, so a pattern does not show it.
+        """
+        return self._robot.policy.decide(
+            self.identity, verb, name, type_name, message, private=name == self._robot.audit.topic
+        )
+
     def decide(self, verb: Verb, name: str, type_name: str, message: Any = None) -> Decision:
         """Return the decision of the policy; see `Policy.decide`.
 
         Raises:
             RefusedError: it does not; the refusal is in the audit log.
         """
-        decision = self._robot.policy.decide(self.identity, verb, name, type_name, message)
+        decision = self.decision(verb, name, type_name, message)
         if not decision.allowed:
             raise self._refused(verb, name, decision.reason, decision.code, message)
         return decision
@@ -142,10 +151,7 @@ class SessionBase:
             raise self._refused(verb, name, "a person has said no", "not_confirmed", message)
 
     def _sees(self, name: str, type_names: list[str]) -> bool:
-        policy, identity = self._robot.policy, self.identity
-        return any(
-            policy.decide(identity, "see", name, kind).allowed for kind in type_names or [""]
-        )
+        return any(self.decision("see", name, kind).allowed for kind in type_names or [""])
 
     @contextmanager
     def _one_more(self, verb: str, name: str, what: str, held: Sized, most: int) -> Iterator[None]:
@@ -197,6 +203,18 @@ class SessionBase:
         decision = self.decide("parameter", name, "", {"value": parameter.value})
         changed = decision.message["value"]
         return parameter if changed == parameter.value else Parameter(parameter.name, value=changed)
+
+    def _check_seen(self, node: str, names: Iterable[str]) -> None:
+        """Refuse to tell anything of parameters that the client may not see.
+
+        Raises:
+            RefusedError: it may not see one of them.
+        """
+        for name in names:
+            if not self._sees(f"{node}:{name}", []):
+                raise self._refused(
+                    "see", f"{node}:{name}", "the policy does not show it", "not_allowed"
+                )
 
     def node_name(self, node: str) -> str:
         """Return the full name of a node, by which the policy knows it.

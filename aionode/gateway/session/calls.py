@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway.session.base import SessionBase
+from aionode.graph import EndpointKind
 from aionode.message import Message
 from aionode.parameter import Parameter
 
@@ -22,7 +23,11 @@ SERVER_SEC: Final = 1.0
 """Time for which a call or goal waits for its server, in seconds."""
 
 ACTION_PARTS: Final = ("/_action/send_goal", "/_action/get_result", "/_action/cancel_goal")
-SETTERS: Final = ("/set_parameters", "/set_parameters_atomically")
+SETTERS: Final = ("SetParameters", "SetParametersAtomically")
+READERS: Final = ("GetParameters", "GetParameterTypes", "DescribeParameters")
+LISTER: Final = "ListParameters"
+PARAMETERS: Final = "rcl_interfaces/srv/"
+"""The types of the parameter services, of which a node may have remapped the names."""
 
 
 class SessionCalls(SessionBase):
@@ -75,7 +80,9 @@ class SessionCalls(SessionBase):
                     raise ServiceError(service, "there is no server")
                 response = await attempt.client.call(decision.message, timeout_sec)
                 attempt.result = "ok"
-                return response
+        if cls.__ros_type__ == f"{PARAMETERS}{LISTER}":
+            return self._listed(self._nodes_of(service), response)
+        return response
 
     def _decide_call(self, service: str, type_name: str, request: Any = None) -> tuple[Verb, str]:
         """Return the verb and the name that a call counts as: it may be part of a goal.
@@ -94,12 +101,33 @@ class SessionCalls(SessionBase):
                 self.decide("goal", action, "")
                 return "goal", action
         self.decide("call", service, type_name)
-        for suffix in SETTERS:
-            if service.endswith(suffix):
-                node = service.removesuffix(suffix)
-                for message in getattr(request, "parameters", ()):
+        part = type_name.removeprefix(PARAMETERS) if type_name.startswith(PARAMETERS) else ""
+        for node in self._nodes_of(service) if part and request is not None else ():
+            if part in SETTERS:
+                for message in request.parameters:
                     self._decide_in_a_call(node, message)
+            elif part in READERS:
+                self._check_seen(node, request.names)
         return "call", service
+
+    def _nodes_of(self, service: str) -> list[str]:
+        """Return the nodes whose parameters a service is about: by its name, and by who has it."""
+        servers = self._robot.node.graph.endpoints(EndpointKind.SERVER, name=service)
+        named = service.rpartition("/")[0]
+        return sorted({named, *(server.node.fully_qualified_name for server in servers)})
+
+    def _listed(self, nodes: list[str], response: Any) -> Any:
+        """Return a list of parameters without those that the client may not see."""
+        result = response.result
+        names = [
+            name for name in result.names
+            if all(self._sees(f"{node}:{name}", []) for node in nodes)
+        ]  # fmt: skip
+        prefixes = [
+            prefix for prefix in result.prefixes
+            if any(name.startswith(f"{prefix}.") for name in names)
+        ]  # fmt: skip
+        return type(response)(result=type(result)(names=names, prefixes=prefixes))
 
     def _decide_in_a_call(self, node: str, message: Any) -> None:
         """Refuse a parameter in a call if the rule for it does more than to allow it."""

@@ -180,11 +180,7 @@ class SessionGraph(SessionBase):
             TimeoutError: the node has not answered within 5 s.
         """
         node = self.node_name(node)
-        for name in names:
-            if not self._sees(f"{node}:{name}", []):
-                raise self._refused(
-                    "see", f"{node}:{name}", "the policy does not show it", "not_allowed"
-                )
+        self._check_seen(node, names)
         async with self._parameters(node) as client:
             parameters = await client.get_parameters(names)
             if len(parameters) != len(names):  # one of them is not declared: then there are none

@@ -166,16 +166,15 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             for topic, (publisher, _) in self._published.items()
         ]
         held += [("advertise", name, self._served_types[name]) for name in self._served]
-        if not all(policy.decide(self.identity, *request).allowed for request in held):
+        if not all(self.decision(*request).allowed for request in held):
             self.ended.set()  # which cancels its goals, and sends the stops of its leases
 
     def _end_subscriptions(self) -> None:
         """End the subscriptions that the policy does not allow any more."""
         ended = []
-        decide = self._robot.policy.decide
         for subscribed in list(self._subscribed):
             topic, type_name = subscribed.topic, subscribed.type_name
-            if not decide(self.identity, "subscribe", topic, type_name).allowed:
+            if not self.decision("subscribe", topic, type_name).allowed:
                 ended.append(subscribed)
                 subscribed.close()
                 result = "ended: the policy has changed"

@@ -8,9 +8,11 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import S_TO_NS, Duration
+from aionode.engine.wire import cdr
 from aionode.errors import AionodeError, RefusedError
 from aionode.gateway.session.base import SessionBase
 from aionode.gateway.session.command import check_age
+from aionode.gateway.session.feed import Received
 from aionode.gateway.session.large_json import prepare_json
 from aionode.gateway.session.pacing import Pacing
 from aionode.gateway.session.preparing import Preparing, prepared
@@ -20,10 +22,8 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 
 if TYPE_CHECKING:
     from aionode.gateway.policy.policy import Decision, Verb
-    from aionode.gateway.session.feed import Received
     from aionode.gateway.session.outbox import Frame
-    from aionode.gateway.session.pacing import Pacing
-from aionode.gateway.session.preparing import Prepare
+    from aionode.gateway.session.preparing import Prepare
 
 __all__ = ["SessionTopics", "Subscribed"]
 
@@ -34,6 +34,10 @@ PUBLISHED: Final = QoSProfile(
 
 COMMANDS: Final = QoSProfile(depth=10)
 """For commands: an old one must not reach a subscription that comes late."""
+
+
+EVENT: Final = "rcl_interfaces/msg/ParameterEvent"
+"""Has values of parameters, of which a client may not see each."""
 
 
 class Subscribed:
@@ -77,12 +81,24 @@ class Subscribed:
             period_ns = round(min_period_sec * S_TO_NS)
             self._pacing = Pacing(session._robot.time_base, period_ns, self.take, depth)
             self.take = self._pacing.put
+        if self.type_name == EVENT:
+            self.take = partial(self._take_seen, self.take)
 
     @property
     def dropped(self) -> int:
         """The number of messages that were dropped, as encoding them or the client was too slow."""
         unprepared = 0 if self._preparing is None else self._preparing.dropped
         return unprepared + self._session.outbox.dropped.get(self._key, 0)
+
+    def _take_seen(self, take: Callable[[Received], None], received: Received) -> None:
+        """Take of an event of parameters what the client may see."""
+        try:
+            seen = self._session.seen_event(received)
+        except AionodeError:
+            self.failed += 1
+            return
+        if seen is not None:
+            take(seen)
 
     def _deliver(self, received: Received) -> None:
         try:
@@ -272,6 +288,29 @@ class SessionTopics(SessionBase):
         """
         await prepared(self._robot, prepare_json, received)
         return received.once("json", lambda taken: json_of(taken.message))
+
+    def seen_event(self, received: Received) -> Received | None:
+        """Return the event of parameters that the client may see; None without any.
+
+        Raises:
+            DecodeError: the bytes are no such event (a ValueError).
+        """
+        event = received.message
+        lists = ("new_parameters", "changed_parameters", "deleted_parameters")
+        seen = {
+            name: [each for each in getattr(event, name)
+                   if self._sees(f"{event.node}:{each.name}", [])]
+            for name in lists
+        }  # fmt: skip
+        if all(len(seen[name]) == len(getattr(event, name)) for name in lists):
+            return received
+        if not any(seen.values()):
+            return None
+        raw = cdr.encode(type(event)(stamp=event.stamp, node=event.node, **seen))
+        return Received(
+            received.topic, received.type_name, received.message_class, raw,
+            received.time_ns, received.source_ns,
+        )  # fmt: skip
 
     async def _type_to(self, verb: Verb, topic: str, type_name: str | None) -> Any:
         """Return the class of a topic's messages, if the policy may allow a verb.
