@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import ast
 import sys
+from collections import deque
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from typing import Final
 
-from aionode.rclpy._finder import ALIASES, KINDS, exists
+from aionode.rclpy._finder import ALIASES, FINDER, KINDS, exists, of_alias
 from aionode.rclpy._missing import advice
-from aionode.rclpy._rosidl import has_interfaces, names_in
+from aionode.rclpy._rosidl import has_interfaces, module_name, names_in
 from aionode.rclpy._workspace import around
 
 __all__ = ["check"]
@@ -24,7 +25,10 @@ HIDDEN: Final = ("build", "install", "log", "node_modules", "site-packages")
 
 @dataclass(frozen=True)
 class Import:
-    """A module that a program imports, and the name that it takes from there, if any."""
+    """A module that a program imports, and the name that it takes from there, if any.
+
+    The name of a module of the same package begins with dots, as it stands in the program.
+    """
 
     module: str
     name: str = ""
@@ -33,18 +37,44 @@ class Import:
 
 @dataclass(frozen=True)
 class Finding:
-    """A module or name that a program imports, and where it is, or why it is not there."""
+    """A module or name that a program imports, and where it is, or why it is not there.
+
+    Attributes:
+        shown: Its name; nothing if it need not be listed.
+        where: Where it is, or what is missing.
+        is_there: Whether it is there.
+        files: The files that an own module consists of, with those of its packages.
+    """
 
     shown: str
     where: str
     is_there: bool = True
+    files: tuple[Path, ...] = ()
+
+
+@dataclass
+class Report:
+    """What one file imports.
+
+    Attributes:
+        lines: A line for each module.
+        is_complete: Whether the file finds what it needs.
+        needed: The own files that it imports.
+        optional: The own files that it can do without.
+    """
+
+    lines: list[str]
+    is_complete: bool = True
+    needed: list[Path] = field(default_factory=list)
+    optional: list[Path] = field(default_factory=list)
 
 
 def check(paths: Sequence[str]) -> tuple[str, bool]:
     """Return a text that lists what each file imports and from where, and whether all is there.
 
     The modules of Python's standard library are left out, and those that are imported for type
-    checkers alone. A folder stands for the Python files in it.
+    checkers alone. A folder stands for the Python files in it. The user's own modules that a file
+    imports are looked at, too, and listed if they import something.
 
     Args:
         paths: Files and folders.
@@ -52,30 +82,48 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
     Raises:
         FileNotFoundError: There is no such file or folder.
     """
-    reports = [report_on(file) for path in paths for file in files_of(Path(path))]
-    return "".join(text for text, _ in reports), all(complete for _, complete in reports)
+    named = [file for path in paths for file in files_of(Path(path))]
+    needed, optional = deque(named), deque[Path]()
+    texts: list[str] = []
+    complete = True
+    done: set[Path] = set()
+    while needed or optional:
+        is_needed = bool(needed)
+        file = (needed or optional).popleft()
+        if file.resolve() in done:
+            continue
+        done.add(file.resolve())
+        report = report_on(file)
+        if report.lines or file in named:
+            texts.append("\n".join([str(file), *report.lines, ""]))
+        complete = complete and (report.is_complete or not is_needed)
+        (needed if is_needed else optional).extend(report.needed)
+        optional.extend(report.optional)
+    return "".join(texts), complete
 
 
-def report_on(file: Path) -> tuple[str, bool]:
-    """Return the lines for one file, and whether it will find what it imports."""
+def report_on(file: Path) -> Report:
+    """Return what one file imports."""
     try:
         tree = ast.parse(file.read_bytes(), str(file))
-    except (SyntaxError, ValueError) as error:
-        return f"{file}\n  cannot be read: {error}\n", False
+    except (OSError, SyntaxError, ValueError) as error:
+        return Report([f"  cannot be read: {error}"], is_complete=False)
     listed: dict[str, str] = {}
-    complete = True
+    report = Report([])
     for wanted in imports_of(tree):
         if wanted.module.partition(".")[0] in sys.stdlib_module_names:
             continue
         finding = find(wanted, file)
+        (report.optional if wanted.optional else report.needed).extend(finding.files)
         if finding.is_there:
             listed[finding.shown] = finding.where
             continue
         listed[finding.shown] = f"missing{', optional' * wanted.optional}: {finding.where}"
-        complete = complete and wanted.optional
+        report.is_complete = report.is_complete and wanted.optional
+    listed.pop("", None)
     width = max(map(len, listed), default=0)
-    lines = [f"  {shown:{width}}  {where}" for shown, where in sorted(listed.items())]
-    return "\n".join([str(file), *lines, ""]), complete
+    report.lines += [f"  {shown:{width}}  {where}" for shown, where in sorted(listed.items())]
+    return report
 
 
 def files_of(path: Path) -> list[Path]:
@@ -94,7 +142,7 @@ def files_of(path: Path) -> list[Path]:
 
 
 def imports_of(tree: ast.Module) -> list[Import]:
-    """Return what a program imports, in the order of its lines, without relative imports."""
+    """Return what a program imports, in the order of its lines."""
     return list(dict.fromkeys(imported(tree, optional=False)))
 
 
@@ -103,7 +151,8 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
     match node:
         case ast.Import():
             yield from (Import(alias.name, optional=optional) for alias in node.names)
-        case ast.ImportFrom(module=str(module), level=0):
+        case ast.ImportFrom():
+            module = "." * node.level + (node.module or "")
             yield from (
                 Import(module, "" if alias.name == "*" else alias.name, optional=optional)
                 for alias in node.names
@@ -111,10 +160,13 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
         case ast.If() if is_for_types(node.test):
             for statement in node.orelse:
                 yield from imported(statement, optional=optional)
-        case ast.Try() if any(map(catches_import_error, node.handlers)):
+        case ast.Try() if any(catches_import_error(handler.type) for handler in node.handlers):
             # The replacement of a missing module is needed only where the module is missing.
             for part in ast.iter_child_nodes(node):
                 yield from imported(part, optional=True)
+        case ast.With() if any(is_suppressing(item.context_expr) for item in node.items):
+            for statement in node.body:
+                yield from imported(statement, optional=True)
         case _:
             for part in ast.iter_child_nodes(node):
                 yield from imported(part, optional=optional)
@@ -126,46 +178,74 @@ def is_for_types(test: ast.expr) -> bool:
     return name == "TYPE_CHECKING"
 
 
-def catches_import_error(handler: ast.ExceptHandler) -> bool:
-    """Return whether a handler catches the exception of an import that fails."""
-    caught = {"ImportError", "ModuleNotFoundError", "Exception", "BaseException"}
-    return handler.type is None or any(
-        isinstance(part, ast.Name) and part.id in caught for part in ast.walk(handler.type)
+def catches_import_error(caught: ast.expr | None) -> bool:
+    """Return whether the exceptions of a handler have that of an import that fails."""
+    names = {"ImportError", "ModuleNotFoundError", "Exception", "BaseException"}
+    return caught is None or any(
+        isinstance(part, ast.Name) and part.id in names for part in ast.walk(caught)
     )
+
+
+def is_suppressing(entered: ast.expr) -> bool:
+    """Return whether ``with suppress(ImportError):`` is entered."""
+    if not isinstance(entered, ast.Call):
+        return False
+    name = ast.unparse(entered.func).rpartition(".")[2]
+    return name == "suppress" and any(map(catches_import_error, entered.args))
 
 
 def find(wanted: Import, file: Path) -> Finding:
     """Return where an import of a file comes from."""
+    if wanted.module.startswith("."):
+        return beside(wanted, file)
     module, name = wanted.module, wanted.name
     source = source_of(module)
-    if source == "aionode" and name and not has_name(module, name):
-        return Finding(f"{module}.{name}", f"aionode's {module} has no such name", is_there=False)
+    if source == "aionode":
+        return in_aionode(module, name)
     if source is not None:
         return Finding(module, source)
     for folder in own_folders(file):
-        beside = found_on([str(folder)], module)
-        # A folder without Python is importable too, such as that of a message package.
-        if beside is not None and beside.loader is not None:
-            return Finding(module, "beside the program")
-    place = in_workspace(wanted, file)
-    if place is not None:
-        return Finding(module, f"in {place}")
-    reason = advice(module, frozenset(ALIASES)) or "no module of this name is installed"
+        if files := files_on(folder, module, name):
+            return Finding(module, "beside the program", files=files)
+    package, _, inside = module.partition(".")
+    packages = around(file)
+    root = packages.module_root(package)
+    place = packages.sources().get(package)
+    if root is not None:
+        if files := files_on(root, module, name):
+            return Finding(module, f"in {root}", files=files)
+    elif place is not None and inside in KINDS:
+        interface = name.partition("_")[0]
+        if not name or (place / inside / f"{interface}.{inside}").is_file():
+            return Finding(module, f"in {place}")
+    supplied = {*ALIASES, *([package] if has_interfaces(package) else ())}
+    reason = advice(module, frozenset(supplied)) or "no module of this name is installed"
     return Finding(module, reason, is_there=False)
 
 
-def in_workspace(wanted: Import, file: Path) -> Path | None:
-    """Return the package of the workspace around a file that has what the file imports."""
-    package, _, inside = wanted.module.partition(".")
-    packages = around(file)
-    root = packages.module_root(package)
-    if root is not None:
-        return root if found_on([str(root)], wanted.module) else None
-    source = packages.sources().get(package)
-    if source is None or inside not in KINDS:
-        return None
-    name = wanted.name.partition("_")[0]
-    return source if not name or (source / inside / f"{name}.{inside}").is_file() else None
+def in_aionode(module: str, name: str) -> Finding:
+    """Return whether a module of aionode has a name, and what it needs besides."""
+    try:
+        if not name or has_name(module, name):
+            own = own_name(module)
+            if own is not None:
+                import_module(own)
+            return Finding(module, "aionode")
+    except ImportError as error:  # such as that of bags without what reads them
+        return Finding(module, str(error), is_there=False)
+    return Finding(f"{module}.{name}", f"aionode's {module} has no such name", is_there=False)
+
+
+def beside(wanted: Import, file: Path) -> Finding:
+    """Return where a relative import leads; it is listed only if it leads nowhere."""
+    module = wanted.module.lstrip(".")
+    level = len(wanted.module) - len(module)
+    above = file.resolve().parents
+    folder = above[min(level, len(above)) - 1]
+    files = files_on(folder, module, wanted.name)
+    if module and not files:
+        return Finding(wanted.module, f"no such module in {folder}", is_there=False)
+    return Finding("", "", files=files)
 
 
 def own_folders(file: Path) -> list[Path]:
@@ -181,37 +261,65 @@ def source_of(module: str) -> str | None:
     """Return ``aionode``, ``installed``, or None for a module that is not there."""
     package, _, inside = module.partition(".")
     if package in ALIASES:
-        own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
-        return "aionode" if exists(own) else None
+        return "aionode" if of_alias(module, package, inside) is not None else None
     if package == "aionode":
         return "aionode" if exists(module) else None
-    if has_interfaces(package):
-        kind, _, _ = inside.partition(".")
-        if not kind or (kind in KINDS and has_interfaces(package, kind)):
-            return "aionode"
-    return "installed" if found_on(None, module) else None
+    if has_interfaces(package) and FINDER.find_spec(module, None) is not None:
+        return "aionode"
+    return "installed" if specs_on(None, module) else None
 
 
-def found_on(path: list[str] | None, module: str) -> ModuleSpec | None:
-    """Return the description of a module without importing the packages that it is in."""
-    spec: ModuleSpec | None = None
+def own_name(module: str) -> str | None:
+    """Return the name that a module has in aionode; None if it has none of its own there."""
+    package, _, inside = module.partition(".")
+    if package not in ALIASES and package != "aionode":
+        return None
+    own = ".".join(filter(None, (ALIASES.get(package, package), inside)))
+    return own if exists(own) else None
+
+
+def specs_on(path: list[str] | None, module: str) -> list[ModuleSpec]:
+    """Return the descriptions of a module and the packages that it is in; none are imported."""
+    specs: list[ModuleSpec] = []
     for part in module.split("."):
         spec = PathFinder.find_spec(part, path)  # the whole name would need the parent imported
         if spec is None:
-            return None
+            return []
+        specs.append(spec)
         path = list(spec.submodule_search_locations or ())
-    return spec
+    return specs
+
+
+def files_on(folder: Path, module: str, name: str) -> tuple[Path, ...]:
+    """Return the files in Python of a module below a folder, and of a name that is a module.
+
+    A folder without Python is importable too, such as that of a message package, and is none.
+    """
+    whole = [f"{module}.{name}".strip("."), module] if name else [module]
+    for wanted in filter(None, whole):
+        specs = specs_on([str(folder)], wanted)
+        files = tuple(Path(spec.origin) for spec in specs if spec.has_location and spec.origin)
+        if specs and specs[-1].has_location:
+            return files
+    return ()
 
 
 def has_name(module: str, name: str) -> bool:
     """Return whether a module of aionode has a name, be it a module in turn."""
     package, _, inside = module.partition(".")
     if package in ALIASES or package == "aionode":
-        own = ".".join(filter(None, (ALIASES.get(package, package), inside)))
+        own = own_name(module)
+        if own is None:  # a module for each class, as launch has them
+            parent = own_name(module.rpartition(".")[0])
+            return parent is not None and name in import_module(parent).__all__
         return hasattr(import_module(own), name) or exists(f"{own}.{name}")
     kind = inside.partition(".")[0]
     if not kind:
         return name in KINDS and has_interfaces(package, name)
     types = {whole.split("/")[2] for whole in names_in(package) if whole.split("/")[1] == kind}
     # Words_Request and Words_Goal belong to Words; the module of Words is _words.
+    if inside != kind:
+        return name.partition("_")[0] in {
+            part for part in types if module_name(package, kind, part) == module
+        }
     return name.partition("_")[0] in {*types, ""}

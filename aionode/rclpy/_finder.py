@@ -160,15 +160,17 @@ def of_alias(fullname: str, package: str, inside: str) -> ModuleSpec | None:
     own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
     if exists(own):
         return spec_from_loader(fullname, AliasLoader(own))
-    return of_one_name(fullname) if package in LAUNCH else None
+    return of_one_name(fullname, own) if package in LAUNCH else None
 
 
-def of_one_name(fullname: str) -> ModuleSpec | None:
+def of_one_name(fullname: str, own: str) -> ModuleSpec | None:
     """Return how a module such as ``launch.actions.execute_process`` is loaded.
 
     ROS's launch has one for each class. Programs may import a class from there.
     """
-    parent, _, last = fullname.rpartition(".")
+    parent, _, last = own.rpartition(".")
+    if not exists(parent):
+        return None
     package = import_module(parent)
     names = (re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower() for name in package.__all__)
     if last.removesuffix("_action") not in names:

@@ -142,3 +142,85 @@ def test_nothing_of_a_program_is_imported(program: Path) -> None:
 
     assert findings(program, "import mover.arm\n") == ({"mover.arm": "beside the program"}, True)
     assert "mover" not in sys.modules
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from launch.actions.execute_process import ExecuteProcess",
+        "import launch.substitutions.path_join_substitution",
+        "from std_msgs.msg._string import String",
+        "from own_namespace import module",
+        "import own_namespace.module",
+        "from .own_namespace.module import x",
+    ],
+)
+def test_what_the_program_finds_is_there(program: Path, line: str) -> None:
+    """Modules of one class, of a message, and in folders without an ``__init__.py``."""
+    (program.parent / "own_namespace").mkdir()
+    (program.parent / "own_namespace" / "module.py").write_text("")
+
+    found, complete = findings(program, line)
+
+    assert complete
+    assert "missing" not in found.values()
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from launch.actions.execute_process import ExecuteProces",
+        "import std_msgs.msg._nothing",
+        "from .nothing import x",
+    ],
+)
+def test_what_only_looks_like_a_module_is_missing(program: Path, line: str) -> None:
+    """The same ways, with a name that is not there."""
+    found, complete = findings(program, line)
+
+    assert list(found.values()) == ["missing"]
+    assert not complete
+
+
+def test_a_module_that_lacks_an_extra_is_missing(
+    program: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is aionode's, and cannot be imported; the extra is named."""
+
+    def fail(name: str) -> None:
+        raise ModuleNotFoundError("aionode.bag: lz4 is not installed; pip install 'aionode[bag]'")
+
+    monkeypatch.setattr("aionode.rclpy._check.import_module", fail)
+    program.write_text("import rosbag2_py\n")
+
+    text, complete = check([str(program)])
+
+    assert "missing: aionode.bag: lz4 is not installed; pip install 'aionode[bag]'" in text
+    assert not complete
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "import own.part",
+        "from own import part",
+        "from .own.part import x",
+        "from own.part import x",
+    ],
+)
+@pytest.mark.parametrize("is_optional", [False, True])
+def test_the_own_modules_of_a_program_are_followed(
+    program: Path, line: str, is_optional: bool
+) -> None:
+    """What they import the program needs as well, unless it can do without them."""
+    (program.parent / "own").mkdir()
+    (program.parent / "own" / "__init__.py").write_text("import numpy\n")
+    (program.parent / "own" / "part.py").write_text("from . import part\nimport nothing_at_all\n")
+    guarded = f"import contextlib\nwith contextlib.suppress(ImportError):\n    {line}\n"
+    program.write_text(guarded if is_optional else line)
+
+    text, complete = check([str(program)])
+
+    assert f"{program.parent / 'own' / 'part.py'}\n  nothing_at_all  missing: " in text
+    assert f"{program.parent / 'own' / '__init__.py'}\n  numpy  installed\n" in text
+    assert complete is is_optional
