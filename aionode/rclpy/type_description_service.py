@@ -64,4 +64,9 @@ class TypeDescriptionService:
 
         entities = (*node._publishers, *node._subscriptions, *node._services, *node._clients)
         used = [aionode_class(type_of(entity)) for entity in entities]
+        for waitable in node._Node__waitables:
+            action_type = getattr(waitable, "_action_type", None)  # of clients and servers
+            if action_type is not None:
+                impl: Any = aionode_class(action_type).Impl
+                used += [impl.SendGoalService, impl.GetResultService, impl.FeedbackMessage]
         return describe_type(used, request, response, from_aionode)

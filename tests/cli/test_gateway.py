@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import socket
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -15,6 +19,7 @@ from aionode.errors import CommandError, ConfigurationError
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from tests.cli.conftest import Running, Screen
+from tests.support.peers import isolated_environment
 from tests.support.waiting import until
 
 
@@ -28,6 +33,24 @@ async def test_it_serves_until_it_is_stopped(
         async with httpx.AsyncClient(trust_env=False) as client:
             answer = await client.get(f"http://127.0.0.1:{port}/nothing")
     assert answer.status_code == 404
+
+
+def test_its_node_describes_types_that_only_it_has() -> None:
+    """Others see topics and services of rosbridge and rosapi, and have no package of these."""
+    aionode = [sys.executable, "-m", "aionode"]
+    env = {**os.environ, **isolated_environment()}
+    with subprocess.Popen(
+        [*aionode, "gateway", "--port", "0"], env=env, stdout=subprocess.PIPE, text=True
+    ) as gateway:
+        assert gateway.stdout is not None
+        assert "listening" in gateway.stdout.readline()
+        shown = subprocess.run(
+            [*aionode, "interface", "show", "rosbridge_msgs/msg/ConnectedClients"],
+            env=env, capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        gateway.send_signal(signal.SIGINT)
+
+    assert "ConnectedClient[] clients" in shown.stdout, shown.stderr
 
 
 async def test_a_port_that_is_taken_is_an_error_in_one_line(tool: Node, screen: Screen) -> None:

@@ -50,6 +50,7 @@ String = message_class("std_msgs/msg/String")
 TimeMsg = message_class("builtin_interfaces/msg/Time")
 AddTwoInts = service_class("example_interfaces/srv/AddTwoInts")
 GetLoggerLevels = service_class("rcl_interfaces/srv/GetLoggerLevels")
+GetTypeDescription = service_class("type_description_interfaces/srv/GetTypeDescription")
 GetParameters = service_class("rcl_interfaces/srv/GetParameters")
 Fibonacci = action_class("example_interfaces/action/Fibonacci")
 
@@ -172,6 +173,24 @@ def test_what_cannot_be_read_is_counted_and_said(caplog: pytest.LogCaptureFixtur
 
     said = [text for text in caplog.messages if "unknown form" in text]
     assert [text.partition(":")[0] for text in said] == ["/words", "/words", "/add"]
+
+
+@pytest.mark.usefixtures("initialised")
+@pytest.mark.parametrize("part", ["FeedbackMessage", "SendGoal", "GetResult"])
+def test_a_node_describes_the_types_of_its_actions(part: str) -> None:
+    """The action's own entities use them, as rcl sees it; bags and pages ask for them."""
+    node = rclpy.create_node("walker")
+    ActionServer(node, Fibonacci, "walk", print)
+    client = node.create_client(GetTypeDescription, "/walker/get_type_description")
+    assert client.wait_for_service(LIMIT_S)
+    name = f"example_interfaces/action/Fibonacci_{part}"
+
+    future = client.call_async(GetTypeDescription.Request(type_name=name))
+    rclpy.spin_until_future_complete(node, future, timeout_sec=LIMIT_S)
+
+    described: Any = future.result()
+    assert described.successful, described.failure_reason
+    assert described.type_description.type_description.type_name == name
 
 
 @pytest.mark.usefixtures("initialised")

@@ -57,7 +57,7 @@ def gateway_command(
     if path is not None and allow_write:
         raise click.UsageError("--allow-write is for a gateway without --policy: say it there", ctx)
     run_verb(serving(path, allow_write, host, port), node_name="gateway", endless=True, busy=True,
-             asks=False)  # fmt: skip
+             asks=False, describes=True)  # fmt: skip
 
 
 def serving(

@@ -43,19 +43,24 @@ UNLIMITED_MS = 3_600_000.0
 
 
 def make_node(
-    context: Context | None = None, node_name: str | None = None, *, use_sim_time: bool = False
+    context: Context | None = None,
+    node_name: str | None = None,
+    *,
+    use_sim_time: bool = False,
+    describes: bool = False,
 ) -> Node:
     """Return the node of a command: hidden, and without services or logs of its own.
 
     Without a `context` it gets one of its own: the default context of the process has the
-    environment of its first use, and belongs to the program that runs the command.
+    environment of its first use, and belongs to the program that runs the command. What publishes
+    or serves any types `describes` them: others may not know them.
     """
     # Imported when a command runs; its help does not need them.
     from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.parameter import Parameter
 
-    settings = {"start_type_description_service": False, "use_sim_time": use_sim_time}
+    settings = {"start_type_description_service": describes, "use_sim_time": use_sim_time}
     return Node(
         node_name or f"_aionode_cli_{os.getpid()}",
         context=Context() if context is None else context,
@@ -75,6 +80,7 @@ def run_verb(
     endless: bool = False,
     busy: bool = False,
     asks: bool = True,
+    describes: bool = False,
     stop_s: float = STOP_S,
 ) -> None:
     """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
@@ -87,6 +93,7 @@ def run_verb(
         endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, which makes the faster loop worth its import.
         asks: Whether the verb needs a complete graph, so that discovery is awaited first.
+        describes: Whether its node describes the types that it uses.
         stop_s: Timeout for the exit after a signal, in seconds.
 
     Raises:
@@ -102,7 +109,9 @@ def run_verb(
     deadline = Deadline(armed=owns_process())
 
     async def work() -> int | None:
-        async with make_node(node_name=node_name, use_sim_time=use_sim_time) as node:
+        async with make_node(
+            node_name=node_name, use_sim_time=use_sim_time, describes=describes
+        ) as node:
             try:
                 if asks:
                     await wait_until_known(node, output)
