@@ -160,7 +160,10 @@ def is_machinery(filename: str) -> bool:
 
 
 OWN_PACKAGES = frozenset(
-    {"ament_index_python", "launch", "launch_ros", "launch_xml", "launch_yaml"}
+    {
+        *("ament_index_python", "launch", "launch_param_builder", "launch_ros", "launch_xml"),
+        *("launch_yaml", "nav2_common"),
+    }
 )
 """The packages of ROS that aionode has for launch files."""
 

@@ -13,6 +13,7 @@ from aionode.launch import _launch_ros as launch_ros
 from aionode.launch._launch import actions, substitutions
 from aionode.launch._launch.actions._loops import PopLocals, PushLocals
 from aionode.launch._launch.conditions import IfCondition, UnlessCondition
+from aionode.launch._launch.frontend.expose import SUBSTITUTIONS
 from aionode.launch._launch.launch_description import LaunchDescription
 from aionode.launch._launch.launch_description_sources import AnyLaunchDescriptionSource
 from aionode.launch._launch.substitution import Substitution, TextSubstitution
@@ -20,7 +21,7 @@ from aionode.launch._launch.utilities.type_utils import coerce_to_type
 from aionode.launch._launch_ros import actions as ros_actions
 from aionode.launch._launch_ros import descriptions
 from aionode.launch._markup import Element
-from aionode.launch._words import SUBSTITUTIONS, parse_words
+from aionode.launch._words import parse_words
 
 __all__ = ["description_of"]
 

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from typing import Any
 
+from aionode.launch._launch.frontend.expose import SUBSTITUTIONS
 from aionode.launch._launch.substitution import Substitution, TextSubstitution
 
-__all__ = ["SUBSTITUTIONS", "parse_words"]
-
-SUBSTITUTIONS: dict[str, Callable[..., Substitution]] = {}
-"""The substitution that each name stands for; the modules of substitutions fill it."""
+__all__ = ["parse_words"]
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 

@@ -12,7 +12,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from typing import Final
 
-from aionode.rclpy._finder import ALIASES, FINDER, KINDS, exists, of_alias
+from aionode.rclpy._finder import ALIASES, FINDER, KINDS, exists, gives_way, of_alias
 from aionode.rclpy._missing import advice
 from aionode.rclpy._rosidl import has_interfaces, module_name, names_in
 from aionode.rclpy._workspace import around
@@ -260,7 +260,7 @@ def own_folders(file: Path) -> list[Path]:
 def source_of(module: str) -> str | None:
     """Return ``aionode``, ``installed``, or None for a module that is not there."""
     package, _, inside = module.partition(".")
-    if package in ALIASES:
+    if package in ALIASES and not gives_way(package):
         return "aionode" if of_alias(module, package, inside) is not None else None
     if package == "aionode":
         return "aionode" if exists(module) else None

@@ -14,7 +14,12 @@ from types import ModuleType
 from typing import Any, Final
 
 from aionode.interfaces import shipped_packages
-from aionode.rclpy._module_names import ALIASES, shared_errors_take_names, take_names
+from aionode.rclpy._module_names import (
+    ALIASES,
+    YIELDING,
+    shared_errors_take_names,
+    take_names,
+)
 from aionode.rclpy._reexports import add_names
 from aionode.rclpy._rosidl import (
     add_folder,
@@ -28,7 +33,7 @@ from aionode.rclpy._rosidl import (
 __all__ = ["ALIASES", "install", "provide"]
 
 OWN: Final = "aionode.rclpy."
-LAUNCH: Final = ("launch", "launch_ros")
+LAUNCH: Final = ("launch", "launch_ros", "nav2_common")
 KINDS: Final = ("msg", "srv", "action")
 
 
@@ -86,8 +91,12 @@ def rclpy_of_ros() -> Path | None:
     if spec is None or spec.origin is None:
         return None
     file = Path(spec.origin)
-    is_own = "aionode" in file.read_text(encoding="utf-8", errors="replace")[:300]
-    return None if is_own else file.parent
+    return None if is_own(file) else file.parent
+
+
+def is_own(file: Path) -> bool:
+    """Return whether an installed package is one of the distribution ``aionode-rclpy``."""
+    return "aionode" in file.read_text(encoding="utf-8", errors="replace")[:300]
 
 
 def provide(name: str) -> None:
@@ -113,7 +122,7 @@ class AionodeFinder(MetaPathFinder):
     ) -> ModuleSpec | None:
         """Return how a module is loaded; None if it is not one of these."""
         package, _, inside = fullname.partition(".")
-        if package in ALIASES:
+        if package in ALIASES and not gives_way(package):
             return of_alias(fullname, package, inside)
         kind, _, module = inside.partition(".")
         if package == "aionode" or package in sys.stdlib_module_names or kind not in ("", *KINDS):
@@ -135,6 +144,18 @@ class AionodeFinder(MetaPathFinder):
             if module_name(*name.split("/")) == fullname:
                 return spec_from_loader(fullname, InterfaceLoader(name))
         return None
+
+
+def gives_way(package: str) -> bool:
+    """Return whether a package of the workspace or an installed one comes before aionode's."""
+    if package not in YIELDING:
+        return False
+    spec = PathFinder.find_spec(package)
+    if spec is not None and spec.origin is not None and not is_own(Path(spec.origin)):
+        return True
+    from aionode.rclpy._workspace import here
+
+    return here().module_root(package) is not None
 
 
 def of_workspace(package: str) -> ModuleSpec | None:

@@ -25,6 +25,8 @@ ALIASES: Final = {
     "launch_ros": "aionode.launch._launch_ros",
     "launch_xml": "aionode.launch._launch_xml",
     "launch_yaml": "aionode.launch._launch_yaml",
+    "launch_param_builder": "aionode.launch._launch_param_builder",
+    "nav2_common": "aionode.launch._nav2_common",
     "cv_bridge": "aionode.rclpy._cv_bridge",
     "message_filters": "aionode.rclpy._message_filters",
     "ros2_numpy": "aionode.rclpy._ros2_numpy",
@@ -32,6 +34,9 @@ ALIASES: Final = {
     "tf_transformations": "aionode.rclpy._tf_transformations",
 }
 """The packages of ROS that are packages of aionode; their modules are the same objects."""
+
+YIELDING: Final = ("launch_param_builder", "nav2_common")
+"""Those of them that give way to a package of the workspace, or an installed one, of their name."""
 
 EXTENSION: Final = {"aionode.rclpy._impl.errors": "rclpy._rclpy_pybind11"}
 """The exceptions of rclpy's extension module stand in a module of their own here."""

@@ -386,7 +386,7 @@ BAD = {
     "from launch.actions import Nonsense": (1, "launch.actions has no Nonsense; it has: Action"),
     "import os\nos.environ['NOT_THERE']": (2, "KeyError: 'NOT_THERE'"),
     "import not_there_at_all": (1, "no module not_there_at_all"),
-    "import launch.frontend": (1, "launch is from aionode here, which does not have launch.fronte"),
+    "import launch.nothing": (1, "launch is from aionode here, which does not have launch.nothin"),
     "def generate_launch_description(:": (1, "not valid Python"),
     "x = 1": (None, "has neither generate_launch_description() nor"),
     "def generate_launch_description():\n    return 5": (None, "a LaunchDescription fits"),

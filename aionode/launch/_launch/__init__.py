@@ -7,6 +7,7 @@ from aionode.launch._launch import conditions as conditions
 from aionode.launch._launch import descriptions as descriptions
 from aionode.launch._launch import event_handlers as event_handlers
 from aionode.launch._launch import events as events
+from aionode.launch._launch import frontend as frontend
 from aionode.launch._launch import launch_description_sources as launch_description_sources
 from aionode.launch._launch import logging as logging
 from aionode.launch._launch import substitutions as substitutions
@@ -45,6 +46,7 @@ __all__ = [
     "descriptions",
     "event_handlers",
     "events",
+    "frontend",
     "launch_description_sources",
     "logging",
     "substitutions",
