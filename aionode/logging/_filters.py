@@ -43,27 +43,23 @@ FILTERS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", "
 class CallSite:
     """One place in the code that logs, with the state of its filters."""
 
-    __slots__ = ("code", "last_ns", "logged", "name", "options", "severity", "skipped")
+    __slots__ = ("code", "last_ns", "logged", "name", "options", "skipped")
 
-    def __init__(self, code: CodeType, severity: int, name: str, options: LogOptions) -> None:
+    def __init__(self, code: CodeType, name: str, options: LogOptions) -> None:
         # Keeps the code object alive, as its id is part of the key and must not be reused.
         self.code = code
-        self.severity = severity
         self.name = name
         self.options = checked(options)
         self.last_ns = 0
         self.skipped = False
         self.logged = False
 
-    def check(self, severity: int, name: str, options: LogOptions) -> None:
+    def check(self, name: str, options: LogOptions) -> None:
         """Refuse a call that differs from the first one of this call site.
 
         Raises:
-            ValueError: Severity, name or filters are not those of the first call.
+            ValueError: Name or filters are not those of the first call.
         """
-        if severity != self.severity:
-            message = "Logger severity cannot be changed between calls."
-            raise ValueError(message)
         if name != self.name:
             message = "Logger name cannot be changed between calls."
             raise ValueError(message)
@@ -139,14 +135,16 @@ class CallSites:
     __slots__ = ("_sites",)
 
     def __init__(self) -> None:
-        self._sites: dict[tuple[int, int], CallSite] = {}
+        self._sites: dict[tuple[int, int, int], CallSite] = {}
 
     def find(self, frame: FrameType, severity: int, name: str, options: LogOptions) -> CallSite:
         """Return the call site of `frame`: created on its first call, checked on later ones."""
-        key = (id(frame.f_code), frame.f_lasti)
+        # `(log.info if ok else log.error)(…)` is one place in the code, and two calls: of each
+        # severity, the filters have a state of their own. rclpy refuses the second, at run time.
+        key = (id(frame.f_code), frame.f_lasti, severity)
         site = self._sites.get(key)
         if site is None:
-            site = self._sites[key] = CallSite(frame.f_code, severity, name, options)
+            site = self._sites[key] = CallSite(frame.f_code, name, options)
         else:
-            site.check(severity, name, options)
+            site.check(name, options)
         return site

@@ -397,7 +397,6 @@ def test_each_logger_has_its_own_state() -> None:
 @pytest.mark.parametrize(
     ("change", "says"),
     [
-        (lambda log, i: log.log("m", (20, 30)[i]), "severity cannot be changed"),
         (lambda log, i: log.info("m", name=f"n{i}"), "name cannot be changed"),
         (lambda log, i: log.info("m", once=bool(i)), "filters cannot be changed"),
         (lambda log, i: log.info("m", throttle_duration_sec=i + 1), "parameters cannot be changed"),
@@ -412,6 +411,16 @@ def test_a_place_in_the_code_must_not_change_its_options(
 
     with pytest.raises(ValueError, match=says):
         change(log, 1)
+
+
+@pytest.mark.parametrize("method", ["info", "warn", "error", "fatal"])
+def test_one_place_in_the_code_may_log_with_several_severities(method: str) -> None:
+    """A line such as ``(log.info if ok else log.error)(text)`` fails only when something does."""
+    log = logger()
+
+    logged = [getattr(log, each)("m", once=True) for each in ("debug", method, "debug", method)]
+
+    assert logged == [False, True, False, False]
 
 
 def test_an_unknown_option_is_a_type_error_that_names_the_known() -> None:
