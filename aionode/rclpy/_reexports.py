@@ -1,8 +1,12 @@
-"""Names that rclpy's modules have from elsewhere, as programs take them: found when asked for."""
+"""Names that modules of rclpy and tf2 have from elsewhere, as programs take them.
+
+They are found when asked for, and so are names of `typing`, which nearly every module has.
+"""
 
 from __future__ import annotations
 
 import sys
+import typing
 from importlib import import_module
 from types import ModuleType
 from typing import Any, Final
@@ -96,8 +100,32 @@ NAMES: Final = """
     rclpy.waitable: TracebackType
     rclpy.qos_event: CallbackGroup EventHandlerData NumberOfEntities TracebackType Waitable
         get_logger qos_policy_name_from_kind rclpy
+    tf2_ros: ActionClient Clock Duration DurabilityPolicy FrameGraph Future Header HistoryPolicy
+        JumpThreshold LookupTransform Node PointCloud2 PointStamped PoseStamped
+        PoseWithCovarianceStamped QoSProfile ReentrantCallbackGroup SingleThreadedExecutor TFMessage
+        Thread Time=rclpy.time.Time TimeJump TransformStamped Vector3Stamped builtin_interfaces
+        deepcopy rclpy sleep threading warnings
+    tf2_ros.buffer: FrameGraph Future JumpThreshold Node Time=rclpy.time.Time TimeJump
+        TransformStamped rclpy sleep tf2_ros
+    tf2_ros.buffer_client: Clock Node Time=rclpy.time.Time TransformStamped LookupTransform
+        builtin_interfaces sleep tf2_ros warnings
+    tf2_ros.buffer_interface: Header PointCloud2 PointStamped PoseStamped PoseWithCovarianceStamped
+        Time=rclpy.time.Time TransformStamped Vector3Stamped rclpy tf2_ros
+    tf2_ros.static_transform_broadcaster: DurabilityPolicy HistoryPolicy Node QoSProfile TFMessage
+        TransformStamped
+    tf2_ros.transform_broadcaster: Node QoSProfile TFMessage TransformStamped
+    tf2_ros.transform_listener: Buffer Node TFMessage tf2_ros
+    tf2_geometry_msgs: Point Point32 PointStamped PolygonStamped Pose PoseStamped
+        PoseWithCovarianceStamped TransformStamped Vector3Stamped np=numpy tf2_ros
+    tf2_geometry_msgs.tf2_geometry_msgs: Point Point32 PointStamped PolygonStamped Pose PoseStamped
+        PoseWithCovarianceStamped TransformStamped Vector3Stamped np=numpy tf2_ros
+    tf2_sensor_msgs: Header PointCloud2 Transform TransformStamped create_cloud np=numpy read_points
+        tf2_ros
+    tf2_sensor_msgs.tf2_sensor_msgs: Header PointCloud2 Transform TransformStamped create_cloud
+        np=numpy read_points tf2_ros
 """
-"""The names by the modules of rclpy 9.1.2 that have them, but for those that are here already."""
+"""The names by the modules of rclpy 9.1.2 and tf2 0.45 that have them, but for those that are here
+already; with ``=`` and what it is, where another module has another thing of that name."""
 
 ORIGINS: Final = """
     action_msgs.msg: GoalInfo GoalStatusArray
@@ -111,17 +139,21 @@ ORIGINS: Final = """
         SrvTypeRequest SrvTypeResponse TimeJumpDictionary TypeHashDictionary YieldedCallback
     builtin_interfaces.msg: Time
     contextlib: ExitStack
+    copy: deepcopy
     enum: Enum IntEnum
     functools: partial
+    geometry_msgs.msg: Point Point32 PointStamped PolygonStamped Pose PoseStamped
+        PoseWithCovarianceStamped Transform TransformStamped Vector3Stamped
     pathlib: Path
     rcl_interfaces.msg: FloatingPointRange IntegerRange ListParametersResult LoggerLevel
         ParameterDescriptor ParameterEvent ParameterMsg=Parameter ParameterType ParameterValue
         SetLoggerLevelsResult SetParametersResult
     rcl_interfaces.srv: DescribeParameters GetLoggerLevels GetParameterTypes GetParameters
         ListParameters SetLoggerLevels SetParameters SetParametersAtomically
-    rclpy.callback_groups: CallbackGroup
+    rclpy.action.client: ActionClient
+    rclpy.callback_groups: CallbackGroup ReentrantCallbackGroup
     rclpy.client: Client
-    rclpy.clock: Clock
+    rclpy.clock: Clock JumpThreshold TimeJump
     rclpy.clock_type: ClockType
     rclpy.constants: S_TO_NS
     rclpy.context: Context
@@ -132,6 +164,7 @@ ORIGINS: Final = """
         InvalidServiceNameException InvalidTopicNameException ParameterAlreadyDeclaredException
         ParameterImmutableException ParameterNotDeclaredException
         ParameterUninitializedException
+    rclpy.executors: SingleThreadedExecutor
     rclpy.expand_topic_name: expand_topic_name
     rclpy.guard_condition: GuardCondition
     rclpy.impl.implementation_singleton.rclpy_implementation: InvalidHandle TimerCancelledError
@@ -141,7 +174,8 @@ ORIGINS: Final = """
     rclpy.node: Node
     rclpy.parameter: AllowableParameterValue AllowableParameterValueT PARAMETER_SEPARATOR_STRING
         Parameter
-    rclpy.qos: QoSDurabilityPolicy QoSHistoryPolicy QoSLivelinessPolicy QoSProfile
+    rclpy.qos: DurabilityPolicy HistoryPolicy QoSDurabilityPolicy QoSHistoryPolicy
+        QoSLivelinessPolicy QoSProfile
         QoSReliabilityPolicy qos_policy_name_from_kind qos_profile_rosout_default
         qos_profile_services_default
     rclpy.qos_overriding_options: QoSOverridingOptions
@@ -161,8 +195,16 @@ ORIGINS: Final = """
     rclpy.validate_parameter_name: validate_parameter_name
     rclpy.validate_topic_name: TOPIC_SEPARATOR_STRING validate_topic_name
     rclpy.waitable: NumberOfEntities Waitable
+    sensor_msgs.msg: PointCloud2
+    sensor_msgs_py.point_cloud2: create_cloud read_points
     service_msgs.msg: ServiceEventInfo
-    threading: Condition Lock RLock
+    std_msgs.msg: Header
+    tf2_msgs.action: LookupTransform
+    tf2_msgs.msg: TFMessage
+    tf2_msgs.srv: FrameGraph
+    tf2_ros.buffer: Buffer
+    threading: Condition Lock RLock Thread
+    time: sleep
     type_description_interfaces.srv: GetTypeDescription
     types: FrameType MethodType TracebackType
     unique_identifier_msgs.msg: UUID
@@ -202,21 +244,27 @@ def names_from_elsewhere(module: str) -> list[str]:
 
 
 def add_names() -> None:
-    """Give the modules of rclpy that are loaded what finds these names."""
+    """Give the modules that are loaded what finds these names."""
     for module in BY_MODULE:
-        loaded_module = sys.modules.get(f"aionode.{module}")
+        loaded_module = sys.modules.get(module) or sys.modules.get(f"aionode.{module}")
         if loaded_module is not None and "__getattr__" not in vars(loaded_module):
             hook(loaded_module, module)
 
 
 def hook(module: ModuleType, name: str) -> None:
     """Let a module find its names from elsewhere, and list them."""
-    names = names_from_elsewhere(name)
+    words = [word.partition("=") for word in names_from_elsewhere(name)]
+    names = {shown: place for shown, _, place in words}
 
     def find(asked: str) -> Any:
-        if asked not in names:
+        if asked in names:
+            place = names[asked]
+            value = loaded(place) if place else value_of(asked, name)
+        elif asked in typing.__all__:
+            value = getattr(typing, asked)
+        else:
             raise AttributeError(f"module {name!r} has no attribute {asked!r}")
-        value = vars(module)[asked] = value_of(asked, name)
+        vars(module)[asked] = value
         return value
 
     def listed() -> list[str]:

@@ -320,3 +320,34 @@ def test_aionode_itself_imports_none_of_this() -> None:
     )
 
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize(
+    ("module", "names"),
+    [
+        ("rclpy.node", ("Callable", "Optional", "Union")),
+        ("rclpy.executors", ("Set", "TYPE_CHECKING")),
+        ("tf2_ros", ("TransformStamped", "Node", "Duration", "Time", "TFMessage", "Any")),
+        ("tf2_ros.buffer", ("TransformStamped", "Future")),
+        ("tf2_ros.transform_listener", ("Buffer", "Node")),
+        ("tf2_geometry_msgs", ("PoseStamped", "PointStamped", "np")),
+        ("tf2_sensor_msgs", ("PointCloud2", "read_points")),
+    ],
+)
+def test_modules_have_the_names_that_they_import_in_ros(
+    module: str, names: tuple[str, ...]
+) -> None:
+    """Whole robots take messages and types for annotations from there."""
+    found = importlib.import_module(module)
+
+    assert [name for name in names if not hasattr(found, name)] == []
+    assert not hasattr(found, "no_such_name")
+
+
+@pytest.mark.usefixtures("installed")
+def test_a_time_of_tf2_is_one_of_rclpy() -> None:
+    """A message of that name is imported by other modules."""
+    tf2_ros, time = map(importlib.import_module, ("tf2_ros", "rclpy.time"))
+
+    assert tf2_ros.Time is time.Time
