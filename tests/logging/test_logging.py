@@ -372,7 +372,7 @@ def test_throttle_follows_a_ros_clock() -> None:
 
 def test_throttle_survives_a_clock_that_was_set_back() -> None:
     """When a simulation starts again, its log must not be silent for as long as it ran."""
-    site = CallSite(test_names_must_not_be_empty.__code__, 20, "a", {"throttle_duration_sec": 1.0})
+    site = CallSite(test_names_must_not_be_empty.__code__, "a", {"throttle_duration_sec": 1.0})
     times = [100 * SECOND, 5 * SECOND, 5 * SECOND + 1, 6 * SECOND]
 
     assert [site.lets_through(lambda now=now: now) for now in times] == [True, True, False, True]  # type: ignore[misc]
@@ -459,7 +459,7 @@ def test_no_filter_lets_more_through_than_without_it(
     options: LogOptions = {}
     for each in chosen:
         options.update(each)
-    site = CallSite(test_names_must_not_be_empty.__code__, 20, "a", options)
+    site = CallSite(test_names_must_not_be_empty.__code__, "a", options)
     now = STAMP_NS
     passed = 0
     for wait in waits:
