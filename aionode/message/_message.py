@@ -137,6 +137,33 @@ def checked_field_name(owner: str, name: str) -> None:
         raise TypeError(msg)
 
 
+class PydanticSerializer:
+    """What writes messages where Pydantic knows no type: in `Any`, and in lists and dicts of it."""
+
+    def __get__(self, _message: object, cls: type[Message]) -> Any:
+        """Return Pydantic's serializer of a message class, made when it is first asked for."""
+        from aionode.message._schema import pydantic_serializer  # as below
+
+        if "pydantic_serializer" not in cls.__ros_functions__:
+            cls.__ros_functions__["pydantic_serializer"] = pydantic_serializer(cls)
+        return cls.__ros_functions__["pydantic_serializer"]
+
+
+class NoDataclass:
+    """What every dataclass has, and a message has not.
+
+    Where a route has no type for its response, FastAPI asks each value for it before it looks for
+    the function that writes the value. By then FastAPI is imported, and is told of that function.
+    """
+
+    def __get__(self, _message: object, cls: type[Message]) -> Any:
+        """Raise AttributeError."""
+        from aionode.message._schema import register_with_fastapi  # as below
+
+        register_with_fastapi()
+        raise AttributeError("__dataclass_fields__")
+
+
 @dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
 class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable: no hash)
     """Base class of all messages.
@@ -157,6 +184,9 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
     __ros_constants__: ClassVar[tuple[Constant, ...]]
     __ros_functions__: ClassVar[dict[str, Any]]
     """Functions generated for this class, by purpose."""
+
+    __pydantic_serializer__: ClassVar[Any] = PydanticSerializer()
+    __dataclass_fields__: ClassVar[Any] = NoDataclass()
 
     def __eq__(self, other: object) -> bool:
         """Return whether both have the same class and values."""

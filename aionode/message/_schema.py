@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import inspect
 import re
+import sys
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,13 @@ if TYPE_CHECKING:
     from pydantic_core import CoreSchema
     from pydantic_core.core_schema import SerializationInfo
 
-__all__ = ["json_schema", "pydantic_core_schema", "pydantic_json_schema"]
+__all__ = [
+    "json_schema",
+    "pydantic_core_schema",
+    "pydantic_json_schema",
+    "pydantic_serializer",
+    "register_with_fastapi",
+]
 
 Schema = dict[str, Any]
 
@@ -159,12 +166,37 @@ def validated(cls: type[Message], value: object) -> Message:
 
 def serialized(message: Message, info: SerializationInfo) -> dict[str, Any]:
     """Return a message as builtin types, only with values that JSON has in its JSON mode."""
-    from aionode.message._conversion import Form, json_float, plain, to_builtins
+    from aionode.message._conversion import to_builtins
+
+    return in_json(message) if info.mode == "json" else to_builtins(message)
+
+
+def in_json(message: Message) -> dict[str, Any]:
+    """Return a message as builtin types, only with values that JSON has."""
+    from aionode.message._conversion import Form, json_float, plain
     from aionode.message._snapshot import snapshot
 
-    if info.mode == "json":
-        return plain(snapshot(message), Form(json_float))
-    return to_builtins(message)
+    return plain(snapshot(message), Form(json_float))
+
+
+def pydantic_serializer(cls: type[Message]) -> Any:
+    """Return what Pydantic writes messages of a class with.
+
+    Raises:
+        AttributeError: Pydantic is not installed.
+    """
+    try:
+        from pydantic import TypeAdapter
+    except ImportError:
+        raise AttributeError("__pydantic_serializer__") from None
+    return TypeAdapter(cls).serializer
+
+
+def register_with_fastapi() -> None:
+    """Have FastAPI, if it is imported, write messages in responses that no annotation describes."""
+    encoders = getattr(sys.modules.get("fastapi.encoders"), "encoders_by_class_tuples", None)
+    if isinstance(encoders, dict):
+        encoders[in_json] = (Message,)
 
 
 def pydantic_json_schema(cls: type[Message], handler: GetJsonSchemaHandler) -> Schema:

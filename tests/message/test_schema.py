@@ -180,11 +180,11 @@ def app() -> FastAPI:
     return app
 
 
-async def ask(app: FastAPI, body: Any) -> httpx.Response:
+async def ask(app: FastAPI, body: Any, path: str = "/stretch") -> httpx.Response:
     """Send a request."""
     transport = httpx.ASGITransport(app)
     async with httpx.AsyncClient(transport=transport, base_url="http://robot") as client:
-        return await client.post("/stretch", json=body)
+        return await client.post(path, json=body)
 
 
 async def test_a_route_takes_and_returns_messages(app: FastAPI) -> None:
@@ -214,3 +214,34 @@ def test_openapi_has_the_messages_as_components(app: FastAPI) -> None:
     assert answer == {"$ref": "#/components/schemas/LaserScan"}
     ranges = schema["components"]["schemas"]["LaserScan"]["properties"]["ranges"]
     assert ranges["items"]["anyOf"][1]["enum"] == ["NaN", "Infinity", "-Infinity"]
+
+
+@pytest.mark.parametrize("annotation", [None, Any, object, dict[str, Any]], ids=str)
+async def test_messages_are_written_in_responses_that_no_annotation_describes(
+    annotation: Any,
+) -> None:
+    """A first route has no annotation; its bytes, arrays and NaN are as `to_json` writes them."""
+    app = FastAPI()
+
+    async def status():  # type: ignore[no-untyped-def]  # noqa: ANN202  # as users write it
+        return {"seen": [LaserScan(ranges=[1.5, float("nan")])], "last": Image(data=b"\xff")}
+
+    if annotation is not None:
+        status.__annotations__["return"] = annotation
+    app.post("/")(status)
+
+    answer = await ask(app, None, "/")
+
+    assert answer.status_code == 200
+    assert answer.json()["seen"][0]["ranges"] == [1.5, "NaN"]
+    assert answer.json()["last"]["data"] == [255]
+
+
+async def test_a_message_alone_is_written_without_an_annotation() -> None:
+    """The whole response is one."""
+    app = FastAPI()
+    app.post("/")(lambda: Vector3(x=1.5))
+
+    answer = await ask(app, None, "/")
+
+    assert answer.json() == {"x": 1.5, "y": 0.0, "z": 0.0}
