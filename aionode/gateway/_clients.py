@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import AsyncIterator, Callable, Iterable, MutableMapping
 from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from aionode.errors import RefusedError
 from aionode.gateway.policy.identity import Identity
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.session import Session
 
 if TYPE_CHECKING:
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Clients", "GatewayStats"]
 
-WARN_SEC: Final = 10.0
-"""The time between two warnings about clients that are not let in, in seconds."""
-
 
 class GatewayStats(msgspec.Struct, frozen=True):
     """Counts of a gateway's work.
@@ -31,6 +29,7 @@ class GatewayStats(msgspec.Struct, frozen=True):
     Attributes:
         sessions: How many clients there are, by the way in.
         refused: How many things were refused.
+        refusals: How much was refused, dropped or is late, by the reason as a word for programs.
         sent: How many frames were sent to the clients there are.
         dropped: How many frames were dropped, as their clients were too slow, by topic.
         received: How many messages of topics arrived, by topic.
@@ -40,6 +39,7 @@ class GatewayStats(msgspec.Struct, frozen=True):
 
     sessions: dict[str, int]
     refused: int
+    refusals: dict[str, int]
     sent: int
     dropped: dict[str, int]
     received: dict[str, int]
@@ -162,6 +162,7 @@ class Clients:
         return GatewayStats(
             sessions,
             refused,
+            {kind.value: count for kind, count in robot.refusals.counts.items()},
             sent,
             dropped,
             {feed.topic: feed.received for feed in robot.feeds},
@@ -174,9 +175,10 @@ class Clients:
         self._refused += 1
         stranger = Identity("", address=credentials.address)
         self.robot.audit.note(stranger, "connect", "", result=error.reason, code=error.code)
-        if error.code == "unauthorized":  # a browser does not tell its page why
-            log = self.node.get_logger()
-            log.warning(f"gateway: {error}", throttle_duration_sec=WARN_SEC)
+        # A browser does not tell its page why.
+        self.robot.refusals.note(
+            stranger, "connect", Refusal.of(error), error.subject, f"refused: {error.reason}"
+        )
 
     def use_policy(self, policy: Policy) -> None:
         """Have another policy count from now on; rights that it does not give end."""

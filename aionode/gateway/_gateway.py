@@ -27,6 +27,7 @@ from aionode.gateway.server.door import Door
 from aionode.gateway.server.server import Server, server_config
 from aionode.gateway.server.websocket import TRY_AGAIN_LATER, close
 from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.robot import Bucket, Robot
 
 if TYPE_CHECKING:
@@ -205,12 +206,15 @@ class Gateway(Clients):
             connection = session.connection
             if connection is None:
                 continue
-            is_lost = session.outbox.overflowed
+            is_lost = session.outbox.overflowed  # which is said already
             if session.has_goals or (session.is_doubtful and session.publishes):
                 session.ask_for_sign()
                 # After a standstill of its own, the gateway first hears what has arrived in it.
                 silent_sec = min(connection.silent_sec(), self.robot.standstills.since_sec())
-                is_lost = is_lost or (silent_sec > limit and not connection.has_unread())
+                if not is_lost and silent_sec > limit and not connection.has_unread():
+                    is_lost = True
+                    reason = f"it gave no sign for {limit:g} s, with goals or commands under way"
+                    session.note(Refusal.DISCONNECTED, "connection", reason)
             if is_lost:
                 session.ended.set()
                 connection.abort()
@@ -252,23 +256,25 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
     refusals = Bucket(REFUSALS_PER_SEC, robot.time_base.steady_ns)
     seen = session.refused - session.refused_cheaply
 
-    async def wait_for(waited_for: Bucket) -> None:
+    async def wait_for(waited_for: Bucket, what: str) -> None:
         has_waited = False
         while wait_sec := waited_for.wait_sec():
             has_waited = True
             await clock.sleep(wait_sec)
         if has_waited:
             session.doubt()
+            reason = f"it sends more than {waited_for.rate_hz:g} a second, and so is read later"
+            session.note(Refusal.LATE, what, reason)
 
     async def receive_paced() -> Any:
         nonlocal seen
         while seen < session.refused - session.refused_cheaply:
-            await wait_for(refusals)
+            await wait_for(refusals, "frames in vain")
             seen += 1
         message = await receive()
         if message["type"] == "websocket.receive":
             session.note_frame()
-            await wait_for(bucket)
+            await wait_for(bucket, "frames")
         return message
 
     return receive_paced

@@ -101,6 +101,7 @@ class Channels:
         if named.type_name in self._unknown:
             return
         self._unknown.add(named.type_name)
+        self._session.note_failure(error, f"{named.name} is left out")
         text = f"{named.name} is left out: {str(error) or 'no node describes its type'}"
         status = {"level": WARNING, "message": text, "id": named.type_name}
         self._session.outbox.send(frames.op_frame("status", status))

@@ -190,6 +190,7 @@ class Client:
             self._refuse(error)
 
     def _refuse(self, error: Exception) -> None:
+        self._session.note_failure(error)
         status = {"level": ERROR, "message": str(error) or "no answer in time"}
         self._session.outbox.send(frames.op_frame("status", status))
 
@@ -259,6 +260,7 @@ class Client:
                 name, values, type_name=type_name, timeout_sec=CALL_SEC
             )
         except (AionodeError, TimeoutError) as error:
+            self._session.note_failure(error, "call")
             failure = {
                 "serviceId": call.service_id,
                 "callId": call.call_id,

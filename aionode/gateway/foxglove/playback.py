@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from aionode.clock import S_TO_NS, Time
@@ -78,10 +77,12 @@ class Playback:
     async def _watch_clock(self) -> None:
         """Tell the client of simulated time, if the node of the gateway uses it."""
         if self._clock.ros_time_is_active:
-            with suppress(RefusedError):
+            try:
                 await self._session.subscribe(
                     "/clock", "rosgraph_msgs/msg/Clock", frame=clock_frame, key="time", depth=1
                 )
+            except RefusedError as error:
+                self._session.note_failure(error, "simulated time")
 
     async def control(self, begin: Begin, request: frames.PlaybackRequest) -> None:
         """Control the player as the client wants, and tell the client its state then.

@@ -104,6 +104,9 @@ def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> li
     for name, value, text in totals:
         families.append(Family(f"aionode_gateway_{name}_total", "counter", text))
         families[-1].add(value)
+    reasons = Family("aionode_gateway_refusals_total", "counter", "Refused, dropped or late.")
+    for reason, count in stats.refusals.items():
+        reasons.add(count, reason=reason)
     queued = Family("aionode_gateway_sent", "gauge", "Frames sent to the clients there are.")
     queued.add(stats.sent)
     dropped = Family("aionode_gateway_dropped", "gauge", "Frames that clients were too slow for.")
@@ -116,7 +119,7 @@ def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> li
     for topic in stats.holders:
         if sees(topic, ""):
             held.add(1, topic=topic)
-    return [*families, queued, dropped, received, held]
+    return [*families, reasons, queued, dropped, received, held]
 
 
 COUNTERS: Final = {

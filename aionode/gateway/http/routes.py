@@ -66,6 +66,10 @@ NAMELESS: Final = (
 )
 """Added where a request without a name is refused, as another one commands the topic."""
 
+EXPECTED: Final = {404, 503, 504}
+"""What a route answers of names that are not there, at the end, and when no message comes in time:
+nothing of the client is refused."""
+
 Handler = Callable[[Asked], Awaitable[Response]]
 
 
@@ -126,7 +130,10 @@ class Endpoint:
         except (AionodeError, HTTPException, TimeoutError) as error:
             if isinstance(error, HTTPException) and error.status_code == CLIENT_GONE:
                 return  # there is nobody to answer
-            if isinstance(error, RefusedError) and not has_session:
+            if has_session:
+                if not isinstance(error, HTTPException) or error.status_code not in EXPECTED:
+                    session.note_failure(error, f"{scope['method']} {scope['path']}")
+            elif isinstance(error, RefusedError):
                 self._gateway.note_refusal(scope["aionode.credentials"], error)
             await error_response(error)(scope, receive, send)
 
@@ -305,6 +312,7 @@ async def goal_events(
                 yield event("feedback", json_of(feedback))
             result = await goal.result()
         except AionodeError as error:
+            session.note_failure(error, f"goal {action}")
             _, code, text = error_of(error)
             yield event("failure", msgspec.json.encode({"code": code, "error": text}))
         else:

@@ -55,7 +55,7 @@ async def answer_topic(asked: Asked) -> Response:
     picture = await picture_or_refusal(received)
     if media_type == PICTURES:
         boundary = f"{PICTURES}; boundary={BOUNDARY}"
-        return Stream(asked.session, pictures(newest), boundary, first=part_of(picture))
+        return Stream(asked.session, pictures(asked, newest), boundary, first=part_of(picture))
     return Response(bytes(picture.data), headers=HEADERS, media_type=picture.media_type)
 
 
@@ -179,11 +179,12 @@ async def picture_or_refusal(received: Received) -> Picture:
         raise HTTPException(501, str(error)) from error
 
 
-async def pictures(newest: Newest) -> AsyncGenerator[Frame, None]:
+async def pictures(asked: Asked, newest: Newest) -> AsyncGenerator[Frame, None]:
     """Yield the pictures of a topic, as many as the client takes; one that fails is the last."""
     while True:
         try:
             picture = await picture_or_refusal(await newest.get())
-        except HTTPException:
+        except HTTPException as error:
+            asked.session.note_failure(error, f"GET {asked.request.url.path}")
             return
         yield part_of(picture)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode.engine.rules.goal import CancelCode
-from aionode.errors import AionodeError, MessageError
+from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway.rosbridge import rosapi as _rosapi
 from aionode.gateway.rosbridge.request import number, optional_text, text, values
 from aionode.gateway.session.client_json import type_text
@@ -63,6 +63,7 @@ class Calls:
         try:
             self._lanes.start(partial(self._call, op, name, answer))
         except MessageError as error:
+            self._session.note_failure(error, f"call_service {name}")
             self._link.send(answer | {"values": str(error), "result": False})
 
     async def _call(self, op: Op, service: str, answer: Op) -> None:
@@ -71,6 +72,7 @@ class Calls:
             size = number(op, "fragment_size")
             result = {"values": await self._values(op, service), "result": True}
         except (AionodeError, TimeoutError) as error:
+            self._session.note_failure(error, f"call_service {service}")
             result = {"values": str(error), "result": False}
         self._link.send(answer | result, size)
 
@@ -97,25 +99,27 @@ class Calls:
         key = message_id if message_id is not None else object()
         answer = {"op": "action_result", "action": action, "id": message_id}
         if key in self._goals:
-            self._fail(answer, f"send_action_goal.id: {message_id} is under way; use another id")
+            problem = f"{message_id} is under way; use another id"
+            self._fail(answer, MessageError("send_action_goal.id", problem))
             return
         self._goals[key] = goal
         try:
             goal.task = self._lanes.start(partial(self._pursue, op, goal, answer, key))
         except MessageError as error:
             del self._goals[key]
-            self._fail(answer, str(error))
+            self._fail(answer, error)
 
     async def _pursue(self, op: Op, goal: Goal, answer: Op, key: object) -> None:
         """Send a goal, pass on its feedback, and answer with its result."""
         try:
             await self._pursued(op, goal, answer)
         except (AionodeError, TimeoutError) as error:
-            self._fail(answer, str(error))
+            self._fail(answer, error)
         except asyncio.CancelledError:
             if not goal.is_withdrawn:
                 raise
-            self._fail(answer, f"{goal.action}: canceled before the server had accepted it")
+            problem = f"{goal.action}: canceled before the server had accepted it"
+            self._link.send(answer | {"values": problem, "status": 0, "result": False})
         finally:
             self._goals.pop(key, None)
 
@@ -138,8 +142,9 @@ class Calls:
         }
         self._link.send(answer | result, size)
 
-    def _fail(self, answer: Op, problem: str) -> None:
-        self._link.send(answer | {"values": problem, "status": 0, "result": False})
+    def _fail(self, answer: Op, error: Exception) -> None:
+        self._session.note_failure(error, f"send_action_goal {answer['action']}")
+        self._link.send(answer | {"values": str(error), "status": 0, "result": False})
 
     async def cancel_action_goal(self, op: Op) -> None:
         """Cancel a goal by its id, or without one all goals that the client sent to the action.
@@ -168,11 +173,11 @@ class Calls:
         try:
             answer = await handle.cancel()
         except (AionodeError, TimeoutError) as error:
-            self._link.status("error", f"cancel_action_goal: {error}", op)
+            self._link.fail(error, op)
         else:
             if answer.return_code == CancelCode.REJECTED:
                 problem = "cancel was rejected: the goal goes on"
-                self._link.status("error", f"cancel_action_goal: {op['action']}: {problem}", op)
+                self._link.fail(ServiceError(op["action"], problem), op)
 
 
 def same_name(name: str, other: str) -> bool:

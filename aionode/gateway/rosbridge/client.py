@@ -18,6 +18,7 @@ from aionode.gateway.rosbridge.offers import Offers
 from aionode.gateway.rosbridge.request import FragmentStore, full_name, op_of, text
 from aionode.gateway.rosbridge.topics import Topics
 from aionode.gateway.session.lanes import Lanes
+from aionode.gateway.session.refusals import Refusal
 
 if TYPE_CHECKING:
     from aionode.gateway.session.session import Session
@@ -102,7 +103,7 @@ class Client:
         except MessageError as error:
             self.malformed += 1
             self._link.session.refused += 1
-            self._link.status("error", str(error))
+            self._link.fail(error)
         else:
             if op is not None:
                 await self._begin(op)
@@ -138,7 +139,8 @@ class Client:
         else:
             self._link.session.refused += 1
             known = ", ".join(sorted(["fragment", *self._at_once, *self._in_order]))
-            self._link.status("error", f"op: {name[:60]!r} is unknown; there are {known}", op)
+            problem = f"{name[:60]!r} is unknown; there are {known}"
+            self._link.fail(MessageError("op", problem), op, " ")
 
     async def _put(self, op: Op) -> None:
         kind, field, handler = self._in_order[op["op"]]
@@ -154,11 +156,13 @@ class Client:
         except (AionodeError, TimeoutError) as error:
             if isinstance(error, MessageError):  # a refusal by the policy is counted there
                 self._link.session.refused += 1
-            self._link.status("error", f"{op['op']}: {error}", op)
+            self._link.fail(error, op)
 
     async def _set_level(self, op: Op) -> None:
         self._link.set_level(text(op, "level"))
 
     async def _auth(self, op: Op) -> None:
         """Ignore the authentication of ROS 1, whose server is gone."""
-        self._link.status("warning", "auth: has no effect; connect with a token instead", op)
+        problem = "has no effect; connect with a token instead"
+        self._link.session.note(Refusal.IGNORED, "auth", problem)
+        self._link.status("warning", f"auth: {problem}", op)

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Link"]
 
+MOST_OP: Final = 60
+"""The longest name of an op that is told back, in characters."""
+
 LEVELS: Final = ("none", "error", "warning", "info")
 
 
@@ -42,6 +45,19 @@ class Link:
         if fragment_size:
             frame = Fragmented.of(frame, max(int(fragment_size), 1), str(op.get("id", "")))
         self.session.outbox.send(frame)
+
+    def fail(self, error: Exception, op: dict[str, Any] | None = None, what: str = "") -> None:
+        """Say that something of the client has failed: to it by a status, and in the log.
+
+        Args:
+            error: Why.
+            op: The op.
+            what: What has failed; by default the op.
+        """
+        what = what or (str(op["op"])[:MOST_OP] if op is not None else "")
+        self.session.note_failure(error, what)
+        text = str(error) or "no answer in time"
+        self.status("error", f"{what}: {text}" if what else text, op)
 
     def status(self, level: str, text: str, op: dict[str, Any] | None = None) -> None:
         """Tell the client what became of an op, if it has asked for statuses of this level."""

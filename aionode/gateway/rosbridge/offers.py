@@ -139,6 +139,9 @@ class Offers:
                 problem = told if isinstance(told, str) and told else "the client says: failed"
                 raise ServiceError(offer.name, problem)
             return await self._message(offer.type_class.Response, op)
+        except MessageError as error:
+            self._link.fail(error, op)
+            raise
         finally:
             del offer.pending[message_id]
 
@@ -170,6 +173,7 @@ class Offers:
         try:
             message_id, answer = offer.ask("action_goal")
         except ServiceError as error:
+            self._link.fail(error, what="send_action_goal")
             goal.abort(error_text=str(error))
             return offer.type_class.Result()
         offer.goals[message_id] = goal
@@ -180,6 +184,7 @@ class Offers:
             op = await self._result(offer, goal, message_id, answer)
             return await self._ended(offer, goal, op)
         except (AionodeError, TimeoutError) as error:
+            self._link.fail(error, what=f"goal {offer.name}")
             if goal.is_active:
                 goal.abort(error_text=str(error) or f"canceled, and no result in {CANCEL_SEC:g} s")
             return offer.type_class.Result()

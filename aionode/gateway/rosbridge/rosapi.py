@@ -262,8 +262,9 @@ def parameter_name(name: str) -> tuple[str, str]:
     return full_name(node), parameter
 
 
-def failed(error: Exception) -> dict[str, Any]:
+def failed(session: Session, error: Exception) -> dict[str, Any]:
     """Return the fields of an answer that say why a parameter was not read or set."""
+    session.note_failure(error, "rosapi")
     return {"successful": False, "reason": str(error) or "the node has not answered in time"}
 
 
@@ -272,7 +273,7 @@ async def get_param(session: Session, args: Args) -> dict[str, Any]:
     try:
         return {"value": await parameter_json(session, args["name"]), **DONE}
     except (AionodeError, TimeoutError) as error:
-        return {"value": args["default_value"], **failed(error)}
+        return {"value": args["default_value"], **failed(session, error)}
 
 
 DONE: Final = {"successful": True, "reason": ""}
@@ -312,7 +313,7 @@ async def set_param(session: Session, args: Args) -> dict[str, Any]:
         node, parameter = parameter_name(args["name"])
         result = await session.set_json_parameter(node, parameter, value)
     except (AionodeError, TimeoutError) as error:
-        return failed(error)
+        return failed(session, error)
     return {"successful": result.successful, "reason": result.reason}
 
 
@@ -320,7 +321,8 @@ async def set_param(session: Session, args: Args) -> dict[str, Any]:
 async def has_param(session: Session, args: Args) -> dict[str, Any]:
     try:
         value = await parameter_value(session, args["name"])
-    except (AionodeError, TimeoutError):
+    except (AionodeError, TimeoutError) as error:
+        session.note_failure(error, "rosapi")
         return {"exists": False}
     return {"exists": value is not None}
 
@@ -331,7 +333,7 @@ async def delete_param(session: Session, args: Args) -> dict[str, Any]:
         node, parameter = parameter_name(args["name"])
         (result,) = await session.set_parameters(node, {parameter: None})
     except (AionodeError, TimeoutError) as error:
-        return failed(error)
+        return failed(session, error)
     return {"successful": result.successful, "reason": result.reason}
 
 

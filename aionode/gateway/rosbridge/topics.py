@@ -22,6 +22,7 @@ from aionode.gateway.session.frames import (
 )
 from aionode.gateway.session.large_json import pieces_of
 from aionode.gateway.session.outbox import LongFrame
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.values import json_of
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
@@ -240,6 +241,7 @@ class Topics:
             try:
                 encoded = received.once(kind, make)
             except AionodeError as error:  # a peer sent bytes that are no message of the type
+                self._session.note(Refusal.UNREADABLE, f"subscribe {topic}", str(error))
                 self._link.status("error", f"subscribe: {error}")
                 return None
             return self._fragments(encoded, wish) if wish.fragment_size else encoded

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 from starlette.websockets import WebSocketDisconnect
 
 from aionode.gateway.session.frames import Fragmented
+from aionode.gateway.session.refusals import Refusal
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -68,6 +69,7 @@ async def exchange(
         await serve(session, frames())
         writing.cancel()
         if not has_left:
+            session.note(Refusal.DISCONNECTED, "connection", "too many frames that are malformed")
             await websocket.close(POLICY_VIOLATION, "too many frames that are malformed")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sized
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sized
 from contextlib import AbstractContextManager, contextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
@@ -14,6 +14,7 @@ from aionode.clock import S_TO_NS
 from aionode.errors import InterfaceNotFoundError, MessageError, RefusedError
 from aionode.gateway.session.client_json import is_large
 from aionode.gateway.session.outbox import Outbox
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.values import from_json
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
 from aionode.message import Message
@@ -68,6 +69,8 @@ class SessionBase:
         self._robot = robot
         self._limits = robot.policy.limits
         self.outbox = Outbox(self._limits.queued_bytes)
+        self.outbox.on_drop, self.outbox.on_overflow = self._note_slow, self._note_overflow
+        self._topics_of: dict[Hashable, str] = {}  # by the keys of queues in the outbox
         self._coming: Counter[str] = Counter()
         self._turn = asyncio.Lock()
         self.refused = 0
@@ -86,7 +89,33 @@ class SessionBase:
     def end(self, reason: str) -> None:
         """End the session, and tell the client why."""
         self.end_reason = reason
+        self.note(Refusal.DISCONNECTED, "connection", reason)
         self.ended.set()
+
+    def note(self, kind: Refusal, subject: str, reason: str, count: int = 1) -> None:
+        """Count and log what is refused, dropped or late of the client; see `Refusals.note`."""
+        self._robot.refusals.note(self.identity, self.kind, kind, subject, reason, count)
+
+    def note_failure(self, error: Exception, op: str = "") -> None:
+        """Count and log that an op of the client has failed.
+
+        Args:
+            error: Why.
+            op: The op, with what it is about as far as the error does not say it.
+        """
+        subject, reason = "", str(error) or "no answer in time"
+        if isinstance(error, RefusedError):
+            subject, reason = error.subject, f"refused: {error.reason}"
+        elif isinstance(error, MessageError):
+            subject, reason = error.path, error.problem
+        self.note(Refusal.of(error), ": ".join(filter(None, (op, subject))), reason)
+
+    def _note_slow(self, key: Hashable) -> None:
+        topic = self._topics_of.get(key, str(key))
+        self.note(Refusal.SLOW, topic, "messages are dropped: it reads more slowly than they come")
+
+    def _note_overflow(self) -> None:
+        self.note(Refusal.DISCONNECTED, "connection", "it does not read answers to what it asks")
 
     # The policy
 

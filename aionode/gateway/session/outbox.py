@@ -56,6 +56,10 @@ MOST_ANSWERS: Final = 1000
 """Answers that may wait: a client that reads none of them is disconnected."""
 
 
+def ignore(*_: object) -> None:
+    """Do nothing."""
+
+
 class Outbox:
     """The frames that wait for one client, and the order in which they leave.
 
@@ -72,6 +76,9 @@ class Outbox:
         overflowed: Whether it was closed because the client reads no answers.
         direct: Sends a frame at once, if it can, and returns whether it did: while nothing waits, a
             frame needs no turn of the task that writes. None if there is no such way.
+        on_drop: Called with the key of each frame that is dropped, unless only the newest was
+            wanted.
+        on_overflow: Called when it is closed because the client reads no answers.
     """
 
     def __init__(self, most_bytes: int = 64 << 20) -> None:
@@ -79,6 +86,8 @@ class Outbox:
         self.sent = 0
         self.overflowed = False
         self.direct: Callable[[Frame], bool] | None = None
+        self.on_drop: Callable[[Hashable], object] = ignore
+        self.on_overflow: Callable[[], object] = ignore
         self._most_bytes = most_bytes
         self._bytes = 0
         self._answers: deque[Frame] = deque()
@@ -115,8 +124,12 @@ class Outbox:
         self._count(key, len(frame))
         if len(queue) > depth:
             self._drop(key)
+            if depth > 1:
+                self.on_drop(key)
         while self._bytes > self._most_bytes:
-            self._drop(max(self._key_bytes, key=self._key_bytes.__getitem__))
+            largest = max(self._key_bytes, key=self._key_bytes.__getitem__)
+            self._drop(largest)
+            self.on_drop(largest)
         self._filled.set()
 
     def send(self, frame: Frame) -> None:
@@ -130,6 +143,7 @@ class Outbox:
         self._answer_bytes += len(frame)
         if len(self._answers) > MOST_ANSWERS or self._answer_bytes > self._most_bytes:
             self.overflowed = True
+            self.on_overflow()
             self.close()
         self._filled.set()
 

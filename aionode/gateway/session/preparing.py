@@ -39,19 +39,26 @@ class Preparing:
         prepare: Encodes a message.
         deliver: Takes each message once it is encoded.
         depth: How many messages may wait.
+        on_drop: Called when a message is dropped, unless only the newest was wanted.
 
     Attributes:
         dropped: How many messages were dropped.
     """
 
     def __init__(
-        self, robot: Robot, prepare: Prepare, deliver: Callable[[Received], None], depth: int
+        self,
+        robot: Robot,
+        prepare: Prepare,
+        deliver: Callable[[Received], None],
+        depth: int,
+        on_drop: Callable[[], object] = bool,
     ) -> None:
         self.dropped = 0
         self._robot = robot
         self._prepare = prepare
         self._deliver = deliver
         self._depth = depth
+        self._on_drop = on_drop
         self._waiting: deque[Received] = deque()
         self._bytes = 0
         self._task: asyncio.Task[None] | None = None
@@ -68,6 +75,8 @@ class Preparing:
         ):
             self._take()
             self.dropped += 1
+            if self._depth > 1:
+                self._on_drop()
         if self._task is None:
             self._task = self._robot.tasks.create_task(self._run())
 

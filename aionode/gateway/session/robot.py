@@ -14,6 +14,7 @@ from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.command import Commands
 from aionode.gateway.session.feed import Feeds
 from aionode.gateway.session.goal_owners import GoalOwners
+from aionode.gateway.session.refusals import Refusals
 from aionode.gateway.session.sharing import Shared
 from aionode.gateway.session.standstill import Standstills
 from aionode.message import ActionType, Message, ServiceType
@@ -53,6 +54,7 @@ class Robot:
         making: Held by who makes a large message of what a client has sent, in a thread.
         owners: Knows whose the goals are, and makes the clients that send them.
         standstills: Notices that the event loop stood still.
+        refusals: Counts and logs what clients are refused, and what is dropped or late of theirs.
     """
 
     def __init__(
@@ -77,6 +79,7 @@ class Robot:
         self.commands = Commands(tasks)
         self.owners = GoalOwners(node, audit)
         self.standstills = Standstills(self.time_base)
+        self.refusals = Refusals(node)
         self.rates = Rates(self.time_base.steady_ns)
         self._types: dict[tuple[str, frozenset[str]], Any] = {}
         self._types_now: dict[str, Any] = {}  # by name, until the graph changes

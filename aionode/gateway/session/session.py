@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode.errors import RefusedError
 from aionode.gateway.session.calls import SessionCalls
 from aionode.gateway.session.graph import SessionGraph
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.serving import Served, serve, serve_action
 from aionode.gateway.session.topics import SessionTopics
 
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from aionode.gateway.policy.policy import Verb
 
 __all__ = ["Session"]
+
+CHANGED: Final = "the policy has changed"
 
 
 class Session(SessionTopics, SessionCalls, SessionGraph):
@@ -156,7 +159,8 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         if self.credentials is not None:
             try:
                 self.identity = policy.identify(self.credentials)
-            except RefusedError:
+            except RefusedError as error:
+                self.note_failure(error, "connection")
                 self.ended.set()
         self._limits = policy.limits
         self._end_subscriptions()
@@ -167,6 +171,7 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         ]
         held += [("advertise", name, self._served_types[name]) for name in self._served]
         if not all(self.decision(*request).allowed for request in held):
+            self.note(Refusal.DISCONNECTED, "connection", f"{CHANGED}, by what it has under way")
             self.ended.set()  # which cancels its goals, and sends the stops of its leases
 
     def _end_subscriptions(self) -> None:
@@ -177,6 +182,8 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
             if not self.decision("subscribe", topic, type_name).allowed:
                 ended.append(subscribed)
                 subscribed.close()
-                result = "ended: the policy has changed"
-                self._robot.audit.note(self.identity, "subscribe", topic, result=result)
+                self._robot.audit.note(
+                    self.identity, "subscribe", topic, result=f"ended: {CHANGED}"
+                )
+                self.note(Refusal.NOT_ALLOWED, f"subscribe {topic}", f"ended: {CHANGED}")
         self.on_policy(ended)

@@ -16,6 +16,7 @@ from aionode.gateway.session.feed import Received
 from aionode.gateway.session.large_json import prepare_json
 from aionode.gateway.session.pacing import Pacing
 from aionode.gateway.session.preparing import Preparing, prepared
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.values import json_of
 from aionode.message import Message
 from aionode.qos import DurabilityPolicy, QoSProfile
@@ -67,6 +68,7 @@ class Subscribed:
         self.type_name: str = message_class.__ros_type__
         self.failed = 0
         self._session = session
+        session._topics_of[key] = topic
         self._frame = frame
         self._key = key
         self._depth = depth
@@ -75,7 +77,8 @@ class Subscribed:
         self._pacing: Pacing | None = None
         self.take = self._deliver
         if prepare is not None:
-            self._preparing = Preparing(session._robot, prepare, self._deliver, depth)
+            on_drop = partial(session._note_slow, key)
+            self._preparing = Preparing(session._robot, prepare, self._deliver, depth, on_drop)
             self.take = self._preparing.put
         if min_period_sec:
             period_ns = round(min_period_sec * S_TO_NS)
@@ -94,8 +97,8 @@ class Subscribed:
         """Take of an event of parameters what the client may see."""
         try:
             seen = self._session.seen_event(received)
-        except AionodeError:
-            self.failed += 1
+        except AionodeError as error:
+            self._note_unreadable(error)
             return
         if seen is not None:
             take(seen)
@@ -103,11 +106,15 @@ class Subscribed:
     def _deliver(self, received: Received) -> None:
         try:
             frame = self._frame(received)
-        except (AionodeError, ValueError):
-            self.failed += 1
+        except (AionodeError, ValueError) as error:
+            self._note_unreadable(error)
             return
         if frame is not None:
             self._session.outbox.put(self._key, frame, self._depth)
+
+    def _note_unreadable(self, error: Exception) -> None:
+        self.failed += 1
+        self._session.note(Refusal.UNREADABLE, f"subscribe {self.topic}", str(error))
 
     def close(self) -> None:
         """Unsubscribe; frames that wait for the client are dropped."""
@@ -118,6 +125,7 @@ class Subscribed:
                 if waiting is not None:
                     waiting.close()
             self._session._subscribed.pop(self, None)
+            self._session._topics_of.pop(self._key, None)
             self._session.outbox.discard(self._key)
 
 

@@ -1,0 +1,153 @@
+"""What a gateway refuses or drops of its clients, or reads late: each has a number and a log line.
+
+Each place that does so goes through `Refusals`, mostly by `Session.note`.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from aionode.clock import S_TO_NS
+from aionode.errors import MessageError, RefusedError, escaped
+
+if TYPE_CHECKING:
+    from aionode.gateway.policy.identity import Identity
+    from aionode.node import Node
+
+__all__ = ["Refusal", "Refusals"]
+
+WAIT_NS: Final = 10 * S_TO_NS
+"""The time between two lines about the same; while it goes on, it doubles again and again."""
+
+MOST_WAIT_NS: Final = 640 * S_TO_NS
+
+MOST_LINES: Final = 10
+"""Lines about clients of one name within `WAIT_NS`: others have lines of their own."""
+
+MOST_SUBJECTS: Final = 1_000
+"""What is remembered of clients of all names: they may invent any subjects."""
+
+MOST_TEXT: Final = 500
+"""The longest subject or reason in a line, in characters."""
+
+
+class Refusal(enum.Enum):
+    """Why something was refused, dropped or is late; the value is its word for programs."""
+
+    # The codes of RefusedError
+    UNAUTHORIZED = "unauthorized"
+    NOT_ALLOWED = "not_allowed"
+    NOT_CONFIRMED = "not_confirmed"
+    OUT_OF_LIMITS = "out_of_limits"
+    HELD = "held"
+    TOO_OLD = "too_old"
+    TOO_LARGE = "too_large"
+    TOO_FAST = "too_fast"
+    TOO_MANY = "too_many"
+    # Others
+    INVALID = "invalid_message"
+    """What the client has sent is no op, or no message of its type."""
+    FAILED = "failed"
+    """What it asked for has failed: nobody knows the type, or nobody has answered."""
+    IGNORED = "ignored"
+    """It has no effect."""
+    UNREADABLE = "unreadable"
+    """A message for the client is none of its type."""
+    SLOW = "slow"
+    """Messages for the client were dropped, as it reads more slowly than they come."""
+    LATE = "late"
+    """The gateway reads the client later than it sends."""
+    DISCONNECTED = "disconnected"
+    """The gateway has ended the client's connection."""
+
+    @classmethod
+    def of(cls, error: Exception) -> Refusal:
+        """Return the kind of an error."""
+        if isinstance(error, RefusedError):
+            return cls(error.code)
+        return cls.INVALID if isinstance(error, MessageError) else cls.FAILED
+
+
+@dataclass(slots=True)
+class Line:
+    """What was said of one subject, and when it may be said again."""
+
+    due_ns: int
+    wait_ns: int = WAIT_NS
+    unsaid: int = 0
+
+
+@dataclass(slots=True)
+class Window:
+    """How many lines there were about clients of one name in `WAIT_NS`."""
+
+    until_ns: int = 0
+    lines: int = 0
+
+
+class Refusals:
+    """Counts what is refused, dropped or late, by its kind, and warns of it.
+
+    The first of each client and subject is said, and then how many more there were: after 10 s,
+    20 s and so on.
+
+    Args:
+        node: The gateway's node, whose log it is.
+
+    Attributes:
+        counts: How many there were of each kind.
+    """
+
+    def __init__(self, node: Node) -> None:
+        self.counts: Counter[Refusal] = Counter()
+        self._node = node
+        self._now_ns = node.context.time_base.steady_ns
+        self._lines: dict[tuple[str, str, Refusal, str], Line] = {}
+        self._windows: dict[str, Window] = {}
+
+    def note(
+        self, identity: Identity, way: str, kind: Refusal, subject: str, reason: str, count: int = 1
+    ) -> None:
+        """Count something, and warn of it.
+
+        Args:
+            identity: The client; one without a name if the policy does not know it.
+            way: The way in, such as ``rosbridge``.
+            kind: Why.
+            subject: Which op, and about what. It is said again only after a while.
+            reason: What happened, and what fits.
+            count: How many there were.
+        """
+        self.counts[kind] += count
+        now_ns, subject = self._now_ns(), subject[:MOST_TEXT]
+        key = (identity.name, way, kind, subject)
+        line = self._lines.get(key)
+        if line is not None and now_ns < line.due_ns:
+            line.unsaid += count
+            return
+        unsaid = 0
+        if line is None:
+            if len(self._lines) >= MOST_SUBJECTS:
+                del self._lines[next(iter(self._lines))]
+            self._lines[key] = line = Line(now_ns + WAIT_NS)
+        else:
+            unsaid = line.unsaid
+            is_over = now_ns > line.due_ns + line.wait_ns
+            line.wait_ns = WAIT_NS if is_over else min(2 * line.wait_ns, MOST_WAIT_NS)
+            line.due_ns, line.unsaid = now_ns + line.wait_ns, 0
+        if self._has_room(identity.name, now_ns):
+            where = f"{identity.address or 'this process'}, {way}"
+            more = f" ({unsaid} more since the last line)" if unsaid else ""
+            text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
+            self._node.get_logger().warning(f"gateway: {escaped(text)}{more}")
+
+    def _has_room(self, name: str, now_ns: int) -> bool:
+        """Count a line about clients of a name, and return whether there may be one more."""
+        window = self._windows.setdefault(name, Window())
+        if now_ns >= window.until_ns:
+            window.until_ns, window.lines = now_ns + WAIT_NS, 0
+        window.lines += 1
+        return window.lines <= MOST_LINES

@@ -1,0 +1,313 @@
+"""What a gateway refuses, drops or reads late: nothing without a number and a line in the log."""
+
+from __future__ import annotations
+
+import ast
+import json
+import logging
+from pathlib import Path
+
+import pytest
+
+from aionode import gateway as _package
+from aionode.errors import MessageError, RefusedError, ServiceError
+from aionode.gateway import Identity, Policy
+from aionode.gateway.server.door import STATUS
+from aionode.gateway.session.refusals import MOST_LINES, MOST_SUBJECTS, Refusal, Refusals
+from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.interfaces.std_msgs.msg import String
+from aionode.testing import settle
+from tests.support.gateway_bench import Bench
+from tests.support.gateway_server import get, raw_connect, serving
+from tests.support.rosbridge import rosbridge_client
+from tests.support.waiting import until
+
+FOLDER = Path(str(_package.__file__)).parent
+SOURCES = {
+    str(path.relative_to(FOLDER)): ast.parse(path.read_text())
+    for path in sorted(FOLDER.rglob("*.py"))
+}
+
+ERRORS = {"AionodeError", "RefusedError", "MessageError", "ServiceError", "TimeoutError", "kinds"}
+"""What a handler catches that concerns a client."""
+
+TOLD_BY = {"note", "note_failure", "note_refusal", "fail", "_fail", "_refuse", "_note_unreadable"}
+TOLD_BY |= {"failed", "_warn"}
+"""What counts and logs it, each by way of `Refusals.note`."""
+
+UNTOLD = {
+    "foxglove/parameters.py:of": "kept for `tell`, which raises it",
+    "http/offers.py:find": "a type that nobody describes is left out of a document",
+    "http/offers.py:classes_of": "the same, after its time",
+    "rosbridge/rosapi.py:text_of": "the text says it",
+    "session/graph.py:ask": "a node of the robot without parameters",
+    "session/preparing.py:prepared": "raised again by `Received.once`",
+    "session/command.py:_hold": "raised for who waits for the lease",
+    "server/server.py:main_loop": "a second has passed",
+    "server/server.py:shutdown": "the gateway ends",
+    "server/websocket.py:close": "its client reads no goodbye",
+    "http/answers.py:_send_chunks": "the session has ended, which was said",
+    "http/answers.py:_stay_alive": "some seconds have passed",
+}
+"""Functions that catch such an error and say nothing, with the reason."""
+
+
+def lines(caplog: pytest.LogCaptureFixture) -> list[str]:
+    """Return the warnings of the gateway."""
+    return [record.getMessage() for record in caplog.records if record.levelno == logging.WARNING]
+
+
+# The one place
+
+
+@pytest.mark.parametrize("kind", Refusal)
+async def test_each_refusal_has_a_number_and_a_line_limited_in_rate(
+    bench: Bench, kind: Refusal, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The first is said at once, and the others after 10 s, 20 s and so on."""
+    refusals, who = Refusals(bench.robot.node), Identity("page", address="192.0.2.1")
+    for _ in range(60):
+        refusals.note(who, "rosbridge", kind, "publish /x", "a \x1b[31m reason")
+        await bench.advance(1.0)
+
+    assert refusals.counts == {kind: 60}
+    assert [line.rpartition(" (")[2] for line in lines(caplog)] == [
+        "192.0.2.1, rosbridge): publish /x: a \\x1b[31m reason",
+        "9 more since the last line)",
+        "19 more since the last line)",
+    ]
+
+
+async def test_a_subject_that_was_quiet_is_said_at_once(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Who looks for a mistake tries it again and again."""
+    for _ in range(5):
+        bench.robot.refusals.note(Identity("page"), "http", Refusal.HELD, "publish /x", "held")
+        await bench.advance(30.0)
+
+    assert len(lines(caplog)) == 5
+
+
+async def test_one_client_hides_no_lines_about_another(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It may ask for any names; and the memory for these is bounded."""
+    refusals = Refusals(bench.robot.node)
+    for number in range(3 * MOST_SUBJECTS):
+        refusals.note(Identity("loud"), "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
+    refusals.note(Identity("quiet"), "http", Refusal.NOT_ALLOWED, "publish /x", "no")
+
+    assert sum("loud" in line for line in lines(caplog)) == MOST_LINES
+    assert sum("quiet" in line for line in lines(caplog)) == 1
+    assert len(refusals._lines) <= MOST_SUBJECTS
+    assert refusals.counts[Refusal.NOT_ALLOWED] == 3 * MOST_SUBJECTS + 1
+
+
+# All ways to it
+
+
+@pytest.mark.parametrize("kind", Refusal)
+def test_each_kind_of_refusal_happens_somewhere(kind: Refusal) -> None:
+    """A kind that nobody notes is none."""
+    by_code = {
+        node.value
+        for name, tree in SOURCES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and not name.endswith(("refusals.py", "door.py"))
+    }
+    by_name = {
+        node.attr
+        for name, tree in SOURCES.items()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute)
+    }
+
+    assert kind.value in by_code or kind.name in by_name
+
+
+def test_each_code_of_a_refusal_is_a_kind() -> None:
+    """And has a status of HTTP."""
+    assert {Refusal.of(RefusedError("x", "y", code)).value for code in STATUS} == set(STATUS)
+    assert Refusal.of(MessageError("x", "y")) is Refusal.INVALID
+    assert Refusal.of(ServiceError("x", "y")) is Refusal.FAILED
+
+
+def test_nothing_that_fails_for_a_client_is_left_out_without_a_word() -> None:
+    """Each place that catches such an error raises another one, or counts and logs it."""
+    silent = {
+        f"{name}:{function.name}"
+        for name, tree in SOURCES.items()
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
+        for node in own_nodes(function)
+        if (isinstance(node, ast.ExceptHandler) and catches(node.type) and not tells(node))
+        or (isinstance(node, ast.Call) and is_suppress(node) and any(map(catches, node.args)))
+    }
+
+    assert silent == set(UNTOLD)
+
+
+def own_nodes(function: ast.AST) -> list[ast.AST]:
+    """Return the nodes of a function, without those of functions within it."""
+    found: list[ast.AST] = []
+    waiting = list(ast.iter_child_nodes(function))
+    while waiting:
+        node = waiting.pop()
+        if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            found.append(node)
+            waiting.extend(ast.iter_child_nodes(node))
+    return found
+
+
+def catches(node: ast.AST | None) -> bool:
+    """Return whether an expression names such an error."""
+    return node is not None and any(
+        isinstance(each, ast.Name) and each.id in ERRORS for each in ast.walk(node)
+    )
+
+
+def is_suppress(node: ast.Call) -> bool:
+    """Return whether a call is one of `contextlib.suppress`."""
+    return getattr(node.func, "id", getattr(node.func, "attr", "")) == "suppress"
+
+
+def tells(handler: ast.ExceptHandler) -> bool:
+    """Return whether a handler raises, or counts and logs."""
+    for node in ast.walk(handler):
+        if isinstance(node, ast.Raise):
+            return True
+        if isinstance(node, ast.Call):
+            name = getattr(node.func, "attr", getattr(node.func, "id", ""))
+            if name in TOLD_BY:
+                return True
+    return False
+
+
+# What a user sees
+
+
+OPS: list[tuple[str, dict[str, object], Refusal, str]] = [
+    ("publish", {"topic": "/cmd_vel", "type": "geometry_msgs/TwistStamped"}, Refusal.INVALID,
+     "publish: publish.type: /cmd_vel has the type geometry_msgs/msg/Twist, not"),
+    ("publish", {"topic": "/cmd_vel", "type": "geometry_msgs/Twist", "msg": {"x": 1}},
+     Refusal.INVALID, "publish: geometry_msgs/msg/Twist"),
+    ("subscribe", {"topic": "/none"}, Refusal.FAILED, "subscribe: "),
+    ("subscribe", {"topic": "/x", "type": "no/Such"}, Refusal.FAILED, "subscribe: "),
+    ("call_service", {"service": "/none"}, Refusal.FAILED, "call_service /none: "),
+    ("call_service", {"service": "/rosapi/none"}, Refusal.INVALID, "call_service /rosapi/none: "),
+    ("send_action_goal", {"action": "/none"}, Refusal.FAILED, "send_action_goal /none: "),
+    ("fly", {}, Refusal.INVALID, "op: 'fly' is unknown"),
+    ("auth", {}, Refusal.IGNORED, "auth: has no effect"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("op", "fields", "kind", "said"), OPS)
+async def test_an_op_that_fails_is_in_the_log_of_the_gateway(
+    bench: Bench,
+    op: str,
+    fields: dict[str, object],
+    kind: Refusal,
+    said: str,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A page of roslib that asks for no statuses hears nothing, and nor did who starts it."""
+    bench.node.create_subscription(Twist, "/cmd_vel", lambda _: None, 10)
+    await settle()
+    async with rosbridge_client(bench.robot) as page:
+        page.send(op, **fields)
+        await bench.advance(2.0)
+
+    assert bench.robot.refusals.counts == {kind: 1}
+    assert any(said in line for line in lines(caplog)), lines(caplog)
+
+
+async def test_a_half_of_a_pair_of_characters_is_in_the_log(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It is no text, and JavaScript makes it of a name that is cut in the middle."""
+    async with rosbridge_client(bench.robot) as page:
+        page.send_frame('{"op":"publish","topic":"/x","type":"std_msgs/String",'
+                               '"msg":{"data":"\\ud800"}}')  # fmt: skip
+        await settle()
+
+    assert bench.robot.refusals.counts[Refusal.INVALID] == 1
+    assert lines(caplog)
+
+
+async def test_a_gateway_that_only_reads_names_the_option(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """It is the first thing that a new user meets."""
+    async with serving() as gateway, raw_connect(gateway, "/", {}, []) as page:
+        topic = {"topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
+        await page.send(json.dumps({"op": "advertise", **topic}))
+        await until(lambda: gateway.stats.refusals == {"not_allowed": 1})
+
+    (line,) = lines(caplog)
+    assert line.startswith("gateway: local (127.0.0.1, rosbridge): advertise: publish /cmd_vel: ")
+    assert "--allow-write" in line
+
+
+async def test_more_clients_than_there_may_be_are_in_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """A page only sees that its connection has failed."""
+    policy = '[[who]]\nname = "local"\nloopback = true\n[limits]\nclients = 1'
+    async with serving(Policy.parse(policy)) as gateway, raw_connect(gateway, "/", {}, []):
+        await until(lambda: gateway.stats.sessions)
+        assert (await get(gateway, "/topics")).status_code == 429
+
+    (line,) = lines(caplog)
+    assert "connection: refused: there are 1 clients already" in line
+
+
+async def test_a_driver_that_is_refused_because_of_another_is_in_the_log(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Or it seems that the robot does not listen."""
+    async with (
+        serving(Policy.default(allow_write=True)) as gateway,
+        raw_connect(gateway, "/", {}, []) as first,
+        raw_connect(gateway, "/", {}, []) as second,
+    ):
+        command = {"op": "publish", "topic": "/cmd_vel", "type": "geometry_msgs/Twist"}
+        await first.send(json.dumps(command))
+        await until(lambda: gateway.stats.holders)
+        for _ in range(5):
+            await second.send(json.dumps(command))
+        await until(lambda: gateway.stats.refusals.get("held", 0) == 5)
+
+    assert len([line for line in lines(caplog) if "local commands it now" in line]) == 1
+
+
+async def test_messages_for_a_slow_client_are_counted_and_said(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """But not where it wants the newest only."""
+    words = bench.node.create_publisher(String, "/words", 100)
+    async with bench.session() as session:
+        for depth in (1, 3):
+            await session.subscribe(
+                "/words", frame=lambda received: received.message.data, key=depth, depth=depth
+            )
+        for _ in range(10):
+            words.publish(String(data="x"))
+        await settle()
+
+    assert bench.robot.refusals.counts == {Refusal.SLOW: 7}
+    (line,) = lines(caplog)
+    assert "/words: messages are dropped: it reads more slowly than they come" in line
+
+
+async def test_a_client_that_sends_too_fast_is_said_to_be_late(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """What it sends is handled later than it was sent."""
+    policy = '[[who]]\nname = "local"\nloopback = true\n[limits]\nframes_per_sec = 20'
+    async with serving(Policy.parse(policy)) as gateway, raw_connect(gateway, "/", {}, []) as page:
+        for _ in range(25):
+            await page.send('{"op":"set_level","level":"none"}')
+        await until(lambda: gateway.stats.refusals.get("late", 0) >= 1)
+
+    assert "it sends more than 20 a second, and so is read later" in caplog.text
