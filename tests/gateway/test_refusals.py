@@ -40,6 +40,7 @@ UNTOLD = {
     "http/offers.py:find": "a type that nobody describes is left out of a document",
     "http/offers.py:classes_of": "the same, after its time",
     "rosbridge/rosapi.py:text_of": "the text says it",
+    "rosbridge/link.py:raw_id": "an id that is too long to be told back; the op has failed by it",
     "session/graph.py:ask": "a node of the robot without parameters",
     "session/preparing.py:prepared": "raised again by `Received.once`",
     "session/command.py:_hold": "raised for who waits for the lease",
@@ -92,7 +93,7 @@ async def test_a_subject_that_was_quiet_is_said_at_once(
 async def test_one_client_hides_no_lines_about_another(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """It may ask for any names; and the memory for these is bounded."""
+    """It may ask for any names."""
     refusals = Refusals(bench.robot.node)
     for number in range(3 * MOST_SUBJECTS):
         refusals.note(Identity("loud"), "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
@@ -100,7 +101,6 @@ async def test_one_client_hides_no_lines_about_another(
 
     assert sum("loud" in line for line in lines(caplog)) == MOST_LINES
     assert sum("quiet" in line for line in lines(caplog)) == 1
-    assert len(refusals._lines) <= MOST_SUBJECTS
     assert refusals.counts[Refusal.NOT_ALLOWED] == 3 * MOST_SUBJECTS + 1
 
 

@@ -12,7 +12,8 @@ import msgspec
 from aionode.engine.rules.goal import CancelCode
 from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway.rosbridge import rosapi as _rosapi
-from aionode.gateway.rosbridge.request import number, optional_text, text, values
+from aionode.gateway.rosbridge.link import raw_id
+from aionode.gateway.rosbridge.request import id_of, number, text, values
 from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.values import json_of
 
@@ -58,23 +59,19 @@ class Calls:
     async def call_service(self, op: Op) -> None:
         """Begin a call; the client goes on meanwhile."""
         name, _, old_id = text(op, "service").partition("#")  # as in the first rosbridge
-        message_id = optional_text(op, "id") or old_id or None
-        answer = {"op": "service_response", "service": name, "id": message_id}
-        try:
-            self._lanes.start(partial(self._call, op, name, answer))
-        except MessageError as error:
-            self._session.note_failure(error, f"call_service {name}")
-            self._link.send(answer | {"values": str(error), "result": False})
+        if old_id and op.get("id") is None:
+            op["id"] = old_id
+        answer = {"op": "service_response", "service": name, "id": raw_id(op)}
+        self._lanes.start(partial(self._call, op, name, answer))
 
     async def _call(self, op: Op, service: str, answer: Op) -> None:
-        size = 0.0
         try:
             size = number(op, "fragment_size")
             result = {"values": await self._values(op, service), "result": True}
         except (AionodeError, TimeoutError) as error:
-            self._session.note_failure(error, f"call_service {service}")
-            result = {"values": str(error), "result": False}
-        self._link.send(answer | result, size)
+            self._link.fail(error, op)
+        else:
+            self._link.send(answer | result, size)
 
     async def _values(self, op: Op, service: str) -> Any:
         args = values(op, "args")
@@ -93,28 +90,31 @@ class Calls:
     # Actions
 
     async def send_action_goal(self, op: Op) -> None:
-        """Begin a goal; its feedback and its result follow."""
-        action, message_id = text(op, "action"), optional_text(op, "id")
+        """Begin a goal; its feedback and its result follow.
+
+        Raises:
+            MessageError: another goal with the same id is under way, or there are too many.
+        """
+        action, message_id = text(op, "action"), id_of(op)
         goal = Goal(action)
         key = message_id if message_id is not None else object()
-        answer = {"op": "action_result", "action": action, "id": message_id}
+        answer = {"op": "action_result", "action": action, "id": raw_id(op)}
         if key in self._goals:
             problem = f"{message_id} is under way; use another id"
-            self._fail(answer, MessageError("send_action_goal.id", problem))
-            return
+            raise MessageError("send_action_goal.id", problem)
         self._goals[key] = goal
         try:
             goal.task = self._lanes.start(partial(self._pursue, op, goal, answer, key))
-        except MessageError as error:
+        except MessageError:
             del self._goals[key]
-            self._fail(answer, error)
+            raise
 
     async def _pursue(self, op: Op, goal: Goal, answer: Op, key: object) -> None:
         """Send a goal, pass on its feedback, and answer with its result."""
         try:
             await self._pursued(op, goal, answer)
         except (AionodeError, TimeoutError) as error:
-            self._fail(answer, error)
+            self._link.fail(error, op)
         except asyncio.CancelledError:
             if not goal.is_withdrawn:
                 raise
@@ -142,17 +142,13 @@ class Calls:
         }
         self._link.send(answer | result, size)
 
-    def _fail(self, answer: Op, error: Exception) -> None:
-        self._session.note_failure(error, f"send_action_goal {answer['action']}")
-        self._link.send(answer | {"values": str(error), "status": 0, "result": False})
-
     async def cancel_action_goal(self, op: Op) -> None:
         """Cancel a goal by its id, or without one all goals that the client sent to the action.
 
         Raises:
             MessageError: the client has no such goal.
         """
-        action, message_id = text(op, "action"), optional_text(op, "id")
+        action, message_id = text(op, "action"), id_of(op)
         goals = [
             goal
             for key, goal in self._goals.items()

@@ -15,7 +15,7 @@ from aionode.errors import AionodeError, MessageError
 from aionode.gateway.rosbridge.calls import Calls
 from aionode.gateway.rosbridge.link import Link
 from aionode.gateway.rosbridge.offers import Offers
-from aionode.gateway.rosbridge.request import FragmentStore, full_name, op_of, text
+from aionode.gateway.rosbridge.request import FragmentStore, full_name, head_of, op_of, text
 from aionode.gateway.rosbridge.topics import Topics
 from aionode.gateway.session.lanes import Lanes
 from aionode.gateway.session.refusals import Refusal
@@ -103,7 +103,7 @@ class Client:
         except MessageError as error:
             self.malformed += 1
             self._link.session.refused += 1
-            self._link.fail(error)
+            self._link.fail(error, head_of(frame))
         else:
             if op is not None:
                 await self._begin(op)

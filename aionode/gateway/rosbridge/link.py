@@ -4,16 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+import msgspec
+
 from aionode.errors import MessageError
+from aionode.gateway.rosbridge.request import id_of
 from aionode.gateway.session.frames import Fragmented, op_frame
 
 if TYPE_CHECKING:
     from aionode.gateway.session.session import Session
 
-__all__ = ["Link"]
+__all__ = ["Link", "raw_id"]
 
 MOST_OP: Final = 60
 """The longest name of an op that is told back, in characters."""
+
+ANSWERS: Final = {
+    "call_service": ("service_response", "service"),
+    "send_action_goal": ("action_result", "action"),
+}
+"""The ops that are always answered: by which op, and about what they are."""
 
 LEVELS: Final = ("none", "error", "warning", "info")
 
@@ -43,27 +52,46 @@ class Link:
         """Send an op, in fragments if it is longer than a size that the client has asked for."""
         frame = op_frame({key: value for key, value in op.items() if value is not None})
         if fragment_size:
-            frame = Fragmented.of(frame, max(int(fragment_size), 1), str(op.get("id", "")))
+            message_id = op.get("id")
+            told = bytes(message_id).decode() if isinstance(message_id, msgspec.Raw) else ""
+            frame = Fragmented.of(frame, max(int(fragment_size), 1), told.strip('"'))
         self.session.outbox.send(frame)
 
     def fail(self, error: Exception, op: dict[str, Any] | None = None, what: str = "") -> None:
-        """Say that something of the client has failed: to it by a status, and in the log.
+        """Say that something of the client has failed: to it, and in the log.
+
+        A call or a goal is answered in any case; of others it is told by a status.
 
         Args:
             error: Why.
             op: The op.
             what: What has failed; by default the op.
         """
-        what = what or (str(op["op"])[:MOST_OP] if op is not None else "")
-        self.session.note_failure(error, what)
+        name = str(op["op"])[:MOST_OP] if op is not None else ""
         text = str(error) or "no answer in time"
-        self.status("error", f"{what}: {text}" if what else text, op)
+        if op is None or name not in ANSWERS:
+            what = what or name
+            self.session.note_failure(error, what)
+            self.status("error", f"{what}: {text}" if what else text, op)
+            return
+        answer, field = ANSWERS[name]
+        asked = op[field].partition("#")[0] if isinstance(op.get(field), str) else None
+        self.session.note_failure(error, f"{name} {asked or ''}".strip())
+        told = {"op": answer, field: asked, "id": raw_id(op), "values": text, "result": False}
+        self.send(told | ({"status": 0} if name == "send_action_goal" else {}))
 
     def status(self, level: str, text: str, op: dict[str, Any] | None = None) -> None:
         """Tell the client what became of an op, if it has asked for statuses of this level."""
         if LEVELS.index(level) > self._level:
             return
-        message_id = None if op is None else op.get("id")
-        if not isinstance(message_id, str):
-            message_id = None
+        message_id = None if op is None else raw_id(op)
         self.send({"op": "status", "level": level, "msg": text, "id": message_id})
+
+
+def raw_id(op: dict[str, Any]) -> msgspec.Raw | None:
+    """Return the id of an op, to be told back as it is; None without one, or if it is too long."""
+    try:
+        message_id = id_of(op)
+    except MessageError:
+        return None
+    return None if message_id is None else msgspec.Raw(message_id)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any, Final, NamedTuple
+
+import msgspec
 
 from aionode.clock import Duration
 from aionode.errors import MessageError
@@ -18,6 +21,8 @@ from aionode.qos import (
 __all__ = [
     "FragmentStore",
     "full_name",
+    "head_of",
+    "id_of",
     "number",
     "op_of",
     "profile",
@@ -89,6 +94,43 @@ def text(op: Op, name: str, default: str | None = None, most: int | None = LONGE
 def optional_text(op: Op, name: str) -> str | None:
     """Return a field of text, or None if it is missing; see `text`."""
     return None if op.get(name) is None else text(op, name)
+
+
+def id_of(op: Op) -> str | None:
+    """Return the id of an op as JSON, or None without one: clients choose any, such as a number.
+
+    Raises:
+        MessageError: it is too long to be remembered.
+    """
+    value = op.get("id")
+    if value is None:
+        return None
+    try:
+        told = msgspec.json.encode(value).decode()
+    except OverflowError:  # a number of more than 64 bits
+        told = json.dumps(value)
+    if len(told) > LONGEST_NAME:
+        problem = f"{len(told)} characters, at most {LONGEST_NAME} fit"
+        raise MessageError(f"{op['op']}.id", problem)
+    return told
+
+
+class Head(msgspec.Struct):
+    """What an answer needs of an op, whatever else is in it."""
+
+    op: str
+    id: Any = None
+    service: str = ""
+    action: str = ""
+
+
+def head_of(frame: str | bytes) -> Op | None:
+    """Return what an answer needs of a frame that is too large to be decoded; None without it."""
+    try:
+        head = msgspec.json.decode(frame, type=Head)
+    except (msgspec.DecodeError, UnicodeError, RecursionError):
+        return None
+    return msgspec.structs.asdict(head)
 
 
 def number(op: Op, name: str, default: float = 0) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
-from aionode.gateway.rosbridge.request import number, optional_text, profile, text, values
+from aionode.gateway.rosbridge.request import id_of, number, profile, text, values
 from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.frames import (
     Fragmented,
@@ -138,13 +138,13 @@ class Topics:
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type"), "msg")
         await self._advertise(topic, type_name, op)
-        ids, message_id = self._advertised.setdefault(topic, set()), optional_text(op, "id")
+        ids, message_id = self._advertised.setdefault(topic, set()), id_of(op)
         refuse_more(ids, message_id, "advertise.id")
         ids.add(message_id)
 
     async def unadvertise(self, op: Op) -> None:
         """Take back the topic advertised with one id, or with all."""
-        topic, message_id = self._session.topic_name(text(op, "topic")), optional_text(op, "id")
+        topic, message_id = self._session.topic_name(text(op, "topic")), id_of(op)
         ids = self._advertised.get(topic)
         if ids is None or (message_id is not None and message_id not in ids):
             raise MessageError("unadvertise.topic", f"{topic} is not advertised with this id")
@@ -183,7 +183,7 @@ class Topics:
         Each op opens the subscription anew, so that a second one of a client gets the messages
         that publishers keep for late ones, as the first did.
         """
-        topic, message_id = text(op, "topic"), optional_text(op, "id")
+        topic, message_id = text(op, "topic"), id_of(op)
         earlier = self._wishes.get(topic, {})
         refuse_more(earlier, message_id, "subscribe.id")
         wishes = earlier | {message_id: wish_of(op)}
@@ -192,7 +192,7 @@ class Topics:
 
     async def unsubscribe(self, op: Op) -> None:
         """End one id of a subscription, or all of a topic."""
-        topic, message_id = text(op, "topic"), optional_text(op, "id")
+        topic, message_id = text(op, "topic"), id_of(op)
         wishes = self._wishes.get(topic)
         if wishes is None or (message_id is not None and message_id not in wishes):
             raise MessageError("unsubscribe.topic", f"{topic} is not subscribed with this id")
