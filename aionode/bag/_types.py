@@ -15,7 +15,8 @@ __all__ = ["class_of", "definition_of"]
 
 SEPARATOR: Final = "=" * 80
 SECTION: Final = re.compile(r"^={20,}\s*\nMSG: (\S+)[^\n]*\n?", re.MULTILINE)
-LONG_NAME: Final = re.compile(r"\b([a-z]\w*)/(?:msg|srv|action)/([A-Z]\w*)")
+IDL_HEAD: Final = re.compile(r"^={20,}\s*\nIDL: [^\n]*\n?", re.MULTILINE)
+LONG_NAME: Final = re.compile(r"\b([A-Za-z]\w*)/(?:msg|srv|action)/([A-Za-z]\w*)")
 
 
 @cache
@@ -49,7 +50,7 @@ def class_of(typename: str, wanted_hash: str, encoding: str, definition: str) ->
     """
     try:
         known = get_interface(typename)
-    except InterfaceNotFoundError:
+    except (InterfaceNotFoundError, TypeError, ValueError):
         known = None
     if known is not None and (not definition or wanted_hash == type_hash(known)):
         return known
@@ -70,15 +71,18 @@ def made_class(typename: str, encoding: str, definition: str) -> Any:
     from aionode.idl import define  # most bags have known types
 
     if encoding == "ros2idl":
-        definition = as_ros2msg(typename, definition)
-    elif encoding != "ros2msg":
+        text = IDL_HEAD.sub("", definition)
+        return define(plain(typename), text, reuse=True, encoding=encoding, recorded=True)
+    if encoding != "ros2msg":
         raise ValueError(f"its format is {encoding!r}, not ros2msg or ros2idl")
     pieces = SECTION.split(definition)
     uses = {
         plain(name): with_plain_names(text)
         for name, text in zip(pieces[1::2], pieces[2::2], strict=True)
     }
-    return define(plain(typename), with_plain_names(pieces[0]), uses=uses, reuse=True)
+    return define(
+        plain(typename), with_plain_names(pieces[0]), uses=uses, reuse=True, recorded=True
+    )
 
 
 def plain(typename: str) -> str:
@@ -90,14 +94,3 @@ def plain(typename: str) -> str:
 def with_plain_names(text: str) -> str:
     """Return a definition whose types have such names."""
     return LONG_NAME.sub(lambda match: plain(match[0]).replace("/msg/", "/"), text)
-
-
-def as_ros2msg(typename: str, definition: str) -> str:
-    """Return a definition in IDL as one in format ros2msg."""
-    from rosbags.typesys import Stores, get_types_from_idl, get_typestore
-
-    store = get_typestore(Stores.EMPTY)
-    body = re.sub(r"^={20,}\s*\nIDL: [^\n]*\n", "", definition, flags=re.MULTILINE)
-    store.register(get_types_from_idl(body))
-    text: str = store.generate_msgdef(typename, ros_version=2)[0]
-    return text

@@ -15,7 +15,8 @@ from aionode.idl._definition import (
     TypeText,
     split_type_name,
 )
-from aionode.idl._parser import PRIMITIVES, parse
+from aionode.idl._omg import messages_in
+from aionode.idl._parser import BUILTINS, LARGEST_TEXT, PRIMITIVES, parse
 from aionode.interfaces import get_interface
 from aionode.message import (
     ActionType,
@@ -29,6 +30,12 @@ from aionode.message import (
 
 __all__ = ["Builder", "define"]
 
+DEEPEST = 50
+"""Largest depth of types in types."""
+
+MOST_MEMBERS = 10_000
+"""Most fields and constants of a type, with those of all that it uses."""
+
 BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action": ActionType}
 
 
@@ -39,6 +46,8 @@ def define(
     types: Mapping[str, type[Interface]] | None = None,
     uses: Mapping[str, str] | None = None,
     reuse: bool = False,
+    encoding: str = "ros2msg",
+    recorded: bool = False,
 ) -> type[Any]:
     r"""Return the class that a definition describes.
 
@@ -54,13 +63,28 @@ def define(
             aionode.interfaces.
         reuse: Whether a type of aionode.interfaces that has the same definition is returned, and
             used, in place of a new one.
+        encoding: The format of the text: ``ros2msg``, or ``ros2idl``, whose other structures may be
+            used, too.
+        recorded: Whether names may be others than ROS allows, as in recordings. A field that has
+            the name of a keyword of Python gets an underscore after it: ``from_``.
 
     Raises:
         IdlError: The text is not valid, or uses an unknown type.
         TypeError: `typename` is not a valid name of a ROS type.
     """
-    texts = {name: parse(name, used) for name, used in (uses or {}).items()}
-    builder = Builder(texts | {typename: parse(typename, text)}, reuse=reuse)
+    if encoding == "ros2idl":
+        found = messages_in(text, typename, recorded=recorded)
+        if typename not in found:
+            name = typename.rpartition("/")[2]
+            raise IdlError(typename, 0, 0, f"the text has no struct {name}")
+        texts = {name: InterfaceText(name, typename, (part,)) for name, part in found.items()}
+    else:
+        given = {**(uses or {}), typename: text}
+        size = sum(map(len, given.values()))
+        if size > LARGEST_TEXT:
+            raise IdlError(typename, 0, 0, f"{size} characters; at most {LARGEST_TEXT} are read")
+        texts = {name: parse(name, used, recorded=recorded) for name, used in given.items()}
+    builder = Builder(texts, reuse=reuse, recorded=recorded)
     builder.built.update(types or {})
     return builder.build(typename)
 
@@ -68,9 +92,13 @@ def define(
 class Builder:
     """Creates the classes of several definitions that may use each other."""
 
-    def __init__(self, texts: Mapping[str, InterfaceText], *, reuse: bool) -> None:
+    def __init__(
+        self, texts: Mapping[str, InterfaceText], *, reuse: bool, recorded: bool = False
+    ) -> None:
         self.texts = texts
         self.reuse = reuse
+        self.recorded = recorded
+        self.members = 0
         self.built: dict[str, type[Interface]] = {}
         self.open: list[str] = []
         """Names of the types that are being built; each uses the next."""
@@ -82,9 +110,15 @@ class Builder:
             IdlError: The type of a field is unknown, or contains itself.
         """
         if typename not in self.built:
+            text = self.texts[typename]
+            self.members = self.members if self.open else 0
+            self.members += sum(len(part.members) for part in text.parts)
+            if len(self.open) >= DEEPEST or self.members > MOST_MEMBERS:
+                problem = f"types in types deeper than {DEEPEST}, or with more than {MOST_MEMBERS}"
+                raise IdlError(text.file, 0, 0, f"{problem} fields in all")
             self.open.append(typename)
             try:
-                built = self.make(self.texts[typename])
+                built = self.make(text)
             finally:
                 self.open.pop()
             self.built[typename] = (self.reuse and self.existing(typename, built)) or built
@@ -125,7 +159,9 @@ class Builder:
                 body[member.name] = member.value
         body["__annotations__"] = annotations
         nested = "." in body["__qualname__"]
-        options = {} if nested else {"typename": text.typename, "by_name": False}
+        options: dict[str, Any] = {"recorded": self.recorded}
+        if not nested:
+            options |= {"typename": text.typename, "by_name": False}
         return new_class(name, (Message,), options, lambda space: space.update(body))
 
     def field_type(self, text: InterfaceText, member: MemberText) -> FieldType:
@@ -140,6 +176,8 @@ class Builder:
             problem = f"no message type {type_.name!r} here or in aionode.interfaces"
             if type_.name == "Header":
                 problem += "; did you mean std_msgs/Header?"
+            elif type_.name in BUILTINS:
+                problem += f"; did you mean {BUILTINS[type_.name]}?"
             elif error.suggestions:
                 problem += f"; did you mean {error.suggestions[0]}?"
             raise IdlError(text.file, member.line, 1, problem) from None

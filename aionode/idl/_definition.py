@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Literal
 
 from aionode.message import FieldType
 from aionode.message._message import checked_type_name
 
-__all__ = ["HALVES", "InterfaceText", "MemberText", "MessageText", "TypeText", "split_type_name"]
+__all__ = [
+    "HALVES",
+    "InterfaceText",
+    "LineError",
+    "MemberText",
+    "MessageText",
+    "TypeText",
+    "split_type_name",
+]
+
+RECORDED_TYPE_NAME = re.compile(r"[A-Za-z]\w*/(msg|srv|action)/[A-Za-z]\w*", re.ASCII)
+"""Names in recordings, whose letters ROS 2 allows only in its own spelling."""
 
 HALVES: dict[str, tuple[str, ...]] = {
     "msg": ("",),
@@ -77,11 +89,22 @@ class InterfaceText:
     parts: tuple[MessageText, ...]
 
 
+class LineError(Exception):
+    """A definition cannot be parsed: what is wrong, and at which offset in the line or text."""
+
+    def __init__(self, offset: int, problem: str) -> None:
+        self.offset = offset
+        self.problem = problem
+        super().__init__(problem)
+
+
 def split_type_name(typename: str) -> tuple[str, str, str]:
     """Return package, kind (``msg``, ``srv`` or ``action``) and name of an interface.
 
     Raises:
         TypeError: It is not a valid name of an interface.
     """
-    package, kind, name = checked_type_name(typename).split("/")
+    if RECORDED_TYPE_NAME.fullmatch(typename) is None:
+        checked_type_name(typename)
+    package, kind, name = typename.split("/")
     return package, kind, name

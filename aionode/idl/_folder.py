@@ -4,37 +4,56 @@ from __future__ import annotations
 
 import re
 import sys
+import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import aionode.interfaces
+from aionode._process.bounded_files import read_file
 from aionode.errors import IdlError
 from aionode.idl._build import Builder
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
+from aionode.idl._omg import parse_idl
 from aionode.idl._parser import parse
 
-__all__ = ["Interfaces", "load_interfaces", "read_folder"]
+__all__ = ["FileTexts", "Interfaces", "load_interfaces", "read_folder", "refuse"]
 
 PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 
 
 class Interfaces(Mapping[str, type[Any]]):
-    """Interfaces by their ROS name, and as attributes: ``loaded.my_msgs.msg.Words``."""
+    """Interfaces by their ROS name, and as attributes: ``loaded.my_msgs.msg.Words``.
 
-    def __init__(self, types: Mapping[str, type[Any]]) -> None:
+    Args:
+        types: The classes.
+        failed: Why there is no class of some types, which is raised where one is asked for.
+    """
+
+    def __init__(
+        self, types: Mapping[str, type[Any]], failed: Mapping[str, IdlError] | None = None
+    ) -> None:
         self._types = dict(sorted(types.items()))
+        self._failed = dict(failed or {})
         self._packages: dict[str, ModuleType] = {}
         for typename, cls in self._types.items():
-            package, kind, name = split_type_name(typename)
-            outer = self._packages.setdefault(package, ModuleType(package))
-            if not hasattr(outer, kind):
-                setattr(outer, kind, ModuleType(f"{package}.{kind}"))
-            setattr(getattr(outer, kind), name, cls)
+            setattr(self._module_of(typename), typename.rpartition("/")[2], cls)
+        for typename, error in self._failed.items():
+            refuse(self._module_of(typename), typename.rpartition("/")[2], error)
+
+    def _module_of(self, typename: str) -> ModuleType:
+        package, kind, _ = split_type_name(typename)
+        outer = self._packages.setdefault(package, ModuleType(package))
+        if not hasattr(outer, kind):
+            setattr(outer, kind, ModuleType(f"{package}.{kind}"))
+        module: ModuleType = getattr(outer, kind)
+        return module
 
     def __getitem__(self, typename: str) -> type[Any]:
+        if typename in self._failed:
+            raise self._failed[typename]
         return self._types[typename]
 
     def __iter__(self) -> Iterator[str]:
@@ -58,7 +77,7 @@ class Interfaces(Mapping[str, type[Any]]):
         )
 
 
-def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
+def load_interfaces(path: str | Path, *, reuse: bool = True, lenient: bool = False) -> Interfaces:
     """Return the interfaces of a folder as classes, without a build step.
 
     The folder is a package with ``msg``, ``srv`` or ``action`` folders, or contains packages at any
@@ -70,51 +89,123 @@ def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
         path: The folder.
         reuse: Return the existing class for a type with the same definition, so that its messages
             are accepted wherever either is; otherwise every class is new.
+        lenient: A definition that is not valid refuses its own type alone, and those that use it,
+            each where it is asked for.
 
     Raises:
         IdlError: A definition is not valid; the error names file, line and column.
         FileNotFoundError: The folder does not exist.
     """
-    texts = read_folder(path)
-    builder = Builder(texts, reuse=reuse)
-    loaded = Interfaces({typename: builder.build(typename) for typename in texts})
-    for package in {split_type_name(typename)[0] for typename in loaded}:
+    files = definition_files(path, lenient=lenient)
+    builder = Builder(FileTexts(files), reuse=reuse)
+    built: dict[str, type[Any]] = {}
+    failed: dict[str, IdlError] = {}
+    for typename in files:
+        try:
+            built[typename] = builder.build(typename)
+        except IdlError as error:
+            if not lenient:
+                raise
+            failed[typename] = error
+    loaded = Interfaces(built, failed)
+    for package in {split_type_name(typename)[0] for typename in files}:
         make_importable(package, loaded)
     return loaded
 
 
-def read_folder(path: str | Path) -> dict[str, InterfaceText]:
+def refuse(module: ModuleType, name: str, error: IdlError) -> None:
+    """Let a module raise an error where one of its types is asked for."""
+    failed: dict[str, IdlError] = vars(module).setdefault("__refused__", {})
+    failed[name] = error
+
+    def find(wanted: str) -> Any:
+        if wanted in failed:
+            raise failed[wanted]
+        raise AttributeError(f"module {module.__name__!r} has no attribute {wanted!r}")
+
+    vars(module).update(__getattr__=find)
+
+
+class FileTexts(Mapping[str, InterfaceText]):
+    """Definitions by the names of their types, each parsed when it is first asked for."""
+
+    def __init__(self, files: Mapping[str, Path]) -> None:
+        self._files = files
+        self._parsed: dict[str, InterfaceText] = {}
+
+    def __getitem__(self, typename: str) -> InterfaceText:
+        if typename not in self._parsed:
+            file = self._files[typename]
+            parse_text = parse_idl if file.suffix == ".idl" else parse
+            self._parsed[typename] = parse_text(typename, read(file), str(file))
+        return self._parsed[typename]
+
+    def __contains__(self, typename: object) -> bool:
+        return typename in self._files
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+
+def read_folder(path: str | Path) -> Mapping[str, InterfaceText]:
     """Return the parsed definitions of a folder, by type name.
 
     Raises:
         IdlError: A definition is not valid, or two definitions of the same type differ.
         FileNotFoundError: The folder does not exist.
     """
+    texts = FileTexts(definition_files(path, lenient=False))
+    return {typename: texts[typename] for typename in texts}
+
+
+def definition_files(path: str | Path, *, lenient: bool) -> dict[str, Path]:
+    """Return the files with the definitions of a folder, by type name.
+
+    Raises:
+        IdlError: A name is not valid, or two definitions of the same type differ.
+        FileNotFoundError: The folder does not exist.
+    """
     root = Path(path).resolve()
     if not root.is_dir():
         raise FileNotFoundError(f"{path}: no such folder")
-    texts: dict[str, InterfaceText] = {}
-    sources: dict[str, str] = {}
-    for kind in HALVES:
-        for file in sorted(root.rglob(f"*.{kind}")):
+    files: dict[str, Path] = {}
+    # One that is generated from another file of the same type comes after it.
+    for kind, ending in [*((kind, kind) for kind in HALVES), *((kind, "idl") for kind in HALVES)]:
+        for file in sorted(root.rglob(f"*.{ending}")):
             if file.parent.name != kind:
                 continue
-            typename = f"{package_of(file)}/{kind}/{checked_stem(file)}"
-            source = read(file)
-            if (
-                sources.get(typename, source) != source
-            ):  # a workspace may have source and installed copies
-                problem = f"{typename} is defined differently in {texts[typename].file}"
-                raise IdlError(str(file), 0, 0, problem)
-            if typename not in texts:
-                sources[typename] = source
-                texts[typename] = parse(typename, source, str(file))
-    return texts
+            try:
+                typename = f"{package_of(file)}/{kind}/{checked_stem(file)}"
+                expect_same(typename, files.setdefault(typename, file), file)
+            except IdlError as error:
+                if not lenient:
+                    raise
+                warnings.warn(f"{error}; it is not used", RuntimeWarning, stacklevel=3)
+    return files
+
+
+def expect_same(typename: str, first: Path, file: Path) -> None:
+    """Raise `IdlError` if two files define one type differently."""
+    # A workspace may have its source and an installed copy.
+    if first is not file and first.suffix == file.suffix and read(first) != read(file):
+        raise IdlError(str(file), 0, 0, f"{typename} is defined differently in {first}")
 
 
 def read(file: Path) -> str:
-    """Return the text of a file."""
-    data = file.read_bytes()
+    """Return the text of a file.
+
+    Raises:
+        IdlError: It is not UTF-8, too large, or no file.
+    """
+    try:
+        data = read_file(file)
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise IdlError(str(file), 0, 0, f"cannot be read: {error.strerror}") from error
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:

@@ -14,13 +14,11 @@ from importlib.machinery import ModuleSpec
 from pathlib import Path
 from threading import RLock
 from types import ModuleType
-from typing import Any
 
 from aionode.errors import IdlError
 from aionode.idl._build import Builder, existing
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
-from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, package_of, read
-from aionode.idl._parser import parse
+from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, FileTexts, package_of, refuse
 from aionode.interfaces import shipped_packages
 from aionode.message import Interface
 
@@ -37,7 +35,7 @@ class NamedInterfaces:
         self._new: list[Path] = []
         """Those that have not been looked at yet."""
         self._files: dict[str, Path] = {}
-        self._builder = NamedBuilder(NamedTexts(self._files))
+        self._builder = NamedBuilder(FileTexts(self._files))
         self._lock = RLock()  # a builder knows which type is being built; it asks for others
 
     def add(self, path: str | Path) -> None:
@@ -81,29 +79,6 @@ class NamedInterfaces:
         return self._files
 
 
-class NamedTexts(Mapping[str, InterfaceText]):
-    """Definitions by the names of their types, each parsed when it is first asked for."""
-
-    def __init__(self, files: Mapping[str, Path]) -> None:
-        self._files = files
-        self._parsed: dict[str, InterfaceText] = {}
-
-    def __getitem__(self, typename: str) -> InterfaceText:
-        if typename not in self._parsed:
-            file = self._files[typename]
-            self._parsed[typename] = parse(typename, read(file), str(file))
-        return self._parsed[typename]
-
-    def __contains__(self, typename: object) -> bool:
-        return typename in self._files
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._files)
-
-    def __len__(self) -> int:
-        return len(self._files)
-
-
 class NamedBuilder(Builder):
     """Creates the classes of the folders; a shipped type with the same definition stays."""
 
@@ -128,7 +103,8 @@ def add_definitions(folder: Path, known: dict[str, Path]) -> None:
         typename = f"{package}/{file.parent.name}/{file.stem}"
         first = known.setdefault(typename, file)
         # A workspace may have its source and an installed copy.
-        if first is not file and first.read_bytes() != file.read_bytes():
+        is_another = first is not file and first.suffix == file.suffix
+        if is_another and first.read_bytes() != file.read_bytes():
             text = f"{typename} is defined in {first}, and differently in {file}, which is not used"
             warnings.warn(text, RuntimeWarning, stacklevel=2)
 
@@ -139,13 +115,15 @@ def files_in(folder: Path) -> Iterator[Path]:
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         kind = Path(place).name
         if kind in HALVES:
-            yield from (Path(place, name) for name in sorted(files) if is_definition(name, kind))
+            # What is generated from another file of the same type comes after it.
+            files.sort(key=lambda name: (name.endswith(".idl"), name))
+            yield from (Path(place, name) for name in files if is_definition(name, kind))
 
 
 def is_definition(name: str, kind: str) -> bool:
     """Return whether a file has the name of a definition."""
     stem, _, ending = name.partition(".")
-    return ending == kind and TYPE_NAME.fullmatch(stem) is not None
+    return ending in {kind, "idl"} and TYPE_NAME.fullmatch(stem) is not None
 
 
 def package_of_file(file: Path) -> str | None:
@@ -190,17 +168,9 @@ class NamedLoader(Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         """Put the classes into the module."""
-        failed: dict[str, IdlError] = {}
         for typename in self.names:
             name = split_type_name(typename)[2]
             try:
                 vars(module)[name] = self.named.build(typename)
             except IdlError as error:
-                failed[name] = error
-
-        def find(name: str) -> Any:
-            if name in failed:
-                raise failed[name]
-            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
-
-        vars(module).update(__getattr__=find)
+                refuse(module, name, error)

@@ -16,6 +16,7 @@ from aionode.errors import IdlError, MessageError
 from aionode.idl._definition import (
     HALVES,
     InterfaceText,
+    LineError,
     MemberText,
     MessageText,
     TypeText,
@@ -23,9 +24,15 @@ from aionode.idl._definition import (
 )
 from aionode.message import DTYPES, FieldType, fit, fit_element
 
-__all__ = ["parse"]
+__all__ = ["BUILTINS", "LARGEST_TEXT", "checked", "field_name", "parse", "unescaped"]
 
 PRIMITIVES = frozenset({*DTYPES, "byte", "string", "wstring"})
+BUILTINS = {
+    "time": "builtin_interfaces/Time",
+    "duration": "builtin_interfaces/Duration",
+}
+"""Types of ROS 1 without a package, and those of ROS 2."""
+
 STRINGS = frozenset({"string", "wstring"})
 
 TYPE = re.compile(
@@ -35,6 +42,10 @@ TYPE = re.compile(
 )
 MESSAGE_NAME = re.compile(r"(?:[a-z][a-z0-9_]*/(?:msg/)?)?[A-Z][A-Za-z0-9]*")
 FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
+RECORDED_TYPE = re.compile(r"(?:[a-zA-Z]\w*/(?:msg/)?)?[A-Za-z]\w*", re.ASCII)
+RECORDED_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
+"""Types and names in recordings: ROS 1 allowed more, and so does rosidl when it is asked to."""
+
 CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
 SEPARATOR = re.compile(r"---\s*(?:#.*)?")
 QUOTED = re.compile(r"""(["'])((?:\\.|(?!\1)[^\\])*)\1""")
@@ -56,45 +67,48 @@ ESCAPED = {
 MOST_ELEMENTS = 2**32 - 1
 """Largest bound of a sequence or string, as its length is encoded in 32 bits."""
 
+LARGEST_TEXT = 1 << 20
+"""Most characters of a definition; the largest action of MoveIt has 100 000, with comments."""
+
+MOST_MEMBERS = 2_000
+"""Most fields and constants of one message; the largest of mavros has 200."""
+
 LARGEST_ARRAY = 2**26
 """Largest number of elements of a fixed-size array, as each new message has all of them."""
 
 
-class LineError(Exception):
-    """A line cannot be parsed: what is wrong, and at which offset in the line."""
-
-    def __init__(self, offset: int, problem: str) -> None:
-        self.offset = offset
-        self.problem = problem
-        super().__init__(problem)
-
-
-def parse(typename: str, text: str, file: str = "") -> InterfaceText:
+def parse(typename: str, text: str, file: str = "", *, recorded: bool = False) -> InterfaceText:
     """Return a parsed definition.
 
     Args:
         typename: The type that it defines, such as ``std_msgs/msg/String``.
         text: The text of a ``.msg``, ``.srv`` or ``.action`` file, according to the name.
         file: The file that it comes from, for errors; by default the name of the type.
+        recorded: Whether names may be others than ROS allows, as in recordings. A field that has
+            the name of a keyword of Python gets an underscore after it.
 
     Raises:
         IdlError: The text is not valid; the error names file, line and column.
     """
     file = file or typename
     names = HALVES[split_type_name(typename)[1]]
+    if len(text) > LARGEST_TEXT:
+        raise IdlError(file, 0, 0, f"{len(text)} characters; at most {LARGEST_TEXT} are read")
     parts: list[list[MemberText]] = [[]]
     comments: list[list[str]] = [[]]
+    names_seen: dict[str, int] = {}
     for number, line in enumerate(text.split("\n"), 1):
         stripped = line.strip()
         if SEPARATOR.fullmatch(stripped):
             parts.append([])
             comments.append([])
+            names_seen = {}
         elif stripped.startswith("#"):
             if not parts[-1]:
                 comments[-1].append(stripped.lstrip("#").strip())
         elif stripped:
             try:
-                add(parts[-1], member(line, number))
+                add(parts[-1], member(line, number, recorded=recorded), names_seen)
             except LineError as misfit:
                 raise IdlError(file, number, misfit.offset + 1, misfit.problem) from None
         elif not parts[-1] and comments[-1]:
@@ -111,15 +125,18 @@ def parse(typename: str, text: str, file: str = "") -> InterfaceText:
     )
 
 
-def add(members: list[MemberText], new: MemberText) -> None:
-    """Add a member to those of its message."""
-    for old in members:
-        if old.name == new.name:
-            raise LineError(new.column - 1, f"{new.name!r} is already defined on line {old.line}")
+def add(members: list[MemberText], new: MemberText, lines: dict[str, int]) -> None:
+    """Add a member to those of its message, whose lines are known by their names."""
+    if new.name in lines:
+        problem = f"{new.name!r} is already defined on line {lines[new.name]}"
+        raise LineError(new.column - 1, problem)
+    if len(members) >= MOST_MEMBERS:
+        raise LineError(0, f"a message has at most {MOST_MEMBERS} fields and constants")
+    lines[new.name] = new.line
     members.append(new)
 
 
-def member(line: str, number: int) -> MemberText:
+def member(line: str, number: int, *, recorded: bool) -> MemberText:
     """Return the member on one line, or raise `LineError`."""
     start = len(line) - len(line.lstrip())
     match = TYPE.match(line, start)
@@ -132,24 +149,27 @@ def member(line: str, number: int) -> MemberText:
         raise LineError(
             end, f"{line[end]!r} does not belong to a type; a space and a name follow it"
         )
-    type_ = type_text(match)
+    type_ = type_text(match, recorded=recorded)
     name_match = re.compile(r"\s*([^\s=#]*)\s*").match(line, end)
     assert name_match is not None  # noqa: S101 (it also matches an empty text)
     name, at, rest = name_match[1], name_match.start(1), name_match.end()
     if not name:
         raise LineError(at, f"the name is missing; '{line[start:end]} some_name' would fit")
     constant = line.startswith("=", rest)
-    check_name(name, at, constant=constant)
+    name = field_name(name, at, recorded=recorded, constant=constant)
     if constant:
         rest = rest + 1 + len(line[rest + 1 :]) - len(line[rest + 1 :].lstrip())
     value = written_value(type_, line, rest, name, constant=constant)
     return MemberText(type_, name, value, constant, number, at + 1)
 
 
-def type_text(match: re.Match[str]) -> TypeText:
+def type_text(match: re.Match[str], *, recorded: bool) -> TypeText:
     """Return the type at the beginning of a line."""
     name, at = match["name"], match.start()
-    if name not in PRIMITIVES and not MESSAGE_NAME.fullmatch(name):
+    allowed = RECORDED_TYPE if recorded else MESSAGE_NAME
+    if name not in PRIMITIVES and name in BUILTINS and not recorded:
+        raise LineError(at, f"{name!r} is not a type; did you mean {BUILTINS[name]}?")
+    if name not in PRIMITIVES and not allowed.fullmatch(name):
         close = difflib.get_close_matches(name, PRIMITIVES, 1)
         hint = (
             f"did you mean {close[0]}?" if close else "use one of " + ", ".join(sorted(PRIMITIVES))
@@ -182,8 +202,12 @@ def limit(text: str, at: int, what: str, most: int) -> int:
     return int(text)
 
 
-def check_name(name: str, at: int, *, constant: bool) -> None:
-    """Raise `LineError` if this is not a valid name of a field or constant."""
+def field_name(name: str, at: int, *, recorded: bool, constant: bool = False) -> str:
+    """Return the name of a field or constant in Python; raise `LineError` if it is none."""
+    if recorded:
+        if not RECORDED_NAME.fullmatch(name):
+            raise LineError(at, f"{name!r} is not a name: letters, digits and _")
+        return f"{name}_" if iskeyword(name) else name
     if constant and not CONSTANT_NAME.fullmatch(name):
         raise LineError(
             at, f"{name!r} is not a valid constant name; use upper-case letters, digits and _"
@@ -193,6 +217,7 @@ def check_name(name: str, at: int, *, constant: bool) -> None:
         raise LineError(at, f"{name!r} is not a valid field name; {valid}")
     if iskeyword(name):
         raise LineError(at, f"{name!r} is a Python keyword, which no field can be called")
+    return name
 
 
 def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: bool) -> object:

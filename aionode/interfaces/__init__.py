@@ -74,6 +74,7 @@ def get_interface(name: str) -> Any:
 
     Raises:
         InterfaceNotFoundError: There is no such type; the error has names that are close.
+        IdlError: The definition of the type, in a folder that was loaded, is not valid.
     """
     parts = name.split("/")
     kinds = KINDS if len(parts) == 2 else parts[1:2]
@@ -82,6 +83,10 @@ def get_interface(name: str) -> Any:
             found = types_of(parts[0], kind).get(parts[-1])
             if found is not None:
                 return found
+            module = sys.modules.get(f"{__name__}.{parts[0]}.{kind}")
+            refused: dict[str, Exception] = vars(module).get("__refused__", {}) if module else {}
+            if parts[-1] in refused:
+                raise refused[parts[-1]]
     whole = whole_of(name)
     if whole is not None:
         return part_of(name, get_interface(whole))

@@ -64,6 +64,7 @@ class MessageMeta(msgspec.StructMeta):
         *,
         typename: str = "",
         by_name: bool = True,
+        recorded: bool = False,
         **options: Any,
     ) -> MessageMeta:
         """Create the class.
@@ -74,10 +75,11 @@ class MessageMeta(msgspec.StructMeta):
             namespace: Its attributes and annotations.
             typename: Its ROS name, such as ``std_msgs/msg/String``.
             by_name: Whether `aionode.interfaces.get_interface` finds it by its ROS name.
+            recorded: Whether names may be others than ROS allows, as in recordings.
             options: Options of `msgspec.Struct`.
         """
         if typename:
-            namespace["__ros_type__"] = checked_type_name(typename)
+            namespace["__ros_type__"] = typename if recorded else checked_type_name(typename)
         own: list[Field] = []
         known: list[Constant] = []
         for key, annotation in annotations_of(namespace, sys._getframe(1)).items():
@@ -86,7 +88,8 @@ class MessageMeta(msgspec.StructMeta):
                     (inner,) = get_args(annotation)
                     known.append(Constant(key, field_type(inner), namespace[key]))
                 continue
-            checked_field_name(typename or name, key)
+            if not recorded:
+                checked_field_name(typename or name, key)
             type_ = field_type(annotation)
             given = namespace.get(key, DEFAULT)
             path = f"{typename or name}.{key}"

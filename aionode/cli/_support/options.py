@@ -129,7 +129,7 @@ def interfaces_option(command: CommandT) -> CommandT:
         type=click.Path(exists=True, file_okay=False, path_type=Path),
         expose_value=False,
         callback=load_interface_folders,
-        help="Folder with your own .msg, .srv and .action files; also $AIONODE_INTERFACES.",
+        help="Folder with your own .msg, .srv, .action and .idl files; also $AIONODE_INTERFACES.",
     )(command)
 
 
@@ -141,7 +141,7 @@ def load_interface_folders(
         from aionode.idl import load_interfaces
 
         for path in value:
-            load_interfaces(path)
+            load_interfaces(path, lenient=True)
 
 
 def read_values(options: dict[str, Any]) -> None:

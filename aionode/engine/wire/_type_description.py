@@ -6,6 +6,7 @@ of `type_description_interfaces`.
 
 from __future__ import annotations
 
+from keyword import iskeyword
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from aionode.message import ActionType, FieldType, ServiceType, fields, type_name
@@ -149,10 +150,16 @@ def individual(cls: type[Any]) -> Individual:
     if issubclass(cls, ServiceType | ActionType):
         members = [nested_member(name, part) for name, part in halves(cls)]
     else:
-        members = [member(field.name, field.type) for field in fields(cls)]
+        members = [member(ros_name(field.name), field.type) for field in fields(cls)]
     # IDL does not allow structures without fields.
     placeholder = member("structure_needs_at_least_one_member", FieldType("uint8"))
     return {"type_name": name, "fields": members or [placeholder]}
+
+
+def ros_name(name: str) -> str:
+    """Return the name of a field in ROS: a keyword of Python has an underscore after it here."""
+    plain = name.removesuffix("_")
+    return plain if iskeyword(plain) else name
 
 
 def halves(cls: type[Any]) -> Iterator[tuple[str, type[Any]]]:
