@@ -17,7 +17,8 @@ class RefusedError(AionodeError, PermissionError):
             without a valid token or from a page that may not connect, ``out_of_limits`` for a value
             outside the limits of its field, ``too_large``, ``too_fast``, ``not_confirmed`` by a
             person, ``held`` by another client that commands the topic, ``too_many`` of what is
-            counted, ``too_old`` for a command that arrived late.
+            counted, ``too_old`` for a command that arrived late, ``unsupported`` for a protocol
+            that the gateway does not speak.
     """
 
     def __init__(self, subject: str, reason: str, code: str = "not_allowed") -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Sequence
 from contextlib import AsyncExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
@@ -14,7 +14,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import WebSocketRoute
 
 from aionode._process.concurrency import to_the_end
-from aionode.errors import ConfigurationError, PolicyFileError
+from aionode.errors import ConfigurationError, PolicyFileError, RefusedError
 from aionode.gateway._clients import Clients
 from aionode.gateway.foxglove import websocket as _foxglove
 from aionode.gateway.http import routes as _http
@@ -176,8 +176,7 @@ class Gateway(Clients):
 
     async def _websocket(self, websocket: WebSocket) -> None:
         """Serve a WebSocket by the protocol that its client asks for."""
-        is_foxglove = _foxglove.SUBPROTOCOL in websocket.scope["subprotocols"]
-        kind = "foxglove" if is_foxglove else "rosbridge"
+        kind, chosen = protocol_of(websocket.scope["subprotocols"])
         async with self.session_of(websocket.scope, kind) as session:
             connection = websocket.scope["state"]["aionode_connection"]
             session.connection = connection
@@ -185,12 +184,12 @@ class Gateway(Clients):
             websocket._receive = paced(
                 websocket._receive, self._policy.limits.frames_per_sec, self.robot, session
             )
-            if is_foxglove:
-                serving = _foxglove.serve(websocket, session, self._player)
+            if kind == "foxglove" and chosen is not None:
+                serving = _foxglove.serve(websocket, session, chosen, self._player)
                 await until(session.ended, serving, self._watch(session))
             else:
                 with self._client_list.listing(session.identity.address):
-                    serving = _rosbridge.serve(websocket, session)
+                    serving = _rosbridge.serve(websocket, session, chosen)
                     await until(session.ended, serving, self._watch(session))
         if session.end_reason:
             await close(websocket, TRY_AGAIN_LATER, session.end_reason)
@@ -241,6 +240,31 @@ class Gateway(Clients):
             self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
         else:
             self.use_policy(policy)
+
+
+def protocol_of(offered: Sequence[str]) -> tuple[str, str | None]:
+    """Return the way in that a WebSocket asks for, and the name of the protocol that it hears.
+
+    Args:
+        offered: The subprotocols that its client offers, without the token. Clients of rosbridge
+            offer none; a browser wants to hear one of those that it offers.
+
+    Raises:
+        RefusedError: none of them is known; its code is ``unsupported``.
+    """
+    for name in offered:
+        if name in _foxglove.SUBPROTOCOLS:
+            return "foxglove", name
+        if name.startswith("rosbridge"):
+            return "rosbridge", name
+    if offered:
+        fitting = ", ".join(_foxglove.SUBPROTOCOLS)
+        raise RefusedError(
+            f"subprotocol {offered[0][:80]!r}",
+            f"it is unknown; there are {fitting}, and none for rosbridge",
+            "unsupported",
+        )
+    return "rosbridge", None
 
 
 def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:

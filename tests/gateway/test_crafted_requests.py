@@ -269,6 +269,11 @@ PROTOCOLS = [
     ("bearer.wrong", 401, None),
     ("bearer.secret", 101, None),
     ("bearer.secret, bearer.wrong", 401, None),
+    ("foxglove.websocket.v1", 101, "foxglove.websocket.v1"),
+    ("foxglove.websocket.v1, foxglove.sdk.v1", 101, "foxglove.websocket.v1"),
+    ("graphql-ws", 400, None),
+    ("graphql-ws, foxglove.websocket.v1", 101, "foxglove.websocket.v1"),
+    ("bearer.secret, foxglove.sdk.v2", 400, None),
 ]
 
 

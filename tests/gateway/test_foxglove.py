@@ -568,13 +568,12 @@ async def test_a_client_that_may_call_nothing_does_not_control_the_player(
         assert not player.paused
 
 
-async def test_foxglove_connects_by_its_subprotocol(node: Node) -> None:
-    """On the port of all other ways in."""
+@pytest.mark.parametrize("protocol", ["foxglove.sdk.v1", "foxglove.websocket.v1"])
+async def test_foxglove_connects_by_its_subprotocol(node: Node, protocol: str) -> None:
+    """On the port of all other ways in; Lichtblick has the older name of the same protocol."""
     async with (
         Gateway(node, port=0) as gateway,
-        connect(
-            f"ws://127.0.0.1:{gateway.port}", subprotocols=[Subprotocol("foxglove.sdk.v1")]
-        ) as socket,
+        connect(f"ws://127.0.0.1:{gateway.port}", subprotocols=[Subprotocol(protocol)]) as socket,
     ):
         first = json.loads(await socket.recv())
         sessions = gateway.stats.sessions

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 __all__ = [
-    "SUBPROTOCOL",
+    "SUBPROTOCOLS",
     "Advertise",
     "Asked",
     "ClientChannel",
@@ -50,7 +50,8 @@ __all__ = [
     "time_frame",
 ]
 
-SUBPROTOCOL: Final = "foxglove.sdk.v1"
+SUBPROTOCOLS: Final = ("foxglove.sdk.v1", "foxglove.websocket.v1")
+"""The names of the protocol: the older one is that of Lichtblick and @foxglove/ws-protocol."""
 
 Id = Annotated[int, msgspec.Meta(ge=0, lt=1 << 32)]
 

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from aionode.gateway.foxglove.client import serve_frames
-from aionode.gateway.foxglove.frames import SUBPROTOCOL
+from aionode.gateway.foxglove.frames import SUBPROTOCOLS
 from aionode.gateway.server.websocket import exchange
 
 if TYPE_CHECKING:
@@ -15,15 +15,18 @@ if TYPE_CHECKING:
     from aionode.bag import Player
     from aionode.gateway.session.session import Session
 
-__all__ = ["SUBPROTOCOL", "serve"]
+__all__ = ["SUBPROTOCOLS", "serve"]
 
 
-async def serve(websocket: WebSocket, session: Session, player: Player | None = None) -> None:
+async def serve(
+    websocket: WebSocket, session: Session, subprotocol: str, player: Player | None = None
+) -> None:
     """Serve a client of Foxglove's protocol until it leaves.
 
     Args:
         websocket: The WebSocket of the client.
         session: The session of the client.
+        subprotocol: The name of the protocol that the client has chosen.
         player: A bag's player, which the client's timeline controls.
     """
-    await exchange(websocket, session, partial(serve_frames, player=player), SUBPROTOCOL)
+    await exchange(websocket, session, partial(serve_frames, player=player), subprotocol)

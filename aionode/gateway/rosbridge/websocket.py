@@ -15,8 +15,12 @@ if TYPE_CHECKING:
 __all__ = ["serve"]
 
 
-async def serve(websocket: WebSocket, session: Session) -> None:
-    """Serve a client of rosbridge until it leaves."""
-    # Browsers want to hear one of those that they offer; the door has taken out the token.
-    chosen = next(iter(websocket.scope["subprotocols"]), None)
-    await exchange(websocket, session, serve_frames, chosen)
+async def serve(websocket: WebSocket, session: Session, subprotocol: str | None = None) -> None:
+    """Serve a client of rosbridge until it leaves.
+
+    Args:
+        websocket: The WebSocket of the client.
+        session: The session of the client.
+        subprotocol: The name that the client has for the protocol; None without one.
+    """
+    await exchange(websocket, session, serve_frames, subprotocol)

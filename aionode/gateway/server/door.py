@@ -50,6 +50,7 @@ STATUS: Final = {
     "held": 409,
     "too_old": 409,
     "too_large": 413,
+    "unsupported": 400,
     "too_fast": 429,
     "too_many": 429,
 }

@@ -47,6 +47,7 @@ class Refusal(enum.Enum):
     TOO_LARGE = "too_large"
     TOO_FAST = "too_fast"
     TOO_MANY = "too_many"
+    UNSUPPORTED = "unsupported"
     # Others
     INVALID = "invalid_message"
     """What the client has sent is no op, or no message of its type."""
