@@ -14,6 +14,8 @@ import msgspec
 
 from aionode._process.streams import accepts, is_lost
 from aionode.clock import MachineTime
+from aionode.errors import escaped
+from aionode.system._control_codes import has_codes, without_codes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -44,7 +46,8 @@ class SystemLog:
     """The merged output of a system: each line with its time and the name of its member.
 
     Nothing is dropped while the system runs: when the stream takes no more, the members' output
-    waits in their pipes. Output that nobody can read any more is dropped.
+    waits in their pipes. Output that nobody can read any more is dropped. Of the codes for
+    terminals, those of colours pass, and a carriage return begins a line.
 
     Args:
         stream: Where the lines are written; ``sys.stdout`` by default, as it is then.
@@ -144,6 +147,9 @@ class SystemLog:
 
     def _write_lines(self, name: str, before: bytes, output: bytes, end: int) -> None:
         """Write the lines of `before` and of `output` up to `end`, which is that of a line."""
+        if has_codes(before) or has_codes(output):
+            output = without_codes(before + output[:end])
+            before, end = b"", len(output)
         last = self._last.setdefault(name, bytearray())
         last += before
         last += output[max(0, end - KEPT_BYTES) : end]
@@ -169,7 +175,8 @@ class SystemLog:
         self._time_only = self._date_and_time[len("2026-11-23 ") :]
 
     def _label(self, name: str) -> bytes:
-        label = f"{name:>{self._width}} |"
+        shown = escaped(name).replace("\n", "\\n")  # as a launch file of others says
+        label = f"{shown:>{self._width}} |"
         if self._color:
             label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
         self._labels[name] = encoded = f"{label} ".encode()

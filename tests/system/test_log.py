@@ -5,9 +5,15 @@ from __future__ import annotations
 import io
 import json
 import os
+import re
 from pathlib import Path
 
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
 from aionode.system import SystemLog
+from aionode.system._control_codes import has_codes, without_codes
 
 
 def test_each_line_has_its_time_and_the_name_of_its_member() -> None:
@@ -81,6 +87,7 @@ def test_lines_that_are_read_in_any_pieces_are_the_same_in_stream_and_files(tmp_
     """Large output is read in pieces that end anywhere."""
     lines = [b"", b"a", b"b" * 70_000, b"\r", b"", b"c"]
     text = b"\n".join(lines)
+    all_text = b"".join(lines).replace(b"\r", b"")  # a line that ended as in DOS
     for size in (1, 2, 3, 1000):
         folder = tmp_path / str(size)
         with (folder.parent / f"{size}.txt").open("w+") as stream:
@@ -93,9 +100,9 @@ def test_lines_that_are_read_in_any_pieces_are_the_same_in_stream_and_files(tmp_
         time = len("2026-11-23 12:00:00.000 ")
         kept = (folder / "x.log").read_bytes().split(b"\n")
 
-        assert b"".join(line.partition(b"| ")[2] for line in shown.split(b"\n")) == b"".join(lines)
+        assert b"".join(line.partition(b"| ")[2] for line in shown.split(b"\n")) == all_text
         assert [len(line) - time for line in kept[:2]] == [0, 1]
-        assert b"".join(line[time:] for line in kept) == b"".join(lines)
+        assert b"".join(line[time:] for line in kept) == all_text
 
 
 def test_the_last_twenty_lines_of_a_member_are_kept() -> None:
@@ -121,3 +128,58 @@ def test_what_a_pipe_does_not_take_waits_and_blocks_nothing() -> None:
     os.close(reading)
 
     assert (got.count(b"x"), got.count(b"y")) == (60_000, 60_000)
+
+
+@pytest.mark.parametrize(
+    ("output", "shown"),
+    [
+        (b"\x1b[31mred\x1b[0m\n", [b"\x1b[31mred\x1b[0m"]),
+        (b"\x1b[1;38:5:9mred\n", [b"\x1b[1;38:5:9mred\x1b[0m"]),
+        (b"plain \xc3\xa4\xc2\xa0\ttext\n", [b"plain \xc3\xa4\xc2\xa0\ttext"]),
+        (b"ended as in DOS\r\n", [b"ended as in DOS"]),
+        (
+            b"10 %\r20 %\rforged 12:00 other | line\n",
+            [b"10 %", b"20 %", b"forged 12:00 other | line"],
+        ),
+        (b"\x1b[2K\x1b[1A\x1b[?25l\x1b[2Jup\n", [b"up"]),
+        (b"\x1b]0;title\x07\x1b]52;c;Y2xpcA==\x1b\\\x1bPq\x1b\\\x1b(0\x1bcrest\n", [b"rest"]),
+        (b"\x1b]0;without an end\n", [b"0;without an end"]),
+        (b"bell \x07 \x00 \xc2\x9b2J\n", [b"bell \\x07 \\x00 \\x9b2J"]),
+    ],
+)
+@pytest.mark.parametrize("size", [1, 1000])
+def test_of_the_codes_for_terminals_only_colours_pass(
+    output: bytes, shown: list[bytes], size: int, tmp_path: Path
+) -> None:
+    """A member could overwrite what others say, retitle the terminal, or fill the clipboard."""
+    file = tmp_path / "out"
+    with file.open("w") as stream:
+        log = SystemLog(stream, folder=tmp_path)
+        for at in range(0, len(output), size):
+            log.write("one", output[at : at + size])
+        log.close()
+
+    for path, label in ((file, b" one | "), (tmp_path / "one.log", None)):
+        lines = path.read_bytes().splitlines()
+        begin = len("12:00:00.000 ") if label else len("2026-11-28 12:00:00.000 ")
+        assert [line[begin:].removeprefix(b"   one | ") for line in lines] == shown
+
+
+@given(st.binary())
+def test_no_output_contains_more_than_text_and_colours(output: bytes) -> None:
+    """Whatever a program prints."""
+    lines = without_codes(output + b"\n")
+
+    text = re.sub(rb"\x1b\[[0-9;:]*m", b"", lines)
+    assert not has_codes(text.replace(b"\xc2", b""))
+    assert re.search(rb"\xc2[\x80-\x9f]", lines) is None
+
+
+def test_a_name_of_a_member_stays_on_its_line() -> None:
+    """A launch file of others may give any."""
+    stream = io.StringIO()
+    log = SystemLog(stream)
+    log.write("a\n\x1b[2J", b"text\n")
+    log.flush()
+
+    assert stream.getvalue()[13:] == "a\\n\\x1b[2J | text\n"

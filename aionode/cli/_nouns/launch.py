@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from aionode.cli._support.exit import become
-from aionode.errors import CommandError
+from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:
     from aionode.launch import DeclaredArgument, Plan
@@ -86,7 +86,7 @@ def launch_command(
     plan = Plan(path, values, workspace=workspace)
     if show_args:
         for line in map(argument_text, plan.declared):
-            click.echo(line)
+            click.echo(escaped(line))
     elif prints:
         print_plan(plan, as_json=as_json)
     else:
@@ -171,7 +171,7 @@ def print_plan(plan: Plan, *, as_json: bool) -> None:
             click.echo(json.dumps(record))
     else:
         for line in plan.lines():
-            click.echo(line)
+            click.echo(escaped(line))
 
 
 def start(
