@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import os
 import stat
 from pathlib import Path
 from tempfile import TemporaryDirectory, gettempdir
@@ -17,13 +18,24 @@ from aionode.errors import BagError
 if TYPE_CHECKING:
     from contextlib import ExitStack
 
-__all__ = ["decompressed", "expect_no_pointer", "expect_plain_size", "plain_file", "plain_message"]
+__all__ = [
+    "LIMIT_VARIABLE",
+    "TooLargeError",
+    "decompressed",
+    "expect_no_pointer",
+    "expect_plain_size",
+    "plain_file",
+    "plain_message",
+]
 
 LARGEST_PART: Final = 128 << 20
 """A chunk or message may have so many bytes, and more if its compressed form justifies it."""
 
 LARGEST_FILE: Final = 256 << 20
 """The same for a whole file, which is written to a temporary folder."""
+
+LIMIT_VARIABLE: Final = "AIONODE_BAG_LARGEST_BYTES"
+"""The variable of the environment that raises both."""
 
 PART_RATIO: Final = 20
 FILE_RATIO: Final = 100
@@ -33,11 +45,22 @@ LFS: Final = b"version https://git-lfs.github.com/spec/"
 """How the text begins that Git has in place of a large file."""
 
 
+class TooLargeError(McapError):
+    """A part of a bag is larger than is believable, which is no damage that can be repaired."""
+
+
+def limit_of(largest: int, ratio: int, compressed_size: int) -> int:
+    """Return how many bytes so many compressed ones may stand for."""
+    given = os.environ.get(LIMIT_VARIABLE, "")
+    raised = int(given) if given.isascii() and given.isdigit() else 0
+    return max(largest + ratio * compressed_size, raised)
+
+
 def expect_plain_size(size: int, compressed_size: int) -> None:
-    """Raise `McapError` if a part that says that it is so large cannot be one of a bag."""
-    most = LARGEST_PART + PART_RATIO * compressed_size
+    """Raise `TooLargeError` if a part that says that it is so large cannot be one of a bag."""
+    most = limit_of(LARGEST_PART, PART_RATIO, compressed_size)
     if size > most:
-        raise McapError(
+        raise TooLargeError(
             f"{compressed_size} bytes that say they are {size} when decompressed, "
             f"where at most {most} are taken"
         )
@@ -76,7 +99,7 @@ def plain_message(data: bytes) -> bytes:
     if size >= 0:
         return decompressed("zstd", data, size)
     return zstandard.ZstdDecompressor().decompress(
-        data, max_output_size=LARGEST_PART + PART_RATIO * len(data)
+        data, max_output_size=limit_of(LARGEST_PART, PART_RATIO, len(data))
     )
 
 
@@ -101,7 +124,7 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
     folder = Path(stack.enter_context(TemporaryDirectory(prefix="aionode-bag-")))
     plain = folder / path.stem
     try:
-        write_plain(path, file, plain, LARGEST_FILE + FILE_RATIO * state.st_size)
+        write_plain(path, file, plain, limit_of(LARGEST_FILE, FILE_RATIO, state.st_size))
     except zstandard.ZstdError as error:
         raise BagError(str(path), f"it cannot be decompressed ({error})") from error
     except OSError as error:
@@ -132,5 +155,5 @@ def write_plain(path: Path, compressed: IO[bytes], plain: Path, most: int) -> No
         reader = zstandard.ZstdDecompressor().stream_reader(compressed, read_across_frames=True)
         while piece := reader.read(PIECE):
             if out.tell() + len(piece) > most:
-                raise BagError(str(path), problem, "decompress it by `zstd -d` if it is yours")
+                raise BagError(str(path), problem, f"{LIMIT_VARIABLE} raises the limit")
             out.write(piece)

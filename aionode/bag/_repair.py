@@ -16,9 +16,10 @@ from mcap.records import Metadata as MetadataRecord
 
 from aionode.bag._bag import Bag, merged_topics, source_of
 from aionode.bag._chunks import HEAD, MESSAGE, checked_content
+from aionode.bag._compression import TooLargeError
 from aionode.bag._mcap_writer import MAGIC, McapWriter, Span, index_record
 from aionode.bag._metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
-from aionode.bag._source import CHECK, DAMAGE
+from aionode.bag._source import CHECK, DAMAGE, damaged
 from aionode.bag._summary import read_summary
 from aionode.errors import BagError
 
@@ -200,7 +201,7 @@ class Scan:
         damaged: Where chunks stand that are not whole, and how long they are.
 
     Raises:
-        BagError: it is no MCAP file, or one without chunks.
+        BagError: it is no MCAP file, one without chunks, or has a chunk that is too large to read.
     """
 
     def __init__(self, file: Path, stream: BinaryIO, size: int) -> None:
@@ -226,23 +227,25 @@ class Scan:
 
     def _read(self, file: Path, stream: BinaryIO, size: int) -> None:
         """Take one record after another, as long as they can be used."""
-        damaged: list[tuple[int, int]] = []  # since the last record that can be used
+        bad: list[tuple[int, int]] = []  # since the last record that can be used
         for opcode, at, length in heads(stream, self.end, size):
             if opcode == Opcode.MESSAGE:
                 problem = "its messages are not in chunks, so they have no index to repair"
                 raise BagError(str(file), problem, "`mcap recover` can rewrite it")
             try:
                 self._take(opcode, at, stream.read(length))
+            except TooLargeError as error:
+                raise damaged(file, error, f"the chunk at byte {at}") from error
             except DAMAGE:
                 if opcode == Opcode.CHUNK:
-                    damaged.append((at, HEAD.size + length))
+                    bad.append((at, HEAD.size + length))
                 elif opcode != Opcode.MESSAGE_INDEX:
                     break
             else:
-                if opcode != Opcode.MESSAGE_INDEX or not damaged:
+                if opcode != Opcode.MESSAGE_INDEX or not bad:
                     self.end = at + HEAD.size + length
-                    self.damaged += damaged
-                    damaged = []
+                    self.damaged += bad
+                    bad = []
 
     @property
     def messages(self) -> int:

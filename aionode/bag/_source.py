@@ -16,7 +16,7 @@ from mcap.opcode import Opcode
 from mcap.records import Message
 
 from aionode.bag._chunks import HEAD, MESSAGE, rows_of, size_of
-from aionode.bag._compression import plain_file, plain_message
+from aionode.bag._compression import LIMIT_VARIABLE, TooLargeError, plain_file, plain_message
 from aionode.bag._order import in_order
 from aionode.bag._qos import readable_profiles
 from aionode.bag._record import MOST_NS, Record, TopicInfo
@@ -282,5 +282,8 @@ def has_any(chunk: ChunkIndex, wanted: AbstractSet[int] | None) -> bool:
 def damaged(path: Path, error: Exception, where: str = "the file") -> BagError:
     """Return the error for a file that is not complete, or for a part of one."""
     what = str(error) or type(error).__name__
+    if isinstance(error, TooLargeError):
+        remedy = f"{LIMIT_VARIABLE} raises the limit"
+        return BagError(str(path), f"{where} is not read: {what}", remedy)
     or_open = ", or was not closed" if where == "the file" else ""
     return BagError(str(path), f"{where} is damaged{or_open} ({what})", CHECK)

@@ -11,7 +11,7 @@ from aionode.bag._compression import plain_file, plain_message
 from aionode.bag._qos import readable_profiles
 from aionode.bag._record import MOST_NS, Record, TopicInfo
 from aionode.bag._source import DAMAGE, damaged
-from aionode.errors import BagError
+from aionode.errors import BagError, brief
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -87,11 +87,14 @@ class SqliteSource:
     def _count(self) -> None:
         """Count the messages of each topic."""
         self.start_ns, self.end_ns = MOST_NS, 0
+        self._strays: list[tuple[object, int]] = []
         for number, count, first_ns, last_ns in self._base.execute(COUNT):
             if number in self._topics:
                 self._topics[number].message_count = count
                 self.start_ns = min(self.start_ns, max(first_ns, 0))
                 self.end_ns = max(self.end_ns, last_ns)
+            else:
+                self._strays.append((number, count))
 
     def records(
         self,
@@ -106,6 +109,9 @@ class SqliteSource:
             for number, info in self._topics.items()
             if topics is None or info.name in topics
         }
+        for number, count in self._strays if topics is None else ():
+            what = f"{count} messages are of topic {brief(number)}, which it does not list"
+            problems.append(damaged(self.path, LookupError(what)))
         if not wanted:
             return
         self._steps = 0

@@ -375,3 +375,30 @@ def test_the_pointer_of_git_lfs_is_called_one(tmp_path: Path) -> None:
     place.write_text(pointer)
     with pytest.raises(BagError, match="Git LFS"):
         bag.open(tmp_path / "run")
+
+
+def test_a_chunk_that_is_too_large_is_no_damage_to_repair(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the limit raised it can be read, and a check must not take it away."""
+    monkeypatch.setattr(_compression, "LARGEST_PART", 1000)
+    with bag.BagWriter(tmp_path / "run") as out:
+        out.write(
+            out.add_topic(topic_info("/words", String)), 1, cdr.encode(String(data="a" * 99_999))
+        )
+    file = tmp_path / "run" / "run_0.mcap"
+    before = file.read_bytes()
+    with pytest.raises(BagError, match="AIONODE_BAG_LARGEST_BYTES raises the limit"):
+        bag.check(file)
+    assert file.read_bytes() == before
+    monkeypatch.setenv("AIONODE_BAG_LARGEST_BYTES", "200000")
+    assert texts(file) == ["a" * 99_999]
+
+
+def test_rows_of_a_topic_that_is_not_listed_are_said(tmp_path: Path) -> None:
+    """A join of the tables leaves them out without a word."""
+    make_sqlite3(tmp_path / "run", 4, 9)
+    sql(tmp_path / "run" / "run_0.db3", "UPDATE messages SET topic_id = 7 WHERE id = 2")
+    heard, error = heard_before_error(tmp_path / "run")
+    assert heard == ["a", "c"]
+    assert "1 messages are of topic 7" in str(error)
