@@ -114,6 +114,22 @@ def test_what_lyrical_has_changed_for_bags_has_its_hashes(typename: str, begin: 
     assert type_hash(shipped).startswith(f"RIHS01_{begin}")
 
 
+@pytest.mark.parametrize(
+    ("typename", "begin"),
+    [
+        ("msg/MultiNested", "9ee9cbfb17c2df99"),
+        ("msg/Strings", "eee55533636293ac"),
+        ("msg/WStrings", "5a2c8ddb20546000"),
+        ("srv/Arrays", "ae66e13b3ad1520b"),
+    ],
+)
+def test_the_test_interfaces_have_the_hashes_of_their_definitions(
+    typename: str, begin: str
+) -> None:
+    """They are those of rcl_interfaces; a node of ROS with another definition is not heard."""
+    assert type_hash(get_interface(f"test_msgs/{typename}")).startswith(f"RIHS01_{begin}")
+
+
 def test_a_type_is_written_as_in_a_definition() -> None:
     """What the comparison above stands on."""
     header = get_message("std_msgs/msg/Header")

@@ -262,21 +262,25 @@ class UnboundedSequences(Message, typename="test_msgs/msg/UnboundedSequences"):
 class MultiNested(Message, typename="test_msgs/msg/MultiNested"):
     """For tests: messages of arrays and sequences, in arrays and sequences."""
 
-    array_of_arrays: Arrays = DEFAULT
-    array_of_bounded_sequences: BoundedSequences = DEFAULT
-    array_of_unbounded_sequences: UnboundedSequences = DEFAULT
-    bounded_array_of_arrays: Annotated[list[Arrays], Array[Arrays, 3]] = DEFAULT
-    bounded_array_of_bounded_sequences: Annotated[
-        list[BoundedSequences], Array[BoundedSequences, 3]
-    ] = DEFAULT
-    bounded_array_of_unbounded_sequences: Annotated[
+    array_of_arrays: Annotated[list[Arrays], Array[Arrays, 3]] = DEFAULT
+    array_of_bounded_sequences: Annotated[list[BoundedSequences], Array[BoundedSequences, 3]] = (
+        DEFAULT
+    )
+    array_of_unbounded_sequences: Annotated[
         list[UnboundedSequences], Array[UnboundedSequences, 3]
     ] = DEFAULT
-    unbounded_array_of_arrays: Annotated[list[Arrays], Sequence[Arrays]] = DEFAULT
-    unbounded_array_of_bounded_sequences: Annotated[
+    bounded_sequence_of_arrays: Annotated[list[Arrays], Sequence[Arrays, 3]] = DEFAULT
+    bounded_sequence_of_bounded_sequences: Annotated[
+        list[BoundedSequences], Sequence[BoundedSequences, 3]
+    ] = DEFAULT
+    bounded_sequence_of_unbounded_sequences: Annotated[
+        list[UnboundedSequences], Sequence[UnboundedSequences, 3]
+    ] = DEFAULT
+    unbounded_sequence_of_arrays: Annotated[list[Arrays], Sequence[Arrays]] = DEFAULT
+    unbounded_sequence_of_bounded_sequences: Annotated[
         list[BoundedSequences], Sequence[BoundedSequences]
     ] = DEFAULT
-    unbounded_array_of_unbounded_sequences: Annotated[
+    unbounded_sequence_of_unbounded_sequences: Annotated[
         list[UnboundedSequences], Sequence[UnboundedSequences]
     ] = DEFAULT
 
@@ -290,26 +294,29 @@ class Nested(Message, typename="test_msgs/msg/Nested"):
 class Strings(Message, typename="test_msgs/msg/Strings"):
     """For tests: strings with and without bounds, alone and in containers."""
 
+    STRING_CONST: ClassVar[str] = "Hello world!"
+
     string_value: str = ""
-    bounded_string_value: Bounded[str, 10] = ""
-    unbounded_string_array: Annotated[list[str], Sequence[str]] = DEFAULT
-    string_array_three: Annotated[list[str], Array[str, 3]] = DEFAULT
-    bounded_string_sequence: Annotated[list[str], Sequence[str, 3]] = DEFAULT
-    unbounded_bounded_string_array: Annotated[list[str], Sequence[Bounded[str, 10]]] = DEFAULT
-    bounded_string_array_three: Annotated[list[str], Array[Bounded[str, 10], 3]] = DEFAULT
-    bounded_string_bounded_sequence: Annotated[list[str], Sequence[Bounded[str, 10], 3]] = DEFAULT
+    string_value_default1: str = "Hello world!"
+    string_value_default2: str = "Hello'world!"
+    string_value_default3: str = 'Hello"world!'
+    string_value_default4: str = "Hello'world!"
+    string_value_default5: str = 'Hello"world!'
+    bounded_string_value: Bounded[str, 22] = ""
+    bounded_string_value_default1: Bounded[str, 22] = "Hello world!"
+    bounded_string_value_default2: Bounded[str, 22] = "Hello'world!"
+    bounded_string_value_default3: Bounded[str, 22] = 'Hello"world!'
+    bounded_string_value_default4: Bounded[str, 22] = "Hello'world!"
+    bounded_string_value_default5: Bounded[str, 22] = 'Hello"world!'
 
 
 class WStrings(Message, typename="test_msgs/msg/WStrings"):
     """For tests: wide strings with and without bounds, alone and in containers."""
 
     wstring_value: wstring = ""
-    bounded_wstring_value: Bounded[wstring, 10] = ""
-    unbounded_wstring_array: Annotated[list[str], Sequence[wstring]] = DEFAULT
-    wstring_array_three: Annotated[list[str], Array[wstring, 3]] = DEFAULT
-    bounded_wstring_sequence: Annotated[list[str], Sequence[wstring, 3]] = DEFAULT
-    unbounded_bounded_wstring_array: Annotated[list[str], Sequence[Bounded[wstring, 10]]] = DEFAULT
-    bounded_wstring_array_three: Annotated[list[str], Array[Bounded[wstring, 10], 3]] = DEFAULT
-    bounded_wstring_bounded_sequence: Annotated[list[str], Sequence[Bounded[wstring, 10], 3]] = (
-        DEFAULT
-    )
+    wstring_value_default1: wstring = "Hello world!"
+    wstring_value_default2: wstring = "Hellö wörld!"
+    wstring_value_default3: wstring = "ハローワールド"
+    array_of_wstrings: Annotated[list[str], Array[wstring, 3]] = DEFAULT
+    bounded_sequence_of_wstrings: Annotated[list[str], Sequence[wstring, 3]] = DEFAULT
+    unbounded_sequence_of_wstrings: Annotated[list[str], Sequence[wstring]] = DEFAULT

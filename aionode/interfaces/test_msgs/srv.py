@@ -5,6 +5,8 @@ Generated from its definitions by `aionode interface generate`, which keeps the 
 
 from typing import Annotated
 
+from aionode.interfaces.test_msgs.msg import BasicTypes as TestMsgsBasicTypes
+from aionode.interfaces.test_msgs.msg import Constants, Defaults
 from aionode.message import (
     DEFAULT,
     Array,
@@ -51,6 +53,25 @@ class Arrays(ServiceType, typename="test_msgs/srv/Arrays"):
         int64_values: Annotated[Ints, Array[int64, 3]] = DEFAULT
         uint64_values: Annotated[Ints, Array[uint64, 3]] = DEFAULT
         string_values: Annotated[list[str], Array[str, 3]] = DEFAULT
+        basic_types_values: Annotated[list[TestMsgsBasicTypes], Array[TestMsgsBasicTypes, 3]] = (
+            DEFAULT
+        )
+        constants_values: Annotated[list[Constants], Array[Constants, 3]] = DEFAULT
+        defaults_values: Annotated[list[Defaults], Array[Defaults, 3]] = DEFAULT
+        bool_values_default: Array[bool, 3] = (False, True, False)
+        byte_values_default: Array[byte, 3] = (0, 1, 255)
+        char_values_default: Array[char, 3] = (0, 1, 127)
+        float32_values_default: Array[float32, 3] = (1.125, 0.0, -1.125)
+        float64_values_default: Array[float64, 3] = (3.1415, 0.0, -3.1415)
+        int8_values_default: Array[int8, 3] = (0, 127, -128)
+        uint8_values_default: Array[uint8, 3] = (0, 1, 255)
+        int16_values_default: Array[int16, 3] = (0, 32767, -32768)
+        uint16_values_default: Array[uint16, 3] = (0, 1, 65535)
+        int32_values_default: Array[int32, 3] = (0, 2147483647, -2147483648)
+        uint32_values_default: Array[uint32, 3] = (0, 1, 4294967295)
+        int64_values_default: Array[int64, 3] = (0, 9223372036854775807, -9223372036854775808)
+        uint64_values_default: Array[uint64, 3] = (0, 1, 18446744073709551615)
+        string_values_default: Array[str, 3] = ("", "max value", "min value")
 
     class Response(Message):
         """The response of Arrays."""
@@ -69,6 +90,25 @@ class Arrays(ServiceType, typename="test_msgs/srv/Arrays"):
         int64_values: Annotated[Ints, Array[int64, 3]] = DEFAULT
         uint64_values: Annotated[Ints, Array[uint64, 3]] = DEFAULT
         string_values: Annotated[list[str], Array[str, 3]] = DEFAULT
+        basic_types_values: Annotated[list[TestMsgsBasicTypes], Array[TestMsgsBasicTypes, 3]] = (
+            DEFAULT
+        )
+        constants_values: Annotated[list[Constants], Array[Constants, 3]] = DEFAULT
+        defaults_values: Annotated[list[Defaults], Array[Defaults, 3]] = DEFAULT
+        bool_values_default: Array[bool, 3] = (False, True, False)
+        byte_values_default: Array[byte, 3] = (0, 1, 255)
+        char_values_default: Array[char, 3] = (0, 1, 127)
+        float32_values_default: Array[float32, 3] = (1.125, 0.0, -1.125)
+        float64_values_default: Array[float64, 3] = (3.1415, 0.0, -3.1415)
+        int8_values_default: Array[int8, 3] = (0, 127, -128)
+        uint8_values_default: Array[uint8, 3] = (0, 1, 255)
+        int16_values_default: Array[int16, 3] = (0, 32767, -32768)
+        uint16_values_default: Array[uint16, 3] = (0, 1, 65535)
+        int32_values_default: Array[int32, 3] = (0, 2147483647, -2147483648)
+        uint32_values_default: Array[uint32, 3] = (0, 1, 4294967295)
+        int64_values_default: Array[int64, 3] = (0, 9223372036854775807, -9223372036854775808)
+        uint64_values_default: Array[uint64, 3] = (0, 1, 18446744073709551615)
+        string_values_default: Array[str, 3] = ("", "max value", "min value")
 
 
 class BasicTypes(ServiceType, typename="test_msgs/srv/BasicTypes"):
