@@ -40,7 +40,15 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
     from pathlib import Path
 
-__all__ = ["COMPRESSIONS", "MAGIC", "ChunkWriter", "McapWriter", "Parts", "record_bytes"]
+__all__ = [
+    "COMPRESSIONS",
+    "MAGIC",
+    "ChunkWriter",
+    "McapWriter",
+    "Parts",
+    "record_bytes",
+    "write_error",
+]
 
 Pieces = list[bytes | memoryview]
 Parts = bytes | Pieces
@@ -96,6 +104,12 @@ class Span:
         """The offset at which the records of the chunk end."""
         index = self.index
         return index.chunk_start_offset + index.chunk_length + index.message_index_length
+
+
+def write_error(path: Path, error: OSError) -> BagWriteError:
+    """Return the error for a file that the system does not write."""
+    problem = error.strerror or str(error)
+    return BagWriteError(str(path), problem, is_full=error.errno in FULL)
 
 
 class ChunkWriter:
@@ -378,8 +392,19 @@ class McapWriter:
         return stored < WORTH_SAVING * len(sample)
 
     def sync(self) -> None:
-        """Wait until the disk has what was written, so that a power cut does not lose it."""
+        """Wait until the disk has what was written, so that a power cut does not lose it.
+
+        A file that is removed takes bytes without an error, until it is closed and they are gone.
+
+        Raises:
+            BagWriteError: the file was removed.
+            OSError: the disk fails.
+        """
         os.fdatasync(self._fd)
+        if not os.fstat(self._fd).st_nlink:
+            self.spans = []
+            self.counts = dict.fromkeys(self.counts, 0)
+            raise BagWriteError(str(self.path), "the file was removed, and what it had is lost")
 
     def close(self) -> None:
         """Write what waits and the summary, and close the file.
@@ -404,8 +429,12 @@ class McapWriter:
                 failure = failure or error
                 if not self._take_back():
                     break
-        with contextlib.suppress(OSError):
+        try:
             self.sync()
+        except BagWriteError as error:
+            failure = error
+        except OSError as error:
+            failure = failure or write_error(self.path, error)
         self.abandon()
         if failure is not None:
             raise failure

@@ -10,8 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode._distribution import choose_distribution
-from aionode.bag._mcap_writer import COMPRESSIONS, McapWriter
-from aionode.bag._metadata import FilePart, metadata_of, metadata_text, sync_folder, write_metadata
+from aionode.bag._mcap_writer import COMPRESSIONS, McapWriter, write_error
+from aionode.bag._metadata import (
+    FILE_NAME,
+    FilePart,
+    metadata_of,
+    metadata_text,
+    sync_folder,
+    write_metadata,
+)
 from aionode.bag._qos import profiles_to_yaml
 from aionode.bag._record import TopicInfo
 from aionode.bag._types import definition_of
@@ -266,12 +273,31 @@ class BagWriter:
         self._is_open = False
         with contextlib.suppress(OSError):
             (self.path / RESERVE).unlink()
+        failure: BagWriteError | None = None
         try:
             self._close_file()
-        finally:
-            self._count_again()
-            with contextlib.suppress(OSError):
-                self.write_metadata()
+        except BagWriteError as error:
+            failure = error
+        removed = self._removed_file()
+        failure = failure or removed
+        self._count_again()
+        try:
+            self.write_metadata()
+        except OSError as error:
+            failure = failure or write_error(self.path / FILE_NAME, error)
+        if failure is not None:
+            raise failure
+
+    def _removed_file(self) -> BagWriteError | None:
+        """Count what files had that somebody has removed; return the error for the first."""
+        failure: BagWriteError | None = None
+        for part, counts in self._closed:
+            place = self.path / part[0]
+            if sum(counts.values()) and not place.exists():
+                counts.clear()
+                problem = "the file was removed, and what it had is lost"
+                failure = failure or BagWriteError(str(place), problem)
+        return failure
 
     def _is_full(self, time_ns: int) -> bool:
         """Return whether a message of this time belongs to the next file."""

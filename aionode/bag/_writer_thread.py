@@ -12,6 +12,7 @@ from collections import deque
 from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
 from typing import TYPE_CHECKING, Final, NamedTuple
 
+from aionode.bag._mcap_writer import write_error
 from aionode.bag._writer import BagWriter
 from aionode.clock import perf_ns
 from aionode.errors import BagWriteError
@@ -164,7 +165,7 @@ class WriterThread:
         except BagWriteError as error:
             self._fail(error)
         except OSError as error:  # of a file that is removed, or a sync that fails
-            self._fail(BagWriteError(str(self._writer.path), error.strerror or str(error)))
+            self._fail(write_error(self._writer.path, error))
 
     def _fail(self, error: BagWriteError) -> None:
         if self.failure is None:

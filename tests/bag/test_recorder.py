@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import os
 import resource
 import shlex
+import shutil
 import signal
 import subprocess
 import sys
@@ -336,6 +338,59 @@ async def test_a_folder_that_cannot_be_made_is_one_clear_error(tmp_path: Path) -
         with pytest.raises(BagWriteError, match="file/run"):
             async with bag.Recorder(tmp_path / "file" / "run", context=context):
                 pass
+
+
+async def test_a_recording_whose_folder_is_removed_says_so_at_the_next_sync(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The open file takes bytes without an error, and all of them are gone when it is closed."""
+    monkeypatch.setattr("aionode.bag._writer_thread.SYNC_NS", 0)
+    async with local_context() as context:
+        recorder = bag.Recorder(tmp_path / "run", topics=[], context=context)
+        with pytest.raises(BagWriteError, match="the file was removed"):  # noqa: PT012  # leaving raises
+            async with recorder:
+                recorder.write("/x", String(data="one"), time=Time(nanoseconds=1))
+                shutil.rmtree(tmp_path / "run")
+                recorder.write("/x", String(data="two"), time=Time(nanoseconds=2))
+                await recorder.failed()
+        assert recorder.stats["/x"] == (0, 0, 2)
+
+
+@pytest.mark.parametrize("removed", ["run", "run/run_0.mcap", "run/run_1.mcap"])
+async def test_what_was_removed_is_counted_as_lost_at_the_end(removed: str, tmp_path: Path) -> None:
+    """Nobody may believe that there is a bag; an earlier file of it counts, too."""
+    async with local_context() as context:
+        recorder = bag.Recorder(tmp_path / "run", topics=[], context=context)
+        with pytest.raises(BagWriteError, match="the file was removed"):  # noqa: PT012  # leaving raises
+            async with recorder:
+                recorder.write("/x", String(data="one"), time=Time(nanoseconds=1))
+                await recorder.split()
+                recorder.write("/x", String(data="two"), time=Time(nanoseconds=2))
+                place = tmp_path / removed
+                if place.is_dir():
+                    shutil.rmtree(place)
+                else:
+                    place.unlink()
+        lost = 2 if removed == "run" else 1
+        assert recorder.stats["/x"] == (2 - lost, 0, lost)
+        assert "lost: nothing" not in recorder.summary()
+
+
+async def test_a_disk_that_is_full_at_the_sync_is_called_full(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Some file systems find out no earlier."""
+
+    def is_full(fd: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    async with local_context() as context:
+        recorder = bag.Recorder(tmp_path / "run", topics=[], context=context)
+        with pytest.raises(BagWriteError, match="free some space") as caught:  # noqa: PT012  # leaving raises
+            async with recorder:
+                recorder.write("/x", String(data="one"), time=Time(nanoseconds=1))
+                monkeypatch.setattr("os.fdatasync", is_full)
+        assert caught.value.is_full
 
 
 def test_a_subscription_of_the_recorder_fits_all_publishers() -> None:
