@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode.engine.context import Context
 from aionode.errors import CommandError
+from aionode.interfaces import interface_names
 from aionode.node import Node
 
 if TYPE_CHECKING:
@@ -55,11 +56,25 @@ def maker_of(spec: str) -> Callable[[], Any] | None:
     try:
         module_of(spec.partition(":")[0], spec)
         return node_maker(spec) if Context.openings == before else None
-    except ModuleNotFoundError as error:
-        raise CommandError(
-            f"{spec}: it imports {error.name}, which is not installed; "
-            f"a program of ROS 2 runs by `aionode run --rclpy {spec}`"
-        ) from error
+    except ImportError as error:
+        # A folder of definitions beside the file is taken for a package without modules.
+        if isinstance(error, ModuleNotFoundError) or "(unknown location)" in str(error):
+            raise CommandError(f"{spec}: it imports {missing(error, spec)}") from error
+        raise
+
+
+def missing(error: ImportError, spec: str) -> str:
+    """Return what a module has not found, and what to do about it."""
+    name = error.name or ""
+    if name.startswith("aionode.interfaces."):
+        return f"what is not there: {error}"
+    types = interface_names(name.partition(".")[0])
+    if types:
+        package, kind, cls = types[0].split("/")
+        line = f"from aionode.interfaces.{package}.{kind} import {cls}"
+        return f"{name}, whose types are for nodes of aionode: `{line}`"
+    name += ", which is not installed"
+    return f"{name}; a program of ROS 2 runs by `aionode run --rclpy {spec}`"
 
 
 def node_maker(spec: str) -> Callable[[], Any]:

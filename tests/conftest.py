@@ -196,11 +196,16 @@ def own_imports() -> Iterator[None]:
     before = list(sys.meta_path)
     yield
     for finder in [each for each in sys.meta_path if each not in before]:
-        if type(finder).__name__ in {"AionodeFinder", "NamedFinder"}:
+        if type(finder).__name__ == "AionodeFinder":
             sys.meta_path.remove(finder)
-    for module, found in (("_workspace", "GIVEN"), ("_rosidl._search", "NAMED")):
-        if loaded := sys.modules.get(f"aionode.rclpy.{module}"):
-            getattr(loaded, found).clear()
+    if loaded := sys.modules.get("aionode._packages._here"):
+        loaded.GIVEN.clear()
+    if loaded := sys.modules.get("aionode.idl._named"):
+        loaded.NAMED.__init__()
+        loaded.SEEN.clear()
+        for name, module in list(sys.modules.items()):
+            if isinstance(getattr(module, "__loader__", None), loaded.NamedLoader):
+                del sys.modules[name]
 
 
 @pytest.fixture

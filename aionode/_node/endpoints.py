@@ -19,6 +19,7 @@ from aionode.endpoints.timer._timer import to_period_ns
 from aionode.engine.loop_affinity import in_loop_thread
 from aionode.errors import brief, shortened
 from aionode.graph import SERVICE_KINDS, EndpointKind
+from aionode.interfaces import fitting
 from aionode.message import Message, ServiceType, holds_arrays
 from aionode.parameter import declare_qos_overrides
 
@@ -549,8 +550,9 @@ def expect_message_type(msg_type: object, subject: str) -> None:
     """Raise TypeError unless `msg_type` is a message class."""
     if not (isinstance(msg_type, type) and issubclass(msg_type, Message)):
         raise TypeError(
-            f"{shortened(subject)}: {brief(msg_type)} is not a message class; use one such as "
-            "aionode.interfaces.std_msgs.msg.String, or derive from aionode.message.Message"
+            f"{shortened(subject)}: {brief(msg_type)} is not a message class; "
+            f"{fitting(msg_type, 'aionode.interfaces.std_msgs.msg.String')}, "
+            "or derive from aionode.message.Message"
         )
 
 
@@ -558,7 +560,7 @@ def expect_service_type(srv_type: object, subject: str) -> None:
     """Raise TypeError unless `srv_type` is a service class."""
     if not (isinstance(srv_type, type) and issubclass(srv_type, ServiceType)):
         raise TypeError(
-            f"{shortened(subject)}: {brief(srv_type)} is not a service class; use one such as "
-            "aionode.interfaces.example_interfaces.srv.AddTwoInts, or derive from "
-            "aionode.message.ServiceType"
+            f"{shortened(subject)}: {brief(srv_type)} is not a service class; "
+            f"{fitting(srv_type, 'aionode.interfaces.example_interfaces.srv.AddTwoInts')}, "
+            "or derive from aionode.message.ServiceType"
         )

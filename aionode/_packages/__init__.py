@@ -7,7 +7,8 @@ A folder with a ``package.xml`` is a package as it is, without a build; packages
 from __future__ import annotations
 
 from aionode._packages._executables import Executable, is_python
+from aionode._packages._here import around, here, use
 from aionode._packages._packages import Packages
 from aionode._packages._workspace import workspace_of
 
-__all__ = ["Executable", "Packages", "is_python", "workspace_of"]
+__all__ = ["Executable", "Packages", "around", "here", "is_python", "use", "workspace_of"]

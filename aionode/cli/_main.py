@@ -5,12 +5,10 @@ Click is the only large import here; of the nouns, only the one that is used is 
 
 from __future__ import annotations
 
-import contextlib
 import difflib
 import errno
 import importlib
 import io
-import os
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -19,11 +17,12 @@ import click
 from aionode._process.streams import discard, open_missing
 from aionode.cli._support.error_text import limited, one_line
 from aionode.cli._support.exit import INTERRUPTED, OWN_PROCESS, status_of
+from aionode.cli._support.options import in_environment
 from aionode.cli._support.output import unwritable
 from aionode.errors import AionodeError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
 
 __all__ = ["LateGroup", "main", "report", "root"]
 
@@ -119,20 +118,6 @@ def root(ctx: click.Context, transport: str | None) -> None:
     """
     if transport is not None:
         ctx.with_resource(in_environment("AIONODE_TRANSPORT", transport))
-
-
-@contextlib.contextmanager
-def in_environment(name: str, value: str) -> Iterator[None]:
-    """Set a variable of the environment for the time of a command: the program may run others."""
-    before = os.environ.get(name)
-    os.environ[name] = value
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ[name]
-        else:
-            os.environ[name] = before
 
 
 def main(argv: Sequence[str] | None = None) -> int:

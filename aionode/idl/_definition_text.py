@@ -11,6 +11,7 @@ from typing import Literal, TypeAlias
 from aionode.idl._definition import HALVES, split_type_name
 from aionode.idl._folder import read
 from aionode.idl._installed import installed_file
+from aionode.idl._named import NAMED
 from aionode.message import (
     ActionType,
     Field,
@@ -65,7 +66,8 @@ def definition_text(
         sections = [
             lines(message, package, nested=nested, comments=comments) for message in messages
         ]
-        if cls not in messages and comments != "none":
+        is_new = documentation(cls)[0] != documentation(messages[0])[0]
+        if cls not in messages and comments != "none" and is_new:
             sections[0] = itertools.chain(summary(cls), sections[0])
     else:
         sections = [
@@ -128,9 +130,10 @@ def nested_lines(field: Field, comments: Comments) -> Iterator[str]:
 
 
 def source_parts(cls: type[Message | ServiceType | ActionType]) -> list[list[str]] | None:
-    """Return the lines of the installed file that defines a class, in its parts; None without."""
-    file = installed_file(type_name(cls))
-    if file is None:
+    """Return the lines of the file that defines a class, in its parts; None without."""
+    typename = type_name(cls)
+    file = NAMED.file_of(typename, cls) or installed_file(typename)
+    if file is None or file.suffix == ".idl":  # which does not look like this text
         return None
     parts: list[list[str]] = [[]]
     for line in read(file).splitlines():

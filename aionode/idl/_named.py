@@ -1,6 +1,7 @@
-"""Interfaces of the folders that a program was started with, each read when it is first used.
+"""Interfaces of folders and of the workspace around the program, each read when it is first used.
 
-The order of the folders matters for equal names alone: a type may use those of any folder, of
+`aionode.interfaces` asks here for packages that are not shipped, also for programs of rclpy. The
+order of the folders matters for equal names alone: a type may use those of any folder, of
 aionode.interfaces and of the sourced ROS 2.
 """
 
@@ -8,23 +9,28 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
-from importlib.abc import Loader, MetaPathFinder
+from collections.abc import Iterator, Mapping
+from importlib.abc import Loader
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 from threading import RLock
 from types import ModuleType
+from typing import Any
 
+from aionode._packages import here
 from aionode.errors import IdlError
 from aionode.idl._build import Builder, existing
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
-from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, FileTexts, package_of, refuse
+from aionode.idl._folder import TYPE_NAME, FileTexts, package_of, refuse
 from aionode.interfaces import shipped_packages
 from aionode.message import Interface
 
-__all__ = ["NamedFinder", "NamedInterfaces"]
+__all__ = ["NamedInterfaces", "add_workspace", "found", "named", "not_found", "packages"]
 
-PREFIX = "aionode.interfaces."
+VARIABLE = "AIONODE_INTERFACES"
+"""The variable with folders of definitions, in the form of PATH."""
+
+VARIABLES = (VARIABLE, "AMENT_PREFIX_PATH")
 
 
 class NamedInterfaces:
@@ -54,6 +60,14 @@ class NamedInterfaces:
     def names(self, package: str) -> list[str]:
         """Return the ROS names of the types of a package."""
         return [name for name in self._known() if name.startswith(f"{package}/")]
+
+    def packages(self) -> set[str]:
+        """Return the packages of the types."""
+        return {name.partition("/")[0] for name in self._known()}
+
+    def file_of(self, typename: str, cls: type[Any]) -> Path | None:
+        """Return the file that a class of this type is made of, if it is one of the folders."""
+        return self._files[typename] if self._builder.built.get(typename) is cls else None
 
     def has(self, typename: str) -> bool:
         """Return whether one of the folders has a type."""
@@ -134,29 +148,77 @@ def package_of_file(file: Path) -> str | None:
         return None
 
 
-class NamedFinder(MetaPathFinder):
-    """Finds ``aionode.interfaces.my_msgs.msg`` in the folders, for types that use such a one."""
+# The folders of this process
 
-    def __init__(self, named: NamedInterfaces) -> None:
-        self.named = named
+NAMED = NamedInterfaces()
+"""The definitions of this process: of folders that were named, and of packages that were found."""
 
-    def find_spec(
-        self,
-        fullname: str,
-        path: Sequence[str] | None,  # noqa: ARG002 (Python's protocol)
-        target: ModuleType | None = None,  # noqa: ARG002 (the same)
-    ) -> ModuleSpec | None:
-        """Return how to import a package of the folders that is not shipped."""
-        package, _, kind = fullname.removeprefix(PREFIX).partition(".")
-        if not fullname.startswith(PREFIX) or not PACKAGE_NAME.fullmatch(package):
-            return None
-        if package in shipped_packages() or "." in kind:
-            return None
-        names = [name for name in self.named.names(package) if f"/{kind}/" in name or not kind]
-        if not names:
-            return None
-        loader = NamedLoader(self.named, names if kind else [])
-        return ModuleSpec(fullname, loader, is_package=not kind)
+SEEN: set[str] = set()
+"""The folders of the variable that have been added."""
+
+
+def named() -> NamedInterfaces:
+    """Return the definitions of the folders that this process was told of.
+
+    They are those of ``--interfaces``, of `aionode.rclpy.install` and of AIONODE_INTERFACES, and of
+    the packages of the workspace that have been used. A folder of the variable that is not there is
+    left out with a warning.
+    """
+    for folder in os.environ.get(VARIABLE, "").split(os.pathsep):
+        if folder and folder not in SEEN:
+            SEEN.add(folder)
+            try:
+                NAMED.add(folder)
+            except FileNotFoundError as error:
+                warnings.warn(f"{VARIABLE}: {error}", RuntimeWarning, stacklevel=2)
+    return NAMED
+
+
+def add_workspace(package: str) -> bool:
+    """Add the definitions of a package of the workspace, if it has any that are not there yet."""
+    source = here().sources().get(package)
+    if source is None or not defines(source) or named().names(package):
+        return False
+    NAMED.add(source)
+    return bool(NAMED.names(package))
+
+
+def defines(package: Path) -> bool:
+    """Return whether a package has folders with definitions."""
+    return any((package / kind).is_dir() for kind in HALVES)
+
+
+def packages() -> frozenset[str]:
+    """Return the names of the packages with definitions in the folders and the workspace."""
+    in_workspace = (name for name, source in here().sources().items() if defines(source))
+    return frozenset((*named().packages(), *in_workspace))
+
+
+def found(fullname: str, package: str, kind: str) -> ModuleSpec | None:
+    """Return how to import a package of ``aionode.interfaces`` that the folders have, if they do.
+
+    Args:
+        fullname: The name of the module.
+        package: The package.
+        kind: ``msg``, ``srv`` or ``action``; empty for the package itself.
+    """
+    names = [name for name in named().names(package) if f"/{kind}/" in name or not kind]
+    if not names:
+        return None
+    return ModuleSpec(fullname, NamedLoader(NAMED, names if kind else []), is_package=not kind)
+
+
+def not_found(fullname: str, package: str) -> ModuleNotFoundError:
+    """Return the error for a package whose definitions are nowhere."""
+    workspace = here().workspace
+    places = [] if workspace is None else [f"the workspace {workspace}"]
+    places += [f"{name}={os.environ[name]}" for name in VARIABLES if os.environ.get(name)]
+    return ModuleNotFoundError(
+        f"No module named {fullname!r}: no definitions of {package} in "
+        f"{', '.join(places) or 'a workspace around the program'}; name the folder that holds "
+        f"{package}: {VARIABLE}=FOLDER, or --interfaces FOLDER of aionode's commands",
+        name=fullname,
+    )
 
 
 class NamedLoader(Loader):

@@ -4,14 +4,20 @@
 generated from ROS 2 Jazzy's definitions; this one finds a class by its name, also one that the
 program itself has written. Nothing is imported before it is asked for.
 
-Where a ROS 2 is sourced (``AMENT_PREFIX_PATH``), its packages can be imported here as well, and
-types that it defines differently are its own. ``ROS_DISTRO`` alone brings the known differences.
+Packages with definitions of their own can be imported here as well, without a build:
+``from aionode.interfaces.my_msgs.msg import Words``. They are looked for in the folders of
+``AIONODE_INTERFACES`` and ``--interfaces``, in the ROS 2 that is sourced (``AMENT_PREFIX_PATH``),
+and in the workspace around the program: the folder ``src``, or else the repository, that it is in.
+
+Types that the sourced ROS 2 defines differently are its own. ``ROS_DISTRO`` alone brings the known
+differences.
 """
 
 from __future__ import annotations
 
 import difflib
 import os
+import re
 import sys
 from collections.abc import Sequence
 from functools import cache
@@ -135,6 +141,22 @@ def get_action(name: str) -> Any:
     return of_kind(name, ActionType, "an action")
 
 
+def fitting(cls: object, example: str) -> str:
+    """Return which class fits in the place of one that is not aionode's.
+
+    Classes that rosidl has generated, and those of `aionode.rclpy`, are in modules of their package.
+
+    Args:
+        cls: What was given.
+        example: The class to name if that tells nothing.
+    """
+    package, _, module = getattr(cls, "__module__", "").partition(".")
+    kind = module.partition(".")[0]
+    if not isinstance(cls, type) or kind not in KINDS or not PACKAGE_NAME.fullmatch(package):
+        return f"use one such as {example}"
+    return f"nodes of aionode take `from {__name__}.{package}.{kind} import {cls.__name__}`"
+
+
 def of_kind(name: str, base: type[Any], what: str) -> type[Any]:
     """Return the class of a type that has to be of one kind."""
     found: type[Any] = get_interface(name)
@@ -165,12 +187,12 @@ def interface_names(package: str | None = None) -> tuple[str, ...]:
 
 
 def known_packages() -> frozenset[str]:
-    """Return the names of all packages: shipped, loaded, written, or of the sourced ROS 2."""
-    here = shipped_packages() | loaded_packages() | {name.split("/")[0] for name in TYPES_BY_NAME}
-    if not is_sourced():
-        return here
-    installed = import_module("aionode.idl._installed")  # by name: it is made of this package
-    names: frozenset[str] = here | installed.packages()
+    """Return the names of all packages: shipped, loaded, written, of folders, or sourced."""
+    names: frozenset[str] = shipped_packages() | loaded_packages()
+    names |= {name.split("/")[0] for name in TYPES_BY_NAME}
+    names |= import_module("aionode.idl._named").packages()  # by name: it is made of this package
+    if is_sourced():
+        names |= import_module("aionode.idl._installed").packages()
     return names
 
 
@@ -234,7 +256,9 @@ def not_found(name: str, parts: list[str]) -> InterfaceNotFoundError:
     return InterfaceNotFoundError(name, tuple(difflib.get_close_matches(wanted, near, 3, CLOSE)))
 
 
-# Definitions of the ROS 2 that is sourced
+# Definitions besides the shipped ones
+
+PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 
 FIXED = frozenset(
     {
@@ -255,8 +279,8 @@ def is_sourced() -> bool:
     return bool(os.environ.get("AMENT_PREFIX_PATH") or os.environ.get("ROS_DISTRO"))
 
 
-class InstalledFinder(MetaPathFinder):
-    """Finds ``aionode.interfaces.<package>.<kind>`` where a ROS 2 is sourced."""
+class DefinitionFinder(MetaPathFinder):
+    """Finds ``aionode.interfaces.<package>.<kind>`` besides the shipped ones as they are."""
 
     def find_spec(
         self,
@@ -264,21 +288,49 @@ class InstalledFinder(MetaPathFinder):
         path: Sequence[str] | None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return how to import an installed package, or None if the shipped one is all there is."""
+        """Return how to import a package, or None if the shipped one is all there is."""
         package, _, kind = fullname.removeprefix(f"{__name__}.").partition(".")
-        if not fullname.startswith(f"{__name__}.") or package in FIXED or not is_sourced():
+        if not fullname.startswith(f"{__name__}.") or package in FIXED:
+            return None
+        if package not in shipped_packages():
+            return found_elsewhere(fullname, package, kind)
+        if not is_sourced():
             return None
         shipped = PathFinder.find_spec(fullname, path, target)
         # By name, since `aionode.idl` is made of this package.
         installed = import_module("aionode.idl._installed")
-        if not kind:
-            if shipped is not None or not installed.has_package(package):
-                return shipped
-            return ModuleSpec(fullname, InstalledPackage(), is_package=True)
         if kind not in KINDS or not installed.has_types(package, kind):
             return shipped
         loader = None if shipped is None else shipped.loader
         return ModuleSpec(fullname, InstalledTypes(installed, package, kind, loader))
+
+
+def found_elsewhere(fullname: str, package: str, kind: str) -> ModuleSpec | None:
+    """Return how to import a package that is not shipped, or its types of one kind.
+
+    A folder that was named comes first, then the ROS 2 that is sourced, then the workspace.
+
+    Raises:
+        ModuleNotFoundError: No package of that name has definitions.
+    """
+    if not PACKAGE_NAME.fullmatch(package) or (kind and kind not in KINDS):
+        return None
+    folders = import_module("aionode.idl._named")  # by name: it is made of this package
+    spec: ModuleSpec | None = folders.found(fullname, package, kind)
+    if spec is not None:
+        return spec
+    installed = import_module("aionode.idl._installed")
+    if is_sourced() and installed.has_package(package):
+        if not kind:
+            return ModuleSpec(fullname, InstalledPackage(), is_package=True)
+        if installed.has_types(package, kind):
+            return ModuleSpec(fullname, InstalledTypes(installed, package, kind, None))
+    if folders.add_workspace(package):
+        spec = folders.found(fullname, package, kind)
+    if spec is None and not kind:
+        error: ModuleNotFoundError = folders.not_found(fullname, package)
+        raise error
+    return spec
 
 
 class InstalledPackage(Loader):
@@ -307,4 +359,4 @@ class InstalledTypes(Loader):
         module.__all__ = sorted(names)  # type: ignore[attr-defined]  # as in a written module
 
 
-sys.meta_path.insert(0, InstalledFinder())
+sys.meta_path.insert(0, DefinitionFinder())

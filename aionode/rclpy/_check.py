@@ -12,10 +12,10 @@ from importlib.machinery import ModuleSpec, PathFinder
 from pathlib import Path
 from typing import Final
 
+from aionode._packages import around
 from aionode.rclpy._finder import ALIASES, FINDER, KINDS, exists, gives_way, of_alias
 from aionode.rclpy._missing import advice
 from aionode.rclpy._rosidl import has_interfaces, module_name, names_in
-from aionode.rclpy._workspace import around
 
 __all__ = ["check"]
 

@@ -23,7 +23,6 @@ from aionode.rclpy._module_names import (
 from aionode.rclpy._reexports import add_names
 from aionode.rclpy._rosidl import (
     add_folder,
-    add_workspace,
     classes_of,
     has_interfaces,
     module_name,
@@ -80,7 +79,7 @@ def install(
     for folder in interfaces:
         add_folder(folder)
     if workspace is not None:
-        from aionode.rclpy._workspace import use  # which looks for packages
+        from aionode._packages import use  # which looks for packages
 
         use(workspace)
 
@@ -127,15 +126,8 @@ class AionodeFinder(MetaPathFinder):
         kind, _, module = inside.partition(".")
         if package == "aionode" or package in sys.stdlib_module_names or kind not in ("", *KINDS):
             return load_with_names(fullname, path)
-        # A package of the workspace may have messages beside its Python modules.
-        if not has_interfaces(package) and not (inside and add_workspace(package)):
-            return None if inside else of_workspace(package)
         if not inside:
-            # A package may have Python modules beside its messages.
-            ordinary = None if package in shipped_packages() else PathFinder.find_spec(package)
-            if ordinary is not None and ordinary.origin is not None:
-                return None
-            return spec_from_loader(fullname, EmptyLoader(), is_package=True)
+            return of_package(package)
         if not has_interfaces(package, kind):
             return None
         if not module:
@@ -153,26 +145,28 @@ def gives_way(package: str) -> bool:
     spec = PathFinder.find_spec(package)
     if spec is not None and spec.origin is not None and not is_own(Path(spec.origin)):
         return True
-    from aionode.rclpy._workspace import here
+    from aionode._packages import here
 
     return here().module_root(package) is not None
 
 
-def of_workspace(package: str) -> ModuleSpec | None:
-    """Return how a package of the workspace is loaded: its Python modules, or its messages.
+def of_package(package: str) -> ModuleSpec | None:
+    """Return how a package is loaded that has messages, or lies in the workspace.
 
-    What is installed or on PYTHONPATH comes first. A folder without Python is no package for that:
-    in a workspace, the folder around a Python package often has the same name.
+    Python modules come first, those that are installed or on PYTHONPATH before the workspace's: a
+    package may have them beside its messages. A folder without Python is no package for that: in a
+    workspace, the folder around a Python package often has the same name.
     """
-    ordinary = PathFinder.find_spec(package)
-    if ordinary is not None and ordinary.origin is not None:
-        return None
-    from aionode.rclpy._workspace import here  # only for what is not found otherwise
+    if package not in shipped_packages():
+        ordinary = PathFinder.find_spec(package)
+        if ordinary is not None and ordinary.origin is not None:
+            return None
+        from aionode._packages import here  # only for what is not found otherwise
 
-    root = here().module_root(package)
-    if root is not None:
-        return PathFinder.find_spec(package, [str(root)])
-    is_found = add_workspace(package)
+        root = here().module_root(package)
+        if root is not None:
+            return PathFinder.find_spec(package, [str(root)])
+    is_found = has_interfaces(package)
     return spec_from_loader(package, EmptyLoader(), is_package=True) if is_found else None
 
 

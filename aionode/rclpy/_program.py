@@ -187,7 +187,7 @@ def no_module(name: str) -> str:
     import difflib  # for a text of an error alone
     import pkgutil
 
-    from aionode.rclpy._workspace import here
+    from aionode._packages import here
 
     above, _, last = name.rpartition(".")
     folders = [sys.path[0]] if not above else getattr(sys.modules.get(above), "__path__", ())

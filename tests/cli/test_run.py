@@ -183,12 +183,12 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_a_package_and_its_executable_are_a_program(workspace: Path) -> None:
     """As with `ros2 run`, but without a build; the rest are its own arguments."""
-    command = Programs(["msgs"], None).command(["my_robot", "mover", "-x", "--ros-args"])
+    command = Programs(None).command(["my_robot", "mover", "-x", "--ros-args"])
 
     package = workspace / "src" / "my_robot"
     assert command is not None
     assert command[1:] == [
-        *("-m", "aionode.rclpy", "--workspace", str(package.parent), "--interfaces", "msgs"),
+        *("-m", "aionode.rclpy", "--workspace", str(package.parent)),
         *("--path", str(package), "-m", "my_robot.mover:main", "-x", "--ros-args"),
     ]
 
@@ -200,7 +200,7 @@ def test_a_function_of_a_program_of_rclpy_runs_as_one(
     """Wherever the user is in the workspace, and not as a function that makes a node."""
     monkeypatch.chdir(workspace / place)
 
-    command = Programs([], None).command(["my_robot.mover:main", "fast"])
+    command = Programs(None).command(["my_robot.mover:main", "fast"])
 
     package = str(workspace / "src" / "my_robot")
     assert command is not None
@@ -211,8 +211,8 @@ def test_classes_of_nodes_are_found_in_packages(workspace: Path) -> None:
     """A package whose nodes have moved to aionode starts as before."""
     specs = ["my_robot.cli_run_nodes_of_package:Talker"]
 
-    assert Programs([], None).command(specs) is None
-    folders = Programs([], None).module_folders(specs)
+    assert Programs(None).command(specs) is None
+    folders = Programs(None).module_folders(specs)
     assert folders == [str(workspace / "src" / "my_robot")]
 
 
@@ -231,7 +231,7 @@ def test_an_executable_that_is_missing_is_named(
 ) -> None:
     """With what is close to it."""
     with pytest.raises(error) as caught:
-        Programs([], None).command(args)
+        Programs(None).command(args)
 
     assert says in str(caught.value)
 

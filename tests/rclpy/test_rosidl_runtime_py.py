@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 import aionode.rclpy
-from aionode.rclpy import _finder, _workspace
+from aionode._packages import use
+from aionode.rclpy import _finder
 from aionode.rclpy import _rosidl_runtime_py as runtime
 from aionode.rclpy._ament_index_python import (
     PackageNotFoundError,
@@ -183,7 +184,7 @@ def test_without_a_prefix_path_resources_are_those_of_the_workspace(
     folder.mkdir(parents=True)
     (folder / "package.xml").write_text("<package><name>my_robot</name></package>")
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
-    monkeypatch.setattr(_workspace, "GIVEN", [tmp_path])
+    use(tmp_path)
 
     assert has_resource("packages", "my_robot") == get_package_prefix("my_robot")
     assert get_resource("packages", "my_robot") == ("", str(folder))

@@ -295,14 +295,6 @@ def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
         assert module not in loaded
 
 
-def test_options_of_programs_are_refused_for_nodes(folder: Path) -> None:
-    """They would have no effect."""
-    done = run(folder, "run", "--interfaces", ".", "helper:Nothing", module="aionode")
-
-    assert done.returncode == 2
-    assert "--interfaces are for programs of rclpy" in done.stderr
-
-
 def test_a_missing_package_of_ros_says_what_to_do(folder: Path) -> None:
     """At the end of the traceback, and below a cause, too."""
     (folder / "own.py").write_text("import rclpy\nfrom nav2_msgs.action import NavigateToPose\n")

@@ -29,7 +29,7 @@ from aionode.cli._nouns.bag_terminal import (
     keys_pressed,
     progress_shown,
 )
-from aionode.cli._support.options import json_option, positive, seconds
+from aionode.cli._support.options import interfaces_option, json_option, positive, seconds
 from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_until_stopped
 from aionode.clock import Duration
@@ -81,6 +81,7 @@ def set_level(node: Node, level: str | None) -> None:
 
 
 @click.command("record")
+@interfaces_option
 @selection_options(playing=False)
 @click.option("-o", "--output", "out", help="The folder; its name has the time by default.")
 @click.option(
@@ -300,6 +301,7 @@ def player_options(values: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
 
 
 @click.command("play")
+@interfaces_option
 @spread(play_options)
 @click.option("-r", "--rate", type=positive, default=1.0, help="How fast.")
 @click.option("-l", "--loop", is_flag=True, help="Begin again at the end.")
@@ -383,6 +385,7 @@ def play_command(**values: Any) -> None:
 
 
 @click.command("burst")
+@interfaces_option
 @spread(play_options)
 @click.option("-n", "--num-messages", type=click.IntRange(0), default=0, help="0 for all.")
 def burst_command(**values: Any) -> None:

@@ -15,7 +15,7 @@ from aionode.cli._nouns.doctor_routes import link_findings, pairs_of, query_link
 from aionode.cli._nouns.doctor_transforms import transform_findings
 from aionode.cli._support import lookup
 from aionode.cli._support.completion import complete_names
-from aionode.cli._support.options import json_option, ros2_options
+from aionode.cli._support.options import interfaces_option, json_option, ros2_options
 from aionode.cli._support.session import run_verb, silent_processes
 from aionode.clock import perf_ns
 from aionode.engine.transport.network import DiscoveryRange, unheard_middleware
@@ -45,6 +45,7 @@ ZENOH = "rmw_zenoh_cpp"
 
 
 @click.command()
+@interfaces_option
 @click.argument("names", nargs=-1, shell_complete=complete_names("topic"))
 @click.option(
     "--transform", nargs=2, metavar="TARGET SOURCE", help="Say why this transform is missing."

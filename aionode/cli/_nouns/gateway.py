@@ -26,6 +26,7 @@ PORT = 9090
 
 
 @click.group("gateway", invoke_without_command=True)
+@interfaces_option
 @click.option(
     "--host", default="127.0.0.1", show_default=True, metavar="ADDRESS",
     help="Where to listen; other machines need a policy with tokens or certificates.",

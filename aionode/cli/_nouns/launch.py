@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from aionode.cli._support.exit import become
+from aionode.cli._support.options import interfaces_option
 from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ __all__ = ["launch_command"]
     metavar="FOLDER",
     help="The packages that the file names, which need no build; else the workspace around it.",
 )
+@interfaces_option
 @click.option("-d", "--debug", is_flag=True, help="Accepted, as in ros2 launch; changes nothing.")
 @click.option(
     "-n",

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Final
 import click
 
 from aionode.cli._support.exit import become
+from aionode.cli._support.options import interfaces_option
 from aionode.errors import CommandError, PackageNotFoundError
 from aionode.interfaces import shipped_packages
 
@@ -44,13 +45,7 @@ PACKAGE: Final = re.compile(r"[a-zA-Z][a-zA-Z0-9_-]+")
     help="Run a module as a program of rclpy, or call a function, as a package's executable does.",
 )
 @click.option("--rclpy", is_flag=True, help="Take a file for a program of rclpy in any case.")
-@click.option(
-    "--interfaces",
-    multiple=True,
-    type=click.Path(),
-    metavar="FOLDER",
-    help="Message packages that a program of rclpy uses; may be repeated.",
-)
+@interfaces_option
 @click.option(
     "--workspace",
     type=click.Path(exists=True, file_okay=False),
@@ -66,7 +61,6 @@ def run_command(
     args: tuple[str, ...],
     module: str | None,
     rclpy: bool,
-    interfaces: tuple[str, ...],
     workspace: str | None,
     check: bool,
 ) -> None:
@@ -86,7 +80,7 @@ def run_command(
     With --check, nothing runs: for each file, and each Python file of a folder, there is a list of
     what it imports and where that is. The exit status is 1 if something is missing.
     """
-    programs = Programs(interfaces, workspace)
+    programs = Programs(workspace)
     if check and (module is not None or not args):
         raise click.UsageError("--check takes files and folders, such as src/my_robot/talker.py.")
     if check:
@@ -98,8 +92,6 @@ def run_command(
     command = programs.command(args)
     if command is not None:
         become(command)
-    if rclpy or interfaces:
-        raise click.UsageError("--rclpy and --interfaces are for programs of rclpy.")
     run_nodes(args, programs)
 
 
@@ -123,6 +115,7 @@ def run_nodes(args: Sequence[str], programs: Programs) -> None:
             )
     if not specs:
         raise click.UsageError(f"Nothing to run: {FITS}.")
+    programs.use_workspace(specs)
     sys.path[:0] = [str(Path.cwd()), *programs.module_folders(specs)]
     sys.argv[:] = [specs[0], *ros_args]  # what a file reads that runs its nodes itself
     makers = makers_of(specs)
@@ -134,12 +127,10 @@ class Programs:
     """Programs of rclpy and executables of packages.
 
     Args:
-        interfaces: Folders with message packages.
         workspace: The folder with the packages; else that around the current folder is searched.
     """
 
-    def __init__(self, interfaces: Sequence[str], workspace: str | None) -> None:
-        self._interfaces = [part for folder in interfaces for part in ("--interfaces", folder)]
+    def __init__(self, workspace: str | None) -> None:
         self._workspace = [] if workspace is None else ["--workspace", workspace]
 
     @cached_property
@@ -152,10 +143,20 @@ class Programs:
         current = Path.cwd()
         return Packages(workspace_of(current) or current)
 
+    def use_workspace(self, specs: Sequence[str]) -> None:
+        """Have nodes find the types of the workspace that was named, or that their files lie in."""
+        from aionode._packages import use, workspace_of
+
+        files = (Path(source) for source in (spec.partition(":")[0] for spec in specs))
+        around = (workspace_of(file) for file in files if file.suffix == ".py")
+        workspace = self._workspace[1] if self._workspace else next(filter(None, around), None)
+        if workspace is not None:
+            use(workspace)
+
     def under_rclpy(self, *program: str) -> list[str]:
         """Return the command for a program of rclpy: its file, or ``-m`` and its module."""
         own = [sys.executable, "-m", "aionode.rclpy"]
-        return [*own, *self._interfaces, *self._workspace, *program]
+        return [*own, *self._workspace, *program]
 
     def command(self, args: Sequence[str]) -> list[str] | None:
         """Return the command that the arguments mean; None if they name classes of nodes.
@@ -193,7 +194,7 @@ class Programs:
         named = rest[0] if rest and not rest[0].startswith("-") and ":" not in rest[0] else None
         try:
             if named is not None:
-                return [*self._packages.command(name, named, self._interfaces), *rest[1:]]
+                return [*self._packages.command(name, named), *rest[1:]]
             if self._module_file(name, here=True) is not None:
                 return None
             known = ", ".join(self._packages.executables(name)) or "none"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -19,9 +21,10 @@ __all__ = [
     "hertz",
     "hidden_nodes_option",
     "hidden_option",
+    "in_environment",
     "interfaces_option",
     "json_option",
-    "load_interface_folders",
+    "name_interface_folders",
     "natural",
     "positive",
     "print_options",
@@ -120,7 +123,7 @@ sim_time_option = click.option(
 
 
 def interfaces_option(command: CommandT) -> CommandT:
-    """Add the option for folders of interface definitions, loaded before the command runs."""
+    """Add the option for folders of interface definitions."""
     return click.option(
         "--interfaces",
         metavar="PATH",
@@ -128,20 +131,33 @@ def interfaces_option(command: CommandT) -> CommandT:
         envvar="AIONODE_INTERFACES",
         type=click.Path(exists=True, file_okay=False, path_type=Path),
         expose_value=False,
-        callback=load_interface_folders,
-        help="Folder with your own .msg, .srv, .action and .idl files; also $AIONODE_INTERFACES.",
+        callback=name_interface_folders,
+        help="Folder with your own .msg, .srv, .action and .idl files; also $AIONODE_INTERFACES. "
+        "Those of the workspace around the current folder are found without it.",
     )(command)
 
 
-def load_interface_folders(
+def name_interface_folders(
     ctx: click.Context, param: click.Parameter, value: tuple[Path, ...]
 ) -> None:
-    """Load the interfaces of the given folders."""
+    """Have this process, and those that it starts, find the interfaces of the given folders."""
     if value:
-        from aionode.idl import load_interfaces
+        folders = os.pathsep.join(str(path.absolute()) for path in value)
+        ctx.with_resource(in_environment("AIONODE_INTERFACES", folders))
 
-        for path in value:
-            load_interfaces(path, lenient=True)
+
+@contextlib.contextmanager
+def in_environment(name: str, value: str) -> Iterator[None]:
+    """Set a variable of the environment for the time of a command: the program may run others."""
+    before = os.environ.get(name)
+    os.environ[name] = value
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ[name]
+        else:
+            os.environ[name] = before
 
 
 def read_values(options: dict[str, Any]) -> None:

@@ -11,6 +11,7 @@ from aionode.endpoints.client import Client
 from aionode.endpoints.service import Service
 from aionode.engine.rules.goal import is_sign
 from aionode.errors import brief, shortened
+from aionode.interfaces import fitting
 from aionode.message import ActionType
 
 if TYPE_CHECKING:
@@ -122,9 +123,9 @@ def expect_action_type(action_type: object, subject: str) -> None:
     """Raise TypeError unless `action_type` is an action class."""
     if not (isinstance(action_type, type) and issubclass(action_type, ActionType)):
         raise TypeError(
-            f"{shortened(subject)}: {brief(action_type)} is no action class; use one such as "
-            "aionode.interfaces.example_interfaces.action.Fibonacci, or derive from "
-            "aionode.message.ActionType"
+            f"{shortened(subject)}: {brief(action_type)} is no action class; "
+            f"{fitting(action_type, 'aionode.interfaces.example_interfaces.action.Fibonacci')}, "
+            "or derive from aionode.message.ActionType"
         )
 
 

@@ -7,9 +7,8 @@ import warnings
 from pathlib import Path
 
 from aionode import errors
-from aionode._packages import Packages
+from aionode._packages import Packages, here
 from aionode.rclpy._ament_index_python.resources import PACKAGES, get_resources
-from aionode.rclpy._workspace import here
 
 __all__ = [
     "PackageNotFoundError",

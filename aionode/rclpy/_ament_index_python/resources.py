@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 from typing import Final, Literal
 
+from aionode._packages import here
 from aionode.rclpy._ament_index_python.constants import (
     AMENT_PREFIX_PATH_ENV_VAR,
     RESOURCE_INDEX_SUBFOLDER,
 )
 from aionode.rclpy._ament_index_python.search_paths import get_search_paths
-from aionode.rclpy._workspace import here
 
 __all__ = [
     "InvalidResourceNameError",

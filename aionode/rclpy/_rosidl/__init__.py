@@ -13,12 +13,11 @@ from aionode.rclpy._rosidl._names import (
     ros_type_name,
     service_class,
 )
-from aionode.rclpy._rosidl._search import add_folder, add_workspace, has_interfaces, names_in
+from aionode.rclpy._rosidl._search import add_folder, has_interfaces, names_in
 
 __all__ = [
     "action_class",
     "add_folder",
-    "add_workspace",
     "aionode_class",
     "classes_of",
     "decode",

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import sys
+import sysconfig
 from functools import cache
 from pathlib import Path
 
-from aionode._packages import Packages, workspace_of
+from aionode._packages._packages import Packages
+from aionode._packages._workspace import workspace_of
 
 __all__ = ["around", "here", "use"]
 
 GIVEN: list[Path] = []
 """The workspace that was named, if one was."""
 
-STARTER = Path(__file__).parent / "__main__.py"
-"""The program of this process until the file or module that it starts has taken that place."""
+TOOLS = (
+    Path(__file__).parents[1],
+    *(Path(sysconfig.get_path(each)) for each in ("scripts", "purelib", "platlib", "stdlib")),
+)
+"""Where tools lie, such as pytest and aionode's own command: they work on the current folder."""
 
 
 def use(folder: str | Path) -> None:
@@ -30,11 +35,16 @@ def use(folder: str | Path) -> None:
 def here() -> Packages:
     """Return the packages of the workspace, and the installed ones.
 
-    The workspace is the one that was named, or else the one around the program. Before a module
-    runs, and where there is no program's file, it is the one around the current folder.
+    The workspace is the one that was named, or else the one around the program. For a tool that is
+    installed, and where there is no program's file, it is the one around the current folder.
     """
     name = getattr(sys.modules.get("__main__"), "__file__", None)
-    return around(Path.cwd() if name is None or Path(name) == STARTER else Path(name))
+    return around(Path.cwd() if name is None or is_tool(Path(name)) else Path(name))
+
+
+def is_tool(program: Path) -> bool:
+    """Return whether a program is installed with Python, or is one of aionode's."""
+    return any(program.absolute().is_relative_to(folder) for folder in TOOLS)
 
 
 def around(place: Path) -> Packages:
