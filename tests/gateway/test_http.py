@@ -11,6 +11,7 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import httpx
+import numpy as np
 import pytest
 
 from aionode import image
@@ -323,16 +324,115 @@ async def test_images_are_a_stream_of_pictures(client: httpx.AsyncClient, robot:
     assert read.count(b"--picture\r\nContent-Type: image/jpeg\r\n") == 2
 
 
-async def test_an_image_that_jpeg_cannot_hold_is_refused(
+@pytest.mark.parametrize(
+    ("encoding", "pixels", "shown"),
+    [
+        ("mono16", np.array([[100, 300]], np.uint16), [[0, 255]]),
+        ("16UC1", np.array([[0, 500], [1000, 250]], np.uint16), [[0, 128], [255, 64]]),
+        ("16SC1", np.array([[-5, 5]], np.int16), [[0, 255]]),
+        ("32FC1", np.array([[1.0, np.nan], [np.inf, 2.0]], np.float32), [[0, 0], [0, 255]]),
+        ("32FC1", np.full((1, 2), np.nan, np.float32), [[0, 0]]),
+        ("64FC1", np.array([[-1e308, 1e308]]), [[0, 255]]),
+        ("8UC1", np.array([[7, 9]], np.uint8), [[7, 9]]),
+        ("8UC3", np.array([[[1, 2, 3]]], np.uint8), [[[3, 2, 1]]]),
+        ("rgb16", np.array([[[0x100, 0x200, 0x300]]], np.uint16), [[[1, 2, 3]]]),
+        ("bayer_rggb8", np.array([[10, 20], [30, 40]], np.uint8), [[[10, 25, 40]] * 2] * 2),
+        ("bayer_gbrg8", np.array([[10, 20], [30, 40]], np.uint8), [[[30, 25, 20]] * 2] * 2),
+        ("bayer_grbg8", np.array([[10, 20, 30]], np.uint8), [[[20, 15, 10]] * 2 + [[30] * 3]]),
+        ("yuv422", np.array([[[128, 50], [128, 60]]], np.uint8), [[[50] * 3, [60] * 3]]),
+        (
+            "yuv422_yuy2",
+            np.array([[[50, 128], [60, 228]]], np.uint8),
+            [[[190, 0, 50], [200, 0, 60]]],
+        ),
+    ],
+)
+async def test_an_image_of_any_type_is_shown(
+    client: httpx.AsyncClient, robot: Node, encoding: str, pixels: Any, shown: Any
+) -> None:
+    """Depth cameras and raw sensors have no eight bits: they are scaled, and NaN is dark."""
+    robot.create_publisher(Image, "/image", LATCHED).publish(image.from_numpy(pixels, encoding))
+
+    png = await client.get("/topics/image", headers={"Accept": "image/png"})
+    jpeg = await client.get("/topics/image")
+
+    assert (png.headers["content-type"], jpeg.headers["content-type"]) == (
+        "image/png",
+        "image/jpeg",
+    )
+    seen = image.to_numpy(image.decompress(CompressedImage(data=png.content)))
+    assert seen.tolist() == shown
+
+
+async def test_channels_that_are_no_colours_are_refused(
     client: httpx.AsyncClient, robot: Node
 ) -> None:
     """The caller learns which fit."""
-    deep = Image(height=1, width=1, encoding="16UC1", step=2, data=b"\x00\x01")
-    robot.create_publisher(Image, "/depth", LATCHED).publish(deep)
+    flow = image.from_numpy(np.zeros((2, 2, 2), np.float32), "32FC2")
+    robot.create_publisher(Image, "/flow", LATCHED).publish(flow)
 
-    answer = await client.get("/topics/depth")
+    answer = await client.get("/topics/flow")
 
     assert (answer.status_code, answer.json()["code"]) == (422, "unsupported_image")
+    assert "1, 3 and 4 fit" in answer.json()["error"]
+
+
+@pytest.mark.parametrize("compressed", [False, True])
+async def test_a_picture_has_the_width_and_quality_that_are_asked_for(
+    client: httpx.AsyncClient, robot: Node, *, compressed: bool
+) -> None:
+    """Thumbnails over a slow link; pictures that come compressed are made smaller, too."""
+    noise = np.random.default_rng(1).integers(0, 255, (60, 100, 3), np.uint8)
+    message = image.from_numpy(noise, "rgb8")
+    if compressed:
+        robot.create_publisher(CompressedImage, "/image", LATCHED).publish(image.compress(message))
+    else:
+        robot.create_publisher(Image, "/image", LATCHED).publish(message)
+
+    small = image.decompress(
+        CompressedImage(data=(await client.get("/topics/image?width=50")).content)
+    )
+    coarse = await client.get("/topics/image?quality=5")
+    fine = await client.get("/topics/image?quality=95")
+    png = await client.get("/topics/image.png?width=200")
+
+    assert (small.width, small.height) == (50, 30)
+    assert len(coarse.content) < len(fine.content) / 3
+    assert png.headers["content-type"] == "image/png"
+    assert image.decompress(CompressedImage(data=png.content)).width == 100
+
+
+@pytest.mark.parametrize("query", ["?width=-1", "?width=x", "?quality=101", ".png?quality=5"])
+async def test_a_size_or_quality_that_does_not_fit_is_refused(
+    client: httpx.AsyncClient, robot: Node, query: str
+) -> None:
+    """Nothing that is asked for is ignored."""
+    robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
+
+    assert (await client.get(f"/topics/image{query}")).status_code == 400
+
+
+@pytest.mark.parametrize(
+    ("accept", "media_type"),
+    [
+        ("image/png", "image/png"),
+        ("image/png;q=0.5, image/jpeg", "image/jpeg"),
+        ("image/jpeg;q=0.5, image/png;q=0.9", "image/png"),
+        ("image/png, */*;q=0.1", "image/png"),
+        ("image/png;q=nonsense, */*", "image/jpeg"),
+        ("image/avif,image/webp,image/png,image/svg+xml,image/*;q=0.8,*/*;q=0.5", "image/jpeg"),
+        ("*/*", "image/jpeg"),
+    ],
+)
+async def test_the_caller_chooses_the_format_of_a_picture(
+    client: httpx.AsyncClient, robot: Node, accept: str, media_type: str
+) -> None:
+    """What a browser can show is no wish; a PNG of a camera is large."""
+    robot.create_publisher(Image, "/image", LATCHED).publish(raw_image())
+
+    answer = await client.get("/topics/image", headers={"Accept": accept})
+
+    assert answer.headers["content-type"] == media_type
 
 
 async def test_without_pillow_an_image_is_refused(

@@ -99,5 +99,6 @@ def test_an_image_is_also_a_picture() -> None:
         "application/json",
         "text/event-stream",
         "image/jpeg",
+        "image/png",
         "multipart/x-mixed-replace",
     }

@@ -82,6 +82,21 @@ PERIOD: Final = {
 }
 
 
+WIDTH: Final = {
+    "name": "width",
+    "in": "query",
+    "description": "The largest width of a picture in pixels; the height follows.",
+    "schema": {"type": "integer", "minimum": 0, "maximum": 8192, "default": 0},
+}
+
+QUALITY: Final = {
+    "name": "quality",
+    "in": "query",
+    "description": "The quality of a JPEG.",
+    "schema": {"type": "integer", "minimum": 1, "maximum": 100},
+}
+
+
 @dataclass(frozen=True, slots=True)
 class Offer:
     """Something that the caller may use.
@@ -185,15 +200,17 @@ def topic_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
     message = component(offer.cls, schemas)
     operations: Schema = {}
     if "subscribe" in offer.verbs:
+        parameters = [TIMEOUT, PERIOD]
         others: Schema = {"text/event-stream": {"schema": {"type": "string"}}}
         if offer.cls is not None and type_name(offer.cls) in IMAGE_TYPES:
-            others |= {"image/jpeg": {}, "multipart/x-mixed-replace": {}}
+            others |= {"image/jpeg": {}, "image/png": {}, "multipart/x-mixed-replace": {}}
+            parameters += [WIDTH, QUALITY]
         text = f"The next message of {offer.name}, or a stream of its messages."
         operations["get"] = operation(
             f"get{offer.name}",
             text,
             answer(message, **others),
-            parameters=[TIMEOUT, PERIOD],
+            parameters=parameters,
         )
     if "publish" in offer.verbs:
         done = {"204": {"description": "The message is published."}}

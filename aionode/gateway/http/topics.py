@@ -18,7 +18,7 @@ from aionode.gateway.http.answers import (
     event,
     json_response,
 )
-from aionode.gateway.session.image import BOUNDARY, IMAGE_TYPES, part_of, picture_of
+from aionode.gateway.session.image import BOUNDARY, IMAGE_TYPES, Form, part_of, picture_of
 from aionode.gateway.session.large_json import prepare_json
 from aionode.gateway.session.values import json_of
 
@@ -33,10 +33,20 @@ __all__ = ["answer_topic"]
 
 PICTURES: Final = "multipart/x-mixed-replace"
 
+ANY_PICTURE: Final = "image/*"
+"""A JPEG, or a compressed image as it is."""
+
+MOST_WIDTH: Final = 8192
+
 WAIT_SEC: Final = 5.0
 """Time for which a request waits for a message unless it says otherwise, in seconds."""
 
-SUFFIXES: Final = {".jpeg": "image/jpeg", ".jpg": "image/jpeg", ".mjpeg": PICTURES}
+SUFFIXES: Final = {
+    ".jpeg": "image/jpeg",
+    ".jpg": "image/jpeg",
+    ".png": "image/png",
+    ".mjpeg": PICTURES,
+}
 """The media type for each end of a path, as an ``<img>`` of a page can name no other way."""
 
 
@@ -52,10 +62,13 @@ async def answer_topic(asked: Asked) -> Response:
     received = await newest.within(asked.number("timeout_sec", WAIT_SEC, MOST_SEC))
     if media_type == "application/json":
         return json_response(await asked.session.json_of(received))
-    picture = await picture_or_refusal(received)
+    form = picture_form(asked, media_type)
+    picture = await picture_or_refusal(received, form)
     if media_type == PICTURES:
         boundary = f"{PICTURES}; boundary={BOUNDARY}"
-        return Stream(asked.session, pictures(asked, newest), boundary, first=part_of(picture))
+        return Stream(
+            asked.session, pictures(asked, newest, form), boundary, first=part_of(picture)
+        )
     return Response(bytes(picture.data), headers=HEADERS, media_type=picture.media_type)
 
 
@@ -68,11 +81,34 @@ def topic_and_form(asked: Asked) -> tuple[str, str]:
     for suffix, media_type in SUFFIXES.items():
         if path.endswith(suffix):
             return path.removesuffix(suffix), media_type
-    for media_type in (EVENTS, PICTURES, "application/json", "image/jpeg"):
+    for media_type in (EVENTS, PICTURES, "application/json"):
         if media_type in accept:
             return path, media_type
+    wanted = picture_type(accept)
     types = {asked.type_name, *asked.session.types_of(path, "topic")}
-    return path, "image/jpeg" if types & IMAGE_TYPES else "application/json"
+    return path, wanted or (ANY_PICTURE if types & IMAGE_TYPES else "application/json")
+
+
+def picture_type(accept: str) -> str | None:
+    """Return which picture a caller wants: JPEG, or PNG if it prefers that; None for neither.
+
+    A browser lists whatever it can show, WebP as well, and prefers nothing by that.
+    """
+    given = {}
+    for entry in accept.split(","):
+        media_type, *parameters = (part.strip().lower() for part in entry.split(";"))
+        weights = [part[2:] for part in parameters if part.startswith("q=")]
+        try:
+            given[media_type] = float(weights[0]) if weights else 1.0
+        except ValueError:
+            given[media_type] = 0.0
+    if {"image/avif", "image/webp"} & given.keys():
+        return None
+    png, jpeg = given.get("image/png", 0.0), given.get("image/jpeg", 0.0)
+    any_other = max(given.get("image/*", 0.0), given.get("*/*", 0.0))
+    if png > max(jpeg, 0.0 if "image/jpeg" in given else any_other):
+        return "image/png"
+    return "image/jpeg" if jpeg else None
 
 
 # Messages
@@ -161,7 +197,23 @@ class Newest:
 # Pictures
 
 
-async def picture_or_refusal(received: Received) -> Picture:
+def picture_form(asked: Asked, media_type: str) -> Form:
+    """Return in which form the caller wants a picture.
+
+    Raises:
+        HTTPException: a parameter does not fit (400).
+    """
+    width = round(asked.number("width", 0.0, MOST_WIDTH))
+    quality = None
+    if "quality" in asked.request.query_params:
+        quality = max(1, round(asked.number("quality", 0.0, 100.0)))
+        if media_type == "image/png":
+            raise HTTPException(400, "quality: a PNG loses nothing; only a JPEG has a quality")
+    plain = None if media_type in {ANY_PICTURE, PICTURES} else media_type
+    return Form(plain, width, quality)
+
+
+async def picture_or_refusal(received: Received, form: Form) -> Picture:
     """Return the picture of an image.
 
     Raises:
@@ -172,18 +224,18 @@ async def picture_or_refusal(received: Received) -> Picture:
         text = f"{received.topic} has {received.type_name}, which is no picture"
         raise HTTPException(406, text)
     try:
-        return await picture_of(received)
+        return await picture_of(received, form)
     except ValueError as error:
         raise HTTPException(422, str(error)) from error
     except ModuleNotFoundError as error:
         raise HTTPException(501, str(error)) from error
 
 
-async def pictures(asked: Asked, newest: Newest) -> AsyncGenerator[Frame, None]:
+async def pictures(asked: Asked, newest: Newest, form: Form) -> AsyncGenerator[Frame, None]:
     """Yield the pictures of a topic, as many as the client takes; one that fails is the last."""
     while True:
         try:
-            picture = await picture_or_refusal(await newest.get())
+            picture = await picture_or_refusal(await newest.get(), form)
         except HTTPException as error:
             asked.session.note_failure(error, f"GET {asked.request.url.path}")
             return

@@ -1,4 +1,4 @@
-"""Images as pictures for browsers: JPEG by Pillow, and compressed images as they are."""
+"""Images as pictures for browsers: files by Pillow, and compressed images as they are."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, Final
 
 from aionode import image
 from aionode.errors import MessageError
+from aionode.gateway.session.eight_bits import eight_bits
 from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
 
 if TYPE_CHECKING:
     from aionode.gateway.session.feed import Received
 
-__all__ = ["BOUNDARY", "IMAGE_TYPES", "Picture", "part_of", "picture_of"]
+__all__ = ["BOUNDARY", "IMAGE_TYPES", "Form", "Picture", "part_of", "picture_of"]
 
 IMAGE_TYPES: Final = {"sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"}
 """The messages that are also answered as pictures."""
@@ -42,36 +43,70 @@ class Picture:
     data: bytes | bytearray | memoryview
 
 
-async def picture_of(received: Received) -> Picture:
+@dataclass(frozen=True, slots=True)
+class Form:
+    """In which form a client wants a picture.
+
+    Attributes:
+        media_type: ``image/jpeg`` or ``image/png``; None for either.
+        width: The largest width in pixels, 0 for any; the height follows.
+        quality: That of a JPEG, from 1 to 100; None for the usual one.
+    """
+
+    media_type: str | None = None
+    width: int = 0
+    quality: int | None = None
+
+
+async def picture_of(received: Received, form: Form) -> Picture:
     """Return the picture of an image, which is encoded once for all clients, in a thread.
 
     Raises:
         MessageError: the data is too short, or nothing that browsers show (a ValueError).
-        ValueError: JPEG cannot hold the image, such as one of 16 bits.
+        ValueError: the channels of the image are no colours.
         ModuleNotFoundError: Pillow, which encodes it, is not installed.
     """
-    outcome = await asyncio.shield(received.once("picture", encoding))
+    outcome = await asyncio.shield(received.once(form, lambda taken: encoding(taken, form)))
     if isinstance(outcome, Exception):
         raise outcome
     return outcome
 
 
-def encoding(received: Received) -> asyncio.Future[Picture | Exception]:
+def encoding(received: Received, form: Form) -> asyncio.Future[Picture | Exception]:
     """Begin to encode an image; the future is shared, so it returns an error instead of raising."""
     loop = asyncio.get_running_loop()
-    return loop.run_in_executor(None, encoded, received.message)
+    return loop.run_in_executor(None, encoded, received.message, form)
 
 
-def encoded(message: Image | CompressedImage) -> Picture | Exception:
+def encoded(message: Image | CompressedImage, form: Form) -> Picture | Exception:
     """Return the picture of an image, or why there is none."""
     try:
         if isinstance(message, CompressedImage):
-            return passed(message)
-        if message.encoding in {"rgba8", "bgra8"}:  # JPEG has no alpha channel
-            message = image.from_numpy(image.to_numpy(message, "rgb8"), "rgb8")
-        return Picture("image/jpeg", image.compress(message).data)
+            picture = passed(message)
+            if form == Form(media_type=form.media_type) and form.media_type in {
+                None,
+                picture.media_type,
+            }:
+                return picture
+            message = image.decompress(message)
+        if not (message.width and message.height):
+            raise MessageError("sensor_msgs/msg/Image", "there are no pixels in it")
+        return written(eight_bits(message), form)
     except (ValueError, ModuleNotFoundError) as error:
         return error
+
+
+def written(message: Image, form: Form) -> Picture:
+    """Return an image of eight bits as a file."""
+    media_type = form.media_type or "image/jpeg"
+    if media_type == "image/jpeg" and message.encoding == "rgba8":  # JPEG has no alpha channel
+        message = image.from_numpy(image.to_numpy(message, "rgb8"), "rgb8")
+    if 0 < form.width < message.width:
+        height = max(1, round(message.height * form.width / message.width))
+        message = image.from_pil(image.to_pil(message).resize((form.width, height)))
+    options = {} if form.quality is None else {"quality": form.quality}
+    file = image.compress(message, media_type.removeprefix("image/"), **options)
+    return Picture(media_type, file.data)
 
 
 def passed(message: CompressedImage) -> Picture:
