@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from aionode._process.bounded_files import read_file
 from aionode.errors import AionodeError, LaunchFileError
 from aionode.launch._frontend import description_of
 from aionode.launch._launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
@@ -55,7 +56,7 @@ def load_description(path: str, kind: str = "any") -> Any:
     """
     file = Path(path)
     try:
-        text = file.read_bytes()
+        text = read_file(file)
     except OSError as error:
         raise LaunchFileError(path, f"cannot be read: {error.strerror}") from error
     if kind == "any":

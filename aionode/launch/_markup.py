@@ -9,6 +9,7 @@ from xml.parsers import expat
 
 import yaml
 
+from aionode._process.bounded_yaml import composed_yaml
 from aionode.errors import LaunchFileError
 
 __all__ = ["Element", "read_xml", "read_yaml"]
@@ -71,11 +72,11 @@ def read_yaml(path: str, text: bytes) -> Element:
         LaunchFileError: It is no such file.
     """
     try:
-        node = yaml.compose(text, Loader=yaml.SafeLoader)
+        node = composed_yaml(text)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = f"not valid YAML: {getattr(error, 'problem', None) or error}"
-        line = None if mark is None else mark.line + 1
+        line = None if mark is None else min(mark.line + 1, len(text.splitlines()))
         raise LaunchFileError(path, problem, line=line) from error
     if not isinstance(node, yaml.MappingNode):
         raise LaunchFileError(path, "expected 'launch:' and a list of actions", line=1)

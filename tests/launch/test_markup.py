@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
 from aionode.errors import LaunchFileError
+from aionode.launch import Plan
 from aionode.launch._frontend import command_words
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import perform_substitutions
@@ -183,3 +186,45 @@ def test_a_command_line_is_split_around_substitutions() -> None:
 
     texts = [perform_substitutions(context, word) for word in words]
     assert texts == ["a", "--b=5c", "d e", "5/f", "5", "g"]
+
+
+BOMB = "a0: &a0 [x, x]\n" + "".join(
+    f"a{n + 1}: &a{n + 1} [{', '.join([f'*a{n}'] * 9)}]\n" for n in range(8)
+)
+
+
+def test_aliases_of_aliases_are_refused(files: Files) -> None:
+    """A few lines stand for billions of values."""
+    path = files.write("a.launch.yaml", f"launch:\n- arg: {{name: a}}\n{BOMB}")
+
+    with pytest.raises(LaunchFileError, match="more than 200000 values") as caught:
+        Plan(path)
+
+    assert caught.value.line is not None
+
+
+@pytest.mark.parametrize("name", ["a.launch.py", "a.launch.xml", "a.launch.yaml", "a"])
+def test_a_pipe_is_no_launch_file(name: str, tmp_path: Path) -> None:
+    """Nobody may ever write to it."""
+    os.mkfifo(tmp_path / name)
+
+    with pytest.raises(LaunchFileError, match="cannot be read: a pipe or a device, and no file"):
+        Plan(str(tmp_path / name))
+
+
+@pytest.mark.parametrize(
+    "parameters",
+    ["f", "ParameterFile(f, allow_substs=True)", "{'a': FileContent(f)}", "RewrittenYaml(f, {})"],
+)
+def test_a_pipe_is_no_parameter_file(parameters: str, files: Files, tmp_path: Path) -> None:
+    """It is named, with the line of the launch file, before anything starts."""
+    os.mkfifo(tmp_path / "pipe")
+    component = f"ComposableNode(package='p', plugin='P', name='n', parameters=[{parameters}])"
+
+    with pytest.raises(LaunchFileError, match="pipe"):
+        files.python(
+            f"ComposableNodeContainer(name='c', namespace='', package='p', executable='e', "
+            f"composable_node_descriptions=[{component}])",
+            imports="from launch_ros.parameter_descriptions import ParameterFile\n"
+            f"from nav2_common.launch import RewrittenYaml\nf = {str(tmp_path / 'pipe')!r}",
+        )

@@ -14,6 +14,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Self
 
+from aionode._process.bounded_files import read_file
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
@@ -293,7 +294,7 @@ class FileContent(Substitution):
         context.need_present(self.describe())
         path = Path(perform_substitutions(context, self.path))
         try:
-            return path.read_text(encoding="utf-8")
+            return read_file(path).decode()
         except OSError as error:
             raise SubstitutionFailure(f"failed to open {path}: {error.strerror}") from error
 

@@ -8,6 +8,8 @@ from typing import Any
 
 import yaml
 
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     text_of,
@@ -84,9 +86,7 @@ def values_for_node(
             values.update(evaluate_values(context, given))
             continue
         content = (
-            file.content
-            if isinstance(file, ParameterValues)
-            else yaml.safe_load(Path(file).read_text(encoding="utf-8"))
+            file.content if isinstance(file, ParameterValues) else loaded_yaml(read_file(file))
         )
         values.update(values_in_file(content or {}, name, namespace))
     return values

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import yaml
 
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
@@ -73,8 +74,8 @@ class ParameterFile:
         path = perform_substitutions(context, self.param_file)
         if not perform_typed_substitution(context, self.allow_substs, bool):
             return path
-        text = perform_substitutions(context, parse_words(Path(path).read_text(encoding="utf-8")))
-        return ParameterValues(yaml.safe_load(text))
+        text = perform_substitutions(context, parse_words(read_file(path).decode()))
+        return ParameterValues(loaded_yaml(text))
 
 
 def evaluate_value(context: LaunchContext, value: Any) -> Any:
@@ -113,7 +114,7 @@ def value_of_text(text: str) -> Any:
     if not text:
         return ""
     try:
-        value = yaml.safe_load(text)
+        value = loaded_yaml(text)
     except yaml.YAMLError as error:
         raise TypeError(f"a parameter cannot be {text[:80]!r}, which is no YAML; {hint}") from error
     if isinstance(value, bool | int | float | str | bytes) or is_uniform(value):

@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.launch._launch.action import Action
 from aionode.launch._launch.event_handler import entities_of
 from aionode.launch._launch.launch_context import LaunchContext
@@ -48,7 +49,7 @@ def mapping_in(text: str) -> dict[str, Any]:
         TypeError: It is no mapping.
     """
     try:
-        values = yaml.safe_load(text)
+        values = loaded_yaml(text)
     except yaml.YAMLError:
         values = None
     if not isinstance(values, dict):

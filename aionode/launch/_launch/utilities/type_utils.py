@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, get_args, get_origin
 
 import yaml
 
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.launch._launch.substitution import (
     Substitution,
     normalize_to_list_of_substitutions,
@@ -41,7 +42,7 @@ def coerce_to_type(text: str, data_type: Any = None) -> Any:
     if data_type is str:
         return text
     try:
-        value = yaml.safe_load(text)
+        value = loaded_yaml(text)
     except yaml.YAMLError as error:
         if data_type is None:
             return text
