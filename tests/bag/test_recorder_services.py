@@ -11,11 +11,20 @@ from aionode import bag
 from aionode.bag._recorder_services import answered, when
 from aionode.clock import Time
 from aionode.idl import define
+from aionode.idl._installed import replaced_types
+from aionode.interfaces.rosbag2_interfaces import srv as bag_srv
 from aionode.interfaces.rosbag2_interfaces.msg import MessagesLostEvent, WriteSplitEvent
-from aionode.interfaces.rosbag2_interfaces.srv import Record, Resume, SplitBagfile, Stop
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
 from aionode.testing import ManualClock, local_context, settle
+
+
+@pytest.fixture
+def lyrical(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The services as Lyrical has them, with answers."""
+    monkeypatch.setenv("ROS_DISTRO", "lyrical")
+    for name, srv_type in replaced_types("rosbag2_interfaces", "srv", vars(bag_srv)).items():
+        monkeypatch.setattr(bag_srv, name, srv_type)
 
 
 def texts(path: Path) -> list[str]:
@@ -30,6 +39,7 @@ async def asked(node: Node, srv_type: Any, name: str, **fields: Any) -> Any:
     return await client.call(srv_type.Request(**fields))
 
 
+@pytest.mark.usefixtures("lyrical")
 async def test_a_recorder_is_stopped_and_records_again_elsewhere(tmp_path: Path) -> None:
     """One process records many runs of a robot, which ask for it."""
     async with local_context() as context, Node("talker", context=context) as node:
@@ -37,22 +47,23 @@ async def test_a_recorder_is_stopped_and_records_again_elsewhere(tmp_path: Path)
         async with bag.Recorder(tmp_path / "one", topics=["/words"], context=context) as recorder:
             words.publish(String(data="a"))
             await settle()
-            assert (await asked(node, Stop, "stop")).return_code == 0
+            assert (await asked(node, bag_srv.Stop, "stop")).return_code == 0
             assert recorder.stats["/words"].recorded == 1
             assert texts(tmp_path / "one") == ["a"]
             words.publish(String(data="b"))
-            assert (await asked(node, Stop, "stop")).return_code == 1
-            assert (await asked(node, SplitBagfile, "split_bagfile")).return_code == 1
-            old = await asked(node, Record, "record")
+            assert (await asked(node, bag_srv.Stop, "stop")).return_code == 1
+            assert (await asked(node, bag_srv.SplitBagfile, "split_bagfile")).return_code == 1
+            old = await asked(node, bag_srv.Record, "record")
             assert (old.return_code, "already exists" in old.error_string) == (1, True)
             uri = str(tmp_path / "two")
-            assert (await asked(node, Record, "record", uri=uri)).return_code == 0
-            assert (await asked(node, Record, "record", uri=uri)).return_code == 1
+            assert (await asked(node, bag_srv.Record, "record", uri=uri)).return_code == 0
+            assert (await asked(node, bag_srv.Record, "record", uri=uri)).return_code == 1
             words.publish(String(data="c"))
             await settle()
     assert texts(tmp_path / "two") == ["c"]
 
 
+@pytest.mark.usefixtures("lyrical")
 async def test_a_recording_is_split_and_resumed_at_given_times(tmp_path: Path) -> None:
     """By the node's time, and by the times of the messages of one topic."""
     clock = ManualClock(Time(seconds=100))
@@ -65,18 +76,19 @@ async def test_a_recording_is_split_and_resumed_at_given_times(tmp_path: Path) -
         ):
             at = Time(seconds=101).to_msg()
             wrong = {"resume_time": at, "resume_mode": 2, "tracking_topic_name": "/none"}
-            assert (await asked(node, Resume, "resume", **wrong)).return_code == 2
-            assert (await asked(node, Resume, "resume", resume_mode=7)).return_code == 1
-            assert (await asked(node, Resume, "resume", resume_time=at)).return_code == 0
-            mode = SplitBagfile.Request.SPLIT_MODE_PUBLISH_TIME
+            assert (await asked(node, bag_srv.Resume, "resume", **wrong)).return_code == 2
+            assert (await asked(node, bag_srv.Resume, "resume", resume_mode=7)).return_code == 1
+            assert (await asked(node, bag_srv.Resume, "resume", resume_time=at)).return_code == 0
+            split: Any = bag_srv.SplitBagfile
+            mode = split.Request.SPLIT_MODE_PUBLISH_TIME
             later: dict[str, Any] = {"split_time": Time(seconds=103).to_msg(), "split_mode": mode}
             later["tracking_topic_name"] = "/words"
-            assert (await asked(node, SplitBagfile, "split_bagfile", **later)).return_code == 0
+            assert (await asked(node, split, "split_bagfile", **later)).return_code == 0
             for text in "abcde":
                 words.publish(String(data=text))
                 await clock.advance(1)
             await settle()
-            assert (await asked(node, SplitBagfile, "split_bagfile")).return_code == 0
+            assert (await asked(node, bag_srv.SplitBagfile, "split_bagfile")).return_code == 0
             await settle()
         assert [event.closed_file for event in splits] == ["run_0.mcap", "run_1.mcap"]
     assert texts(tmp_path / "run" / "run_0.mcap") == ["b", "c"]

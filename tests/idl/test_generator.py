@@ -21,7 +21,7 @@ ROOT = Path(aionode.interfaces.__file__).parents[2]
 OWN_DEFINITIONS = (
     "ackermann_msgs",
     "geographic_msgs",
-    "rosbag2_interfaces",  # as in Lyrical; the folder has those of Jazzy
+    "rosbag2_interfaces",  # with the events that are new in Lyrical
     "turtlesim",
     "vision_msgs",
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import os
 from collections.abc import AsyncIterator, Awaitable, Callable, Hashable
 from contextlib import suppress
 from functools import partial
@@ -108,7 +107,7 @@ class Client:
             "name": "aionode",
             "capabilities": [*CAPABILITIES, *self.playback.capabilities],
             "supportedEncodings": ENCODINGS,
-            "metadata": {"ROS_DISTRO": os.environ.get("ROS_DISTRO", "jazzy")},
+            "metadata": {"ROS_DISTRO": self._session._robot.node.context.ros_distro},
             "sessionId": str(uuid4()),
             **self.playback.range,
         }

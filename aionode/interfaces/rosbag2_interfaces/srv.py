@@ -3,8 +3,6 @@
 Generated from its definitions by `aionode interface generate`, which keeps the docstrings.
 """
 
-from typing import ClassVar
-
 from aionode.interfaces.builtin_interfaces.msg import Duration, Time
 from aionode.message import DEFAULT, Message, ServiceType, float64, int32, uint64
 
@@ -142,32 +140,10 @@ class Resume(ServiceType, typename="rosbag2_interfaces/srv/Resume"):
     """Let a paused player or recorder go on."""
 
     class Request(Message):
-        """From when on: 0 is at once. A player has no such time.
-
-        Attributes:
-            resume_time: The time at which a recorder goes on.
-            resume_mode: By which time: the node's, that of publishing, or that of receiving.
-            tracking_topic_name: The topic whose messages have that time; empty for all.
-        """
-
-        RESUME_MODE_NODE_TIME: ClassVar[int32] = 0
-        RESUME_MODE_PUBLISH_TIME: ClassVar[int32] = 1
-        RESUME_MODE_RECEIVE_TIME: ClassVar[int32] = 2
-
-        resume_time: Time = DEFAULT
-        resume_mode: int32 = 0
-        tracking_topic_name: str = ""
+        """The request of Resume."""
 
     class Response(Message):
-        """0 if it goes on, or will, else a number and a text that say why not."""
-
-        RETURN_CODE_SUCCESS: ClassVar[int32] = 0
-        RETURN_CODE_INVALID_RESUME_MODE: ClassVar[int32] = 1
-        RETURN_CODE_INVALID_TRACKING_TOPIC: ClassVar[int32] = 2
-        RETURN_CODE_RESUME_FAILED: ClassVar[int32] = 3
-
-        return_code: int32 = 0
-        error_string: str = ""
+        """The response of Resume."""
 
 
 class Seek(ServiceType, typename="rosbag2_interfaces/srv/Seek"):
@@ -214,33 +190,10 @@ class SplitBagfile(ServiceType, typename="rosbag2_interfaces/srv/SplitBagfile"):
     """Have a recorder go on in a new file."""
 
     class Request(Message):
-        """From when on: 0 is at once.
-
-        Attributes:
-            split_time: The time at which the new file begins.
-            split_mode: By which time: the node's, that of publishing, or that of receiving.
-            tracking_topic_name: The topic whose messages have that time; empty for all.
-        """
-
-        SPLIT_MODE_NODE_TIME: ClassVar[int32] = 0
-        SPLIT_MODE_PUBLISH_TIME: ClassVar[int32] = 1
-        SPLIT_MODE_RECEIVE_TIME: ClassVar[int32] = 2
-
-        split_time: Time = DEFAULT
-        split_mode: int32 = 0
-        tracking_topic_name: str = ""
+        """The request of SplitBagfile."""
 
     class Response(Message):
-        """0 if it goes on in a new file, or will, else a number and a text that say why not."""
-
-        RETURN_CODE_SUCCESS: ClassVar[int32] = 0
-        RETURN_CODE_NOT_RECORDING: ClassVar[int32] = 1
-        RETURN_CODE_INVALID_SPLIT_MODE: ClassVar[int32] = 2
-        RETURN_CODE_INVALID_TRACKING_TOPIC: ClassVar[int32] = 3
-        RETURN_CODE_SPLIT_FAILED: ClassVar[int32] = 4
-
-        return_code: int32 = 0
-        error_string: str = ""
+        """The response of SplitBagfile."""
 
 
 class StartDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StartDiscovery"):
@@ -263,10 +216,7 @@ class Stop(ServiceType, typename="rosbag2_interfaces/srv/Stop"):
         """The request of Stop."""
 
     class Response(Message):
-        """0 if it stopped, else a number and a text that say why not."""
-
-        return_code: int32 = 0
-        error_string: str = ""
+        """The response of Stop."""
 
 
 class StopDiscovery(ServiceType, typename="rosbag2_interfaces/srv/StopDiscovery"):
