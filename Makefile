@@ -17,6 +17,7 @@
 #   make zenoh-defects   what aionode works around: a program that fails shows what Zenoh has mended
 #   make motion    robots whose movers go in every way, MOTION_TIMES times: writes docs/motion.md
 #   make ros-test  aionode over DDS, beside rclpy of PyPI; Linux x86-64
+#   make launch-files FOLDER=…  how many launch files of public repositories evaluate
 #   make live      aionode beside a real ROS 2 on rmw_zenoh, where one is sourced
 #   make tf-differential TF2=<folder>   transforms beside those of geometry2's sources, compiled here
 #   make rosbridge-clients   roslib of npm, in Node and in Chromium, and roslibpy talk to the gateway: needs node and npm
@@ -40,7 +41,7 @@ WORKERS ?= auto
 CLIENTS := .rosbridge-clients
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks zenoh-defects motion live ros-test rosbridge-clients gateway-load crowd \
+.PHONY: help demo test launch-files stress replay bag-kills bag-reader check coverage bench profile docs fuzz faults attacks zenoh-defects motion live ros-test rosbridge-clients gateway-load crowd \
 	tf-differential system-stress soak quotes clean
 
 help:
@@ -135,6 +136,9 @@ rosbridge-clients: .venv/installed-dev
 
 gateway-load: .venv/installed-dev
 	$(BIN)/python -m tests.gateway --write docs/performance.md
+
+launch-files: .venv/installed-dev
+	$(BIN)/python -m tests.launch.survey $(FOLDER)
 
 crowd: .venv/installed-dev
 	$(BIN)/python -m tests.faults.crowd
