@@ -303,8 +303,8 @@ def circumstances(error: AionodeError) -> list[str]:
         if is_of_user(frame):
             place = (frame, line)
         owner = frame.f_locals.get("self")
-        # A node whose name was rejected has no `_info`.
-        if isinstance(owner, Node) and not lines and hasattr(owner, "_info"):
+        # A node whose name was rejected has no `_Node__info`.
+        if isinstance(owner, Node) and not lines and hasattr(owner, "_Node__info"):
             lines.append(f"in node {owner.get_fully_qualified_name()}")
     if place is not None:
         (summary,) = traceback.StackSummary.extract(iter([place]))
