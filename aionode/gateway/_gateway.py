@@ -171,6 +171,7 @@ class Gateway(Clients):
             WebSocketRoute("/ws", self._websocket),
             *_http.routes(self),
             *_page_files.routes(),
+            WebSocketRoute("/{path:path}", _http.answer_other_websocket),
         ]
         return Starlette(routes=routes, exception_handlers={HTTPException: _http.answer_http_error})
 

@@ -119,6 +119,13 @@ async def test_the_next_message_is_json(client: httpx.AsyncClient, robot: Node) 
     assert answer.json()["ranges"] == [1.5, None]
 
 
+async def test_a_name_may_have_its_slash(client: httpx.AsyncClient, robot: Node) -> None:
+    """Programs put the full name of a topic behind ``/topics/``."""
+    robot.create_publisher(String, "/counter", LATCHED).publish(String(data="1"))
+
+    assert (await client.get("/topics//counter")).json() == {"data": "1"}
+
+
 async def test_a_topic_without_messages_is_waited_for_in_vain(
     client: httpx.AsyncClient, robot: Node
 ) -> None:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 import httpx
 import pytest
+from websockets import connect
+from websockets.exceptions import InvalidStatus
 
 from aionode.gateway import Gateway
 from aionode.gateway.page.files import FOLDER
@@ -60,3 +62,35 @@ async def test_a_browser_runs_nothing_else_on_the_page(web: httpx.AsyncClient) -
 async def test_other_files_are_not_served(web: httpx.AsyncClient, name: str) -> None:
     """A name is looked up among the files of the page, and never opened."""
     assert (await web.get(f"/page/{name}")).status_code == 404
+
+
+async def test_a_path_that_is_not_there_is_answered_with_what_to_do(
+    web: httpx.AsyncClient,
+) -> None:
+    """Behind a proxy that keeps its prefix, nothing else explains an empty page."""
+    answer = await web.get("/robot/page/main.js")
+
+    assert answer.status_code == 404
+    assert "a proxy has to take away a prefix" in answer.json()["error"]
+
+
+async def test_a_websocket_at_another_path_is_answered_with_what_to_do(
+    web: httpx.AsyncClient,
+) -> None:
+    """Not with a 403 without a word."""
+    address = str(web.base_url.copy_with(scheme="ws", path="/robot/"))
+    with pytest.raises(InvalidStatus) as refused:
+        await connect(address)
+
+    assert refused.value.response.status_code == 404
+    assert b"A WebSocket connects to / or /ws" in refused.value.response.body
+
+
+async def test_a_post_tells_the_page_why_its_websocket_is_refused(web: httpx.AsyncClient) -> None:
+    """Browsers hide the answer to a WebSocket; the origin is public behind a proxy with TLS."""
+    refused = await web.post("/healthz", headers={"Origin": "https://robot.example.org"})
+    passed = await web.post("/healthz", headers={"Origin": str(web.base_url)})
+
+    assert refused.status_code == 401
+    assert "list the origin under `origins`" in refused.json()["error"]
+    assert passed.status_code == 405

@@ -173,8 +173,8 @@ class Asked:
 
     @property
     def name(self) -> str:
-        """The name in the path."""
-        return f"/{self.request.path_params['name']}"
+        """The name in the path, where a program may have put it with its slash behind ours."""
+        return f"/{self.request.path_params['name'].lstrip('/')}"
 
     @property
     def type_name(self) -> str | None:

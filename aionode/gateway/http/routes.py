@@ -48,12 +48,13 @@ from aionode.node import Node
 if TYPE_CHECKING:
     from starlette.routing import BaseRoute
     from starlette.types import Receive, Scope, Send
+    from starlette.websockets import WebSocket
 
     from aionode.gateway._clients import Clients
     from aionode.gateway.session.session import Session
     from aionode.gateway.session.topics import Subscribed
 
-__all__ = ["answer_http_error", "routes"]
+__all__ = ["answer_http_error", "answer_other_websocket", "routes"]
 
 CALL_SEC: Final = 5.0
 """Time for which a request waits for a response unless it says otherwise, in seconds."""
@@ -189,9 +190,25 @@ def caller_of(request: Request, session: Session) -> Caller:
     return Caller(session.identity, client, connection)
 
 
-async def answer_http_error(_request: Request, error: Exception) -> Response:
+async def answer_http_error(request: Request, error: Exception) -> Response:
     """Answer a path or method that does not exist, for a Starlette application."""
+    if isinstance(error, HTTPException) and error.status_code == 404:
+        error = HTTPException(404, no_path(request.url.path))
     return error_response(error)
+
+
+async def answer_other_websocket(websocket: WebSocket) -> None:
+    """Refuse a WebSocket at a path where none is served."""
+    error = HTTPException(404, f"{no_path(websocket.url.path)} A WebSocket connects to / or /ws.")
+    await websocket.send_denial_response(error_response(error))
+
+
+def no_path(path: str) -> str:
+    """Return what a client reads who asks for a path that does not exist."""
+    return (
+        f"{path[:200]}: the gateway has no such path. /openapi.json lists those that it has; a "
+        "proxy has to take away a prefix of its own, as nginx does if proxy_pass ends with a slash."
+    )
 
 
 class HttpApi:

@@ -20,12 +20,14 @@ log(robot);
 parameters(robot);
 services(robot);
 
+state.textContent = "connecting";
 robot.addEventListener("state", ({ detail }) => {
   state.textContent = robot.isOpen ? "connected" : "not connected";
   state.classList.toggle("open", robot.isOpen);
   delay.textContent = "";
   signIn.hidden = !detail?.refused;
   if (detail?.reason) notice(detail.reason);
+  else if (detail?.refused) robot.whyRefused().then(notice);
 });
 robot.addEventListener("delay", () => { delay.textContent = `${Math.round(robot.delayMs)} ms`; });
 robot.addEventListener("status", ({ detail }) => notice(detail.text));

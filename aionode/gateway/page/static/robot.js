@@ -59,6 +59,21 @@ export class Robot extends EventTarget {
     this.tell("state", { refused: !wasOpen, reason: event.reason });
   }
 
+  /** Return why the gateway refuses: a browser does not tell that of a WebSocket, but of a POST. */
+  async whyRefused() {
+    const url = new URL("healthz", this.url);
+    url.protocol = url.protocol.replace("ws", "http");
+    const headers = this.token ? { Authorization: `Bearer ${this.token}` } : {};
+    try {
+      const answer = await fetch(url, { method: "POST", headers });
+      const { error } = await answer.json().catch(() => ({}));
+      if (answer.status !== 405) return error ?? `refused: ${answer.status} ${answer.statusText}`;
+      return "The gateway answers, and its WebSocket does not: a proxy has to pass on Upgrade and Connection.";
+    } catch (error) {
+      return `The gateway cannot be reached: ${error.message}`;
+    }
+  }
+
   /** Ask for the time, and give the connection up if nothing has arrived for long. */
   async check() {
     if (!this.isOpen) return;
