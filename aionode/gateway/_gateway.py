@@ -181,6 +181,7 @@ class Gateway(Clients):
         async with self.session_of(websocket.scope, kind) as session:
             connection = websocket.scope["state"]["aionode_connection"]
             session.connection = connection
+            connection.note = session.note
             session.outbox.direct = connection.send_now
             websocket._receive = paced(
                 websocket._receive, self._policy.limits.frames_per_sec, self.robot, session

@@ -43,9 +43,18 @@ PORT = 9090
     "--allow-write", is_flag=True,
     help="Without a policy: this host may also publish, call, send goals and set parameters.",
 )  # fmt: skip
+@click.option(
+    "--limit", "limits", metavar="KEY=VALUE", multiple=True,
+    help="Without a policy: another limit for clients, such as call_sec=60. Can be repeated.",
+)  # fmt: skip
 @click.pass_context
 def gateway_command(
-    ctx: click.Context, host: str, port: int, path: str | None, allow_write: bool
+    ctx: click.Context,
+    host: str,
+    port: int,
+    path: str | None,
+    allow_write: bool,
+    limits: tuple[str, ...],
 ) -> None:
     """Serve the robot to browsers, programs and apps.
 
@@ -57,22 +66,33 @@ def gateway_command(
         return
     if path is not None and allow_write:
         raise click.UsageError("--allow-write is for a gateway without --policy: say it there", ctx)
-    run_verb(serving(path, allow_write, host, port), node_name="gateway", endless=True, busy=True,
-             asks=False, describes=True)  # fmt: skip
+    if path is not None and limits:
+        problem = "--limit is for a gateway without --policy: write it under [limits] there"
+        raise click.UsageError(problem, ctx)
+    serve = serving(path, allow_write, host, port, limits)
+    run_verb(serve, node_name="gateway", endless=True, busy=True, asks=False, describes=True)
 
 
 def serving(
-    path: str | None, allow_write: bool, host: str, port: int
+    path: str | None, allow_write: bool, host: str, port: int, limits: Sequence[str] = ()
 ) -> Callable[[Node, Output], Coroutine[Any, Any, int | None]]:
     """Return what serves the robot until it is cancelled.
 
     Raises:
         PolicyFileError: the policy file cannot be read, or is not a policy.
+        CommandError: there is no such limit.
         ImportError: the extra ``gateway`` is not installed.
     """
-    from aionode.gateway import Gateway, Policy
+    from aionode.gateway import Gateway, Limits, Policy
 
-    policy = Policy.default(allow_write=allow_write) if path is None else Policy.load(path)
+    if path is None:
+        try:
+            given = Limits().with_given(limits)
+        except ValueError as error:
+            raise CommandError(f"--limit: {error}") from error
+        policy = Policy.default(allow_write=allow_write, limits=given)
+    else:
+        policy = Policy.load(path)
 
     async def serve(node: Node, output: Output) -> int | None:
         gateway = Gateway(node, policy, host=host, port=port)

@@ -36,9 +36,6 @@ CAPABILITIES: Final = (
     "time",
 )
 ENCODINGS: Final = ("cdr", "json")
-CALL_SEC: Final = 30.0
-"""Longest time for a service: the protocol has no time limit."""
-
 SETTLING_SEC: Final = 0.1
 """Time for which a change of the graph waits for further ones: a robot that starts has hundreds."""
 
@@ -255,15 +252,16 @@ class Client:
                 raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
             name, type_name = self._channels.service(call.service_id)
             values = values_of(call.encoding, call.data, self._session._limits.frame_parts)
+            # The protocol has no time limit.
             response = await self._session.call(
-                name, values, type_name=type_name, timeout_sec=CALL_SEC
+                name, values, type_name=type_name, timeout_sec=self._session.wait_sec(None)
             )
         except (AionodeError, TimeoutError) as error:
             self._session.note_failure(error, "call")
             failure = {
                 "serviceId": call.service_id,
                 "callId": call.call_id,
-                "message": str(error) or f"no answer within {CALL_SEC:g} s",
+                "message": str(error) or "no answer in time",
             }
             self._session.outbox.send(frames.op_frame("serviceCallFailure", failure))
             return

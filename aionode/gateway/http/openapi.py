@@ -62,8 +62,9 @@ VALUE: Final = {
 TIMEOUT: Final = {
     "name": "timeout_sec",
     "in": "query",
-    "description": "The longest wait, in seconds.",
-    "schema": {"type": "number", "exclusiveMinimum": 0, "default": 5.0},
+    "description": "The longest wait, in seconds: 5 for a message, and as the gateway's limits "
+    "say for a response, unless it is given.",
+    "schema": {"type": "number", "exclusiveMinimum": 0},
 }
 
 CLIENT: Final = {

@@ -56,9 +56,6 @@ if TYPE_CHECKING:
 
 __all__ = ["answer_http_error", "answer_other_websocket", "routes"]
 
-CALL_SEC: Final = 5.0
-"""Time for which a request waits for a response unless it says otherwise, in seconds."""
-
 LONGEST_CLIENT: Final = 100
 """The longest name of a client, in characters."""
 
@@ -298,7 +295,9 @@ async def call(asked: Asked) -> Response:
         asked.name,
         asked.json(),
         type_name=asked.type_name,
-        timeout_sec=asked.number("timeout_sec", CALL_SEC, MOST_SEC),
+        timeout_sec=asked.number(
+            "timeout_sec", asked.session.wait_sec(None), asked.session.wait_sec(MOST_SEC)
+        ),
     )
     return json_response(json_of(response))
 

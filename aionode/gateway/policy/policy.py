@@ -274,13 +274,18 @@ class Limits(Part, frozen=True):
         clients: The most connections at a time.
         frame_bytes: The largest frame or request of a client, and the largest message of many
             values that is made of one, in bytes.
-        frame_parts: The most objects and lists in the JSON of a frame or request.
+        frame_parts: The most objects and lists in the JSON of a frame or request, which may have
+            ten times as many values.
         frames_per_sec: The most frames of a client that the gateway reads in a second.
         queued_bytes: The most bytes that wait for one client; beyond it, the oldest messages are
             dropped.
         subscriptions: The most subscriptions of one client.
         advertised: The most topics to which one client publishes, and the most services and actions
             that it offers.
+        call_sec: The time for which a call of a service waits for its response if its client names
+            none, in seconds.
+        longest_call_sec: The longest time for which a call waits, whatever its client says, in
+            seconds.
         calls: The most calls, goals and questions about parameters of one client at a time.
         handshake_sec: The longest time in which a request arrives, and the longest time for which
             its client reads nothing of the answer, in seconds.
@@ -289,15 +294,42 @@ class Limits(Part, frozen=True):
     """
 
     clients: int = 64
-    frame_bytes: int = 1_000_000
-    frame_parts: int = 5_000
+    frame_bytes: int = 10_000_000
+    frame_parts: int = 100_000
     frames_per_sec: float = 2_000.0
     queued_bytes: int = 64 << 20
     subscriptions: int = 256
     advertised: int = 64
     calls: int = 64
+    call_sec: float = 30.0
+    longest_call_sec: float = 3600.0
     handshake_sec: float = 10.0
     client_lost_sec: float = 3.0
+
+    def __post_init__(self) -> None:
+        for name in self.__struct_fields__:
+            if not getattr(self, name) > 0:
+                raise ValueError(f"{name}: {getattr(self, name)}, needs a number above 0")
+
+    def with_given(self, given: Iterable[str]) -> Limits:
+        """Return other limits.
+
+        Args:
+            given: Some as text, such as ``frame_bytes=20_000_000``.
+
+        Raises:
+            ValueError: there is no such limit, or its value is none.
+        """
+        values = msgspec.structs.asdict(self)
+        for text in given:
+            name, equals, value = text.partition("=")
+            if name not in values or not equals:
+                raise ValueError(f"{text!r} is no limit; there are {', '.join(values)}")
+            try:
+                values[name] = type(values[name])(value)
+            except ValueError:
+                raise ValueError(f"{text!r}: the value is no number that fits") from None
+        return Limits(**values)
 
 
 class Tls(Part, frozen=True):
@@ -420,7 +452,7 @@ class Policy(Part, frozen=True):
         return msgspec.structs.replace(policy, path=path)
 
     @classmethod
-    def default(cls, *, allow_write: bool = False) -> Policy:
+    def default(cls, *, allow_write: bool = False, limits: Limits = Limits()) -> Policy:  # noqa: B008  # frozen
         """Return the policy of a gateway without a policy file.
 
         Only programs of this host may connect. They read everything, and write nothing.
@@ -428,6 +460,7 @@ class Policy(Part, frozen=True):
         Args:
             allow_write: Whether these programs may also publish, call, send goals, set parameters
                 and offer services. Velocities are then published by lease.
+            limits: The limits for all clients.
         """
         everything = "/**"
         writing: dict[str, Any] = dict.fromkeys(WRITING, everything)
@@ -437,7 +470,8 @@ class Policy(Part, frozen=True):
             allow.append(Rule(**writing))
         else:
             refuse.append(Rule(**writing, because=READ_ONLY))
-        return cls(who=[Who("local", loopback=True)], allow=allow, refuse=refuse)
+        who = [Who("local", loopback=True)]
+        return cls(who=who, allow=allow, refuse=refuse, limits=limits)
 
     @property
     def knows_secrets(self) -> bool:

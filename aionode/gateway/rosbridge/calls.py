@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any
 
 import msgspec
 
@@ -25,9 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["Calls"]
 
 Op = dict[str, Any]
-
-TIMEOUT_SEC: Final = 5.0
-"""Time for which a call waits if the client gives no ``timeout``."""
 
 
 @dataclass
@@ -81,9 +79,11 @@ class Calls:
         timeout = op.get("timeout")
         if timeout != timeout:  # noqa: PLR0124  # NaN, which would put the loop's timers in disorder
             raise MessageError("call_service: timeout", "NaN; it needs a number of seconds")
-        limit = None if is_negative(timeout) else number(op, "timeout") or None
+        wanted = None if timeout is None else math.inf  # as none does, and what is not above 0
+        if not is_negative(timeout):
+            wanted = number(op, "timeout") or wanted
         response = await self._session.call(
-            service, args, timeout_sec=TIMEOUT_SEC if timeout is None else limit
+            service, args, timeout_sec=self._session.wait_sec(wanted)
         )
         return msgspec.Raw(json_of(response))
 

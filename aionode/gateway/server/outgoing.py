@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import struct
 from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.gateway.session.outbox import LongFrame
@@ -74,6 +75,9 @@ class Outgoing(asyncio.Transport):
     Args:
         transport: The transport of the connection.
         writable: Set while the client has read enough of what was sent, and no frame is leaving.
+
+    Attributes:
+        on_abort: Called when the connection is closed as too many answers to pings wait.
     """
 
     def __init__(self, transport: asyncio.Transport, writable: asyncio.Event) -> None:
@@ -85,6 +89,7 @@ class Outgoing(asyncio.Transport):
         self._after: list[bytes] = []
         self._after_bytes = 0
         self._turn: asyncio.Handle | None = None
+        self.on_abort: Callable[[], object] = bool
 
     def send(self, parts: tuple[bytes, ...]) -> None:
         """Send a frame, while `writable` is set."""
@@ -147,6 +152,7 @@ class Outgoing(asyncio.Transport):
         """Send what is no message of the application, after the frame that is leaving."""
         waiting = self._after_bytes + self._transport.get_write_buffer_size()
         if waiting > MOST_CONTROL_BYTES:
+            self.on_abort()
             self.abort()
         elif not self._rest:
             self._transport.write(data)

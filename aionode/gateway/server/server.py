@@ -9,6 +9,7 @@ import secrets
 import socket
 import ssl
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import uvicorn
@@ -17,12 +18,14 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.utils import ClientDisconnected
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 from websockets.exceptions import InvalidState
+from websockets.frames import CloseCode
 
 from aionode._process.socket_queue import queued_bytes
 from aionode.clock import S_TO_NS
 from aionode.gateway.server.outgoing import Framing, Outgoing
 from aionode.gateway.server.portions import Portions
 from aionode.gateway.session.frames import Fragmented
+from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.robot import Bucket
 
 if TYPE_CHECKING:
@@ -313,6 +316,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     Attributes:
         made_s: When it was made, by the clock of the loop.
         has_session: Whether a session uses it, as the application says.
+        note: Counts and logs what is refused of the client; see `Session.note`.
     """
 
     has_session = False
@@ -322,6 +326,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self.made_s = self.loop.time()
+        self.note: Callable[[Refusal, str, str], object] = ignore
         self.conn.debug = False  # it would write the tokens of addresses and headers into the log
         self.logger = ServerLog(self.logger)  # type: ignore[assignment]  # does what is called of it
         self._asked: dict[bytes, Callable[[], None]] = {}  # by the payloads of pings
@@ -337,6 +342,9 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         super().connection_made(transport)
         self._framing = self.config.framing
         self.transport = self._outgoing = Outgoing(transport, self.writable)
+        self._outgoing.on_abort = partial(
+            self._note_end, "it does not read the answers to its pings"
+        )
         self._portions = Portions(transport, super().data_received, self._is_ready)
 
     def _is_ready(self) -> bool:
@@ -453,8 +461,20 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         super().connection_lost(exc)
         self.config.has_lost_one.set()
 
+    def _note_end(self, reason: str) -> None:
+        self.note(Refusal.DISCONNECTED, "connection", reason)
+
+    def handle_parser_exception(self) -> None:
+        """Close the connection of a client whose frame is too large, or none of WebSocket."""
+        closed = self.conn.close_sent
+        if closed is not None and closed.code == CloseCode.MESSAGE_TOO_BIG:
+            limit = f"at most {self.config.ws_max_size} bytes fit, as frame_bytes says"
+            self.note(Refusal.TOO_LARGE, "frame", f"{limit}; the connection has ended")
+        super().handle_parser_exception()
+
     def keepalive_timeout(self) -> None:
         """Close the connection of a client that answers nothing, and reads no goodbye either."""
+        self._note_end(f"it has answered no ping for {PING_SEC:g} s")
         super().keepalive_timeout()
         self.transport.abort()
 
@@ -493,6 +513,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
         """Take a part of a message; without any bytes in them, there could be any number."""
         self._count(self._parts)
         if len(self.frames) >= MOST_PARTS:
+            self._note_end(f"a message has more than {MOST_PARTS} parts")
             self.transport.abort()
         else:
             super().handle_cont(event)
@@ -500,6 +521,10 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     def _count(self, bucket: Bucket) -> None:
         if bucket.wait_sec():
             self._portions.owed_sec += 1.0 / bucket.rate_hz
+
+
+def ignore(*_: object) -> None:
+    """Do nothing."""
 
 
 def unread_bytes(transport: asyncio.Transport) -> int:

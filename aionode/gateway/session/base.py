@@ -6,7 +6,7 @@ import asyncio
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sized
 from contextlib import AbstractContextManager, contextmanager
-from functools import partial
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
 
 from aionode._process.concurrency import checkpoint, run_in_thread
@@ -17,7 +17,7 @@ from aionode.gateway.session.outbox import Outbox
 from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.values import from_json
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
-from aionode.message import Message
+from aionode.message import Message, fields
 from aionode.names import is_hidden, validate_full_topic_name
 from aionode.parameter import Parameter
 
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from aionode.gateway.session.robot import Robot
 
 __all__ = ["SessionBase", "as_message"]
+
+CDR_HEADER: Final = 4
 
 MOST_QUESTIONS: Final = 256
 """Questions about the graph that may wait, for each client."""
@@ -432,6 +434,33 @@ def as_message(
     return from_json(cls, values, clock.now().nanoseconds)
 
 
+def least_bytes(cls: Any, values: object) -> int:
+    """Return how many bytes the messages in the lists of a message take at least, if empty."""
+    if isinstance(values, list):
+        values = dict(zip((field.name for field in fields(cls)), values, strict=False))
+    if not isinstance(values, Mapping):
+        return 0
+    total = 0
+    for field in fields(cls):
+        nested, inner = field.type.nested, values.get(field.name)
+        if nested is None or not inner:
+            continue
+        if field.type.container == "single":
+            total += least_bytes(nested, inner)
+        elif isinstance(inner, list):
+            total += len(inner) * empty_bytes(nested)
+            total += sum(least_bytes(nested, item) for item in inner if item)
+    return total
+
+
+@cache
+def empty_bytes(cls: Any) -> int:
+    """Return the size of an empty message, in bytes of CDR."""
+    from aionode.engine.wire import cdr  # few clients send large messages
+
+    return len(cdr.encode(cls())) - CDR_HEADER
+
+
 def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
     """Return a message; see `as_message`. It is called in a thread.
 
@@ -440,6 +469,9 @@ def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
     """
     from aionode.engine.wire import cdr  # few clients send large messages
 
+    least = least_bytes(cls, values)
+    if least > most_bytes:  # the empty messages alone would take the memory
+        raise MessageError(cls.__ros_type__, f"takes {least} bytes, at most {most_bytes} fit")
     message = as_message(cls, values, clock)
     size = len(cdr.encode(message))
     if size > most_bytes:

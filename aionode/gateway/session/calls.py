@@ -84,6 +84,15 @@ class SessionCalls(SessionBase):
             return self._listed(self._nodes_of(service), response)
         return response
 
+    def wait_sec(self, wanted_sec: float | None) -> float:
+        """Return for how long a call of the client waits for its response, in seconds.
+
+        Args:
+            wanted_sec: What the client wants; None if it does not say.
+        """
+        limits = self._limits
+        return min(limits.call_sec if wanted_sec is None else wanted_sec, limits.longest_call_sec)
+
     def _decide_call(self, service: str, type_name: str, request: Any = None) -> tuple[Verb, str]:
         """Return the verb and the name that a call counts as: it may be part of a goal.
 
