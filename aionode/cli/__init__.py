@@ -32,6 +32,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: The arguments without the program name; default: those of the process.
     """
+    is_run = sys.argv[1:2] == ["run"]  # whose program gets arguments of its own
     try:
         # Imported here so that Ctrl-C during the import leaves no traceback either.
         from aionode.cli import _main
@@ -39,7 +40,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         status = _main.main(argv)
         # Only as the process's main program; after `run`, remaining threads are the user's.
         # Otherwise Python would wait for threads and run exit handlers, after the answer.
-        if argv is None and sys.argv[1:2] != ["run"]:
+        if argv is None and not is_run:
             from aionode.cli._support.exit import leave
 
             leave(status)

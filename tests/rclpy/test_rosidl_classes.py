@@ -170,7 +170,7 @@ def test_nothing_is_checked_by_default() -> None:
         ),
         (
             lambda: Strings(bounded_string_value="x" * 23, check_fields=True),
-            "The 'bounded_string_value' field must be string value not longer than 10",
+            "The 'bounded_string_value' field must be string value not longer than 22",
         ),
         (
             lambda: Header(stamp=5, check_fields=True),
