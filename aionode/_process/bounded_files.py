@@ -12,6 +12,9 @@ __all__ = ["LARGEST_FILE", "read_file"]
 LARGEST_FILE: Final = 16 << 20
 """The largest file that is read at once, in bytes."""
 
+PIECE: Final = 64 << 10
+"""Bytes that are read at once, or as many as there were before: room is made for what is there."""
+
 GIVEN: Final = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")
 """Names of what a shell hands over, as in ``--params-file <(xacro ...)``, which may be a pipe."""
 
@@ -39,7 +42,9 @@ def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
         if not is_given and not stat.S_ISREG(mode):
             raise OSError(errno.EINVAL, "a pipe or a device, and no file", name)
         with os.fdopen(descriptor, "rb", closefd=False) as file:
-            content = file.read(most + 1)
+            content = b""
+            while len(content) <= most and (piece := file.read(max(PIECE, len(content)))):
+                content += piece
     finally:
         os.close(descriptor)
     if len(content) > most:

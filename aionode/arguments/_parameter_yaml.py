@@ -22,6 +22,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import VALUES_VARIABLE, fast_loader, most_values
 from aionode.errors import ParameterFileError
 
 if TYPE_CHECKING:
@@ -180,7 +182,7 @@ def read_parameter_file(path: str | Path) -> tuple[ParameterRule, ...]:
         ParameterFileError: It cannot be read, or is not a parameter file.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = read_file(path).decode()
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else error
         raise ParameterFileError(str(path), 0, f"cannot be read: {reason}") from error
@@ -213,11 +215,11 @@ class Events:
     def __init__(self, text: str, source: str) -> None:
         import yaml
 
-        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
         self.source = source
         self.depth = 0
+        self.left = most_values()
         self._error = yaml.YAMLError
-        self._events = self._wrapped(yaml.parse(text, Loader=loader))
+        self._events = self._wrapped(yaml.parse(text, Loader=fast_loader()))
         self.next: Any = next(self._events)
         self.take("StreamStart")
 
@@ -248,6 +250,9 @@ class Events:
         self.depth += {"MappingStart": 1, "MappingEnd": -1}.get(kind, 0)
         if self.depth > DEEPEST:
             self.fail(f"nested deeper than {DEEPEST}")
+        self.left -= kind == "Scalar"
+        if self.left < 0:
+            self.fail(f"more than {most_values()} values; {VALUES_VARIABLE} raises the limit")
         self.next = next(self._events)
         return event
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any, Final
 
 import yaml
 
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.bag._selection import Selection
 from aionode.clock import Time
 
@@ -31,7 +32,7 @@ def content_of(path: str) -> dict[str, Any]:
         ValueError: it has no names with values.
     """
     try:
-        content = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
+        content = loaded_yaml(read_file(path))
     except yaml.YAMLError as error:
         raise ValueError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
     if not isinstance(content, dict):
@@ -96,51 +97,54 @@ def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:
     Raises:
         ValueError: it is no such file, or asks for a bag that is not written.
     """
-    outputs: list[tuple[str, dict[str, Any]]] = []
-    for entry in bags_in(path, "output_bags"):
-        if entry.get("storage_id") not in {None, "", "mcap"}:
-            raise ValueError(
-                f"{path}: {entry['uri']}: aionode writes mcap, and not {entry['storage_id']}"
-            )
-        every = [
-            kind
-            for kind in ("topic", "service", "action")
-            if entry.get("all") or entry.get(f"all_{kind}s")
-        ]
-        names = ("topics", "services", "actions", "topic_types", "regex")
-        if not (every or any(entry.get(name) for name in names)):
-            every = ["topic", "service", "action"]
-        preset = entry.get("storage_preset_profile") or None
-        if preset is not None and preset not in PRESETS:
-            raise ValueError(f"{path}: there is no storage_preset_profile {preset}")
-        start_ns, end_ns = entry.get("start_time_ns", -1), entry.get("end_time_ns", -1)
-        outputs.append(
-            (
-                str(entry["uri"]),
-                {
-                    "selection": Selection(
-                        topics=entry.get("topics") or (),
-                        services=entry.get("services") or (),
-                        actions=entry.get("actions") or (),
-                        types=entry.get("topic_types") or (),
-                        regex=entry.get("regex") or "",
-                        every=every,
-                        exclude_regex=entry.get("exclude_regex") or entry.get("exclude") or "",
-                        exclude=[
-                            name
-                            for kind in ("topics", "services", "actions")
-                            for name in entry.get(f"exclude_{kind}") or ()
-                        ],
-                        exclude_types=entry.get("exclude_topic_types") or (),
-                        hidden=True,
-                    ),
-                    "start": Time(nanoseconds=start_ns) if start_ns >= 0 else None,
-                    "end": Time(nanoseconds=end_ns + 1) if end_ns >= 0 else None,
-                    "compression": chunk_compression(preset, None, "zstd"),
-                    "max_bytes": entry.get("max_bagfile_size") or 0,
-                    "max_duration_ns": (entry.get("max_bagfile_duration") or 0) * 10**9,
-                    "custom_data": entry.get("custom_data") or None,
-                },
-            )
+    try:
+        return [output_in(path, entry) for entry in bags_in(path, "output_bags")]
+    except (TypeError, AttributeError, OverflowError) as error:  # of a list for a number
+        raise ValueError(f"{path}: a value of output_bags is of another kind: {error}") from error
+
+
+def output_in(path: str, entry: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Return one entry of `outputs_in`."""
+    if entry.get("storage_id") not in {None, "", "mcap"}:
+        raise ValueError(
+            f"{path}: {entry['uri']}: aionode writes mcap, and not {entry['storage_id']}"
         )
-    return outputs
+    every = [
+        kind
+        for kind in ("topic", "service", "action")
+        if entry.get("all") or entry.get(f"all_{kind}s")
+    ]
+    names = ("topics", "services", "actions", "topic_types", "regex")
+    if not (every or any(entry.get(name) for name in names)):
+        every = ["topic", "service", "action"]
+    preset = entry.get("storage_preset_profile") or None
+    if preset is not None and preset not in PRESETS:
+        raise ValueError(f"{path}: there is no storage_preset_profile {preset}")
+    start_ns, end_ns = entry.get("start_time_ns", -1), entry.get("end_time_ns", -1)
+    return (
+        str(entry["uri"]),
+        {
+            "selection": Selection(
+                topics=entry.get("topics") or (),
+                services=entry.get("services") or (),
+                actions=entry.get("actions") or (),
+                types=entry.get("topic_types") or (),
+                regex=entry.get("regex") or "",
+                every=every,
+                exclude_regex=entry.get("exclude_regex") or entry.get("exclude") or "",
+                exclude=[
+                    name
+                    for kind in ("topics", "services", "actions")
+                    for name in entry.get(f"exclude_{kind}") or ()
+                ],
+                exclude_types=entry.get("exclude_topic_types") or (),
+                hidden=True,
+            ),
+            "start": Time(nanoseconds=start_ns) if start_ns >= 0 else None,
+            "end": Time(nanoseconds=end_ns + 1) if end_ns >= 0 else None,
+            "compression": chunk_compression(preset, None, "zstd"),
+            "max_bytes": entry.get("max_bagfile_size") or 0,
+            "max_duration_ns": (entry.get("max_bagfile_duration") or 0) * 10**9,
+            "custom_data": entry.get("custom_data") or None,
+        },
+    )

@@ -131,7 +131,8 @@ def files_in(folder: Path) -> Iterator[Path]:
         if kind in HALVES:
             # What is generated from another file of the same type comes after it.
             files.sort(key=lambda name: (name.endswith(".idl"), name))
-            yield from (Path(place, name) for name in files if is_definition(name, kind))
+            named = (Path(place, name) for name in files if is_definition(name, kind))
+            yield from (file for file in named if file.is_file())
 
 
 def is_definition(name: str, kind: str) -> bool:

@@ -9,10 +9,14 @@ from xml.parsers import expat
 
 import yaml
 
-from aionode._process.bounded_yaml import composed_yaml
+from aionode._process.bounded_yaml import composed_yaml, value_of_node
 from aionode.errors import LaunchFileError
 
 __all__ = ["Element", "read_xml", "read_yaml"]
+
+
+DEEPEST = 100
+"""Levels of elements in XML; YAML has its own limit."""
 
 
 @dataclass
@@ -45,6 +49,9 @@ def read_xml(path: str, text: bytes) -> Element:
         element = Element(name, f"{path}:{parser.CurrentLineNumber}", attributes)
         stack[-1].children.append(element)
         stack.append(element)
+        if len(stack) > DEEPEST:
+            problem = f"elements nested deeper than {DEEPEST}"
+            raise LaunchFileError(path, problem, line=parser.CurrentLineNumber)
 
     def refuse(*_: object) -> None:
         raise LaunchFileError(
@@ -73,14 +80,14 @@ def read_yaml(path: str, text: bytes) -> Element:
     """
     try:
         node = composed_yaml(text)
+        if not isinstance(node, yaml.MappingNode):
+            raise LaunchFileError(path, "expected 'launch:' and a list of actions", line=1)
+        return next(elements(path, node), Element("", path))
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         problem = f"not valid YAML: {getattr(error, 'problem', None) or error}"
-        line = None if mark is None else min(mark.line + 1, len(text.splitlines()))
+        line = None if mark is None else min(mark.line, text.rstrip().count(b"\n")) + 1
         raise LaunchFileError(path, problem, line=line) from error
-    if not isinstance(node, yaml.MappingNode):
-        raise LaunchFileError(path, "expected 'launch:' and a list of actions", line=1)
-    return next(elements(path, node), Element("", path))
 
 
 def elements(path: str, node: yaml.MappingNode) -> Iterator[Element]:
@@ -112,7 +119,7 @@ def fill(parent: Element, path: str, key: str, value: yaml.Node) -> None:
         for item in value.value:
             parent.children.append(element(path, key, item, item.start_mark.line + 1))
     else:
-        parent.attributes[key] = plain(value)
+        parent.attributes[key] = value_of_node(value)
 
 
 def children(path: str, node: yaml.SequenceNode, name: str) -> Iterator[Element]:
@@ -123,12 +130,3 @@ def children(path: str, node: yaml.SequenceNode, name: str) -> Iterator[Element]
             problem = f"in '{name}', {item.value!r} is not an action; a mapping fits"
             raise LaunchFileError(path, problem, line=at)
         yield from elements(path, item)
-
-
-def plain(node: yaml.Node) -> Any:
-    """Return the value of an attribute; numbers and truths have their types."""
-    loader = yaml.SafeLoader("")
-    try:
-        return loader.construct_object(node, deep=True)
-    finally:
-        loader.dispose()

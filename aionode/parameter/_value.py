@@ -8,6 +8,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.errors import ParameterFileError, brief
 from aionode.interfaces.rcl_interfaces import msg as rcl_msg
 
@@ -252,17 +253,6 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
 # Text
 
 
-FROM_CONSTRUCTORS = (
-    ArithmeticError,
-    AttributeError,
-    LookupError,
-    RecursionError,
-    TypeError,
-    ValueError,
-)
-"""Exceptions of PyYAML's constructors besides its own, for an empty ``!!int`` for example."""
-
-
 def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
     """Return the value of a text as ``ros2 param set`` reads it: as PyYAML does.
 
@@ -270,7 +260,7 @@ def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
     list of mixed types.
     Parameter files and ``-p`` have other rules: those of rcl.
     """
-    value = loaded_yaml(string_value)
+    value = value_in_yaml(string_value)
     if isinstance(value, list):
         for (kind,), type_ in ARRAYS:  # an empty list is one of bools, as in rclpy
             items = list(map(kind, value)) if all(isinstance(it, kind) for it in value) else None
@@ -281,13 +271,13 @@ def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
     return Parameter("", value=string_value).get_parameter_value()
 
 
-def loaded_yaml(text: str) -> Any:
+def value_in_yaml(text: str) -> Any:
     """Return what PyYAML reads; the text itself where that is not YAML."""
     import yaml  # programs that read no text start without
 
     try:
-        return yaml.safe_load(text)
-    except (yaml.YAMLError, *FROM_CONSTRUCTORS):
+        return loaded_yaml(text)
+    except yaml.YAMLError:
         return text
 
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import array
 from enum import IntEnum
-from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-import yaml
-
 from aionode import parameter as core
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
 from aionode.parameter import PARAMETER_SEPARATOR_STRING, parameter_value_to_python
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._rosidl import from_aionode
@@ -166,7 +165,7 @@ def parameter_dict_from_yaml_file(
     Raises:
         RuntimeError: the file has another form, or no parameters of these nodes.
     """
-    content = yaml.safe_load(Path(parameter_file).read_text(encoding="utf-8"))
+    content = loaded_yaml(read_file(parameter_file))
     keys = []
     if use_wildcard and "/**" in content:
         keys.append("/**")

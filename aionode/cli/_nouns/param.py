@@ -351,10 +351,12 @@ def expect_value(text: str) -> None:
     """Raise CommandError unless a text is a scalar or a list in YAML."""
     import yaml
 
+    from aionode._process.bounded_yaml import composed_yaml
+
     expected = "expected a scalar or a list of scalars"
     try:
-        node = yaml.compose(text, yaml.SafeLoader)
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        node = composed_yaml(text)
+    except yaml.YAMLError as error:
         problem = getattr(error, "problem", None) or str(error).partition("\n")[0]
         raise CommandError(f"value {shortened(text)}: not YAML: {problem}; {expected}") from error
     if isinstance(node, yaml.MappingNode):

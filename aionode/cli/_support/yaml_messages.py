@@ -15,9 +15,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Filler", "message_from_yaml", "shortened"]
 
-DEEPEST = 100
-"""Maximum nesting depth of values."""
-
 HEADER = "std_msgs/msg/Header"
 TIME = "builtin_interfaces/msg/Time"
 
@@ -30,15 +27,10 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
     """
     import yaml
 
+    from aionode._process.bounded_yaml import documents_in
+
     try:
-        expect_shallow(text, what)
-        documents = [document for document in yaml.load_all(text, loader()) if document is not None]
-    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
-        # From PyYAML's constructors and Python: an empty `!!int`, a number with too many
-        # digits, a lone surrogate.
-        raise CommandError(
-            f"The passed value is not valid YAML: {shortened(text)}: {error}; expected {what}"
-        ) from error
+        documents = [value for value in documents_in(text, loader()) if value is not None]
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         where = "" if mark is None else f" at line {mark.line + 1}, column {mark.column + 1}"
@@ -63,26 +55,6 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
             f"{shortened(text)} is a {type(values).__name__}; expected {what}"
         )
     return values
-
-
-def expect_shallow(text: str, what: str) -> None:
-    """Raise CommandError if values are nested deeper than those of any message.
-
-    libyaml recurses for each level, and crashes the process at about ten thousand.
-    """
-    import yaml
-
-    if sum(map(text.count, "[{-?")) <= DEEPEST:
-        return
-    depth = 0
-    for event in yaml.parse(text, loader()):
-        depth += isinstance(event, yaml.CollectionStartEvent)
-        depth -= isinstance(event, yaml.CollectionEndEvent)
-        if depth > DEEPEST:
-            raise CommandError(
-                f"The passed value is nested too deeply: {shortened(text)} has more than {DEEPEST} "
-                f"levels; expected {what}"
-            )
 
 
 def loader() -> Any:

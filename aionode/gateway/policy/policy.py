@@ -13,11 +13,11 @@ import math
 import re
 from collections.abc import Iterable
 from functools import lru_cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import msgspec
 
+from aionode._process.bounded_files import read_file
 from aionode.errors import PolicyFileError, RefusedError
 from aionode.gateway.policy.field_limits import FieldLimit, OutOfLimitsError, check_finite, limited
 from aionode.gateway.policy.identity import Credentials, Identity
@@ -420,7 +420,7 @@ class Policy(Part, frozen=True):
             PolicyFileError: the file cannot be read, or is not a policy (a ValueError).
         """
         try:
-            return cls.parse(Path(path).read_bytes(), str(path))
+            return cls.parse(read_file(path), str(path))
         except OSError as error:
             raise PolicyFileError(str(path), f"cannot be read: {error.strerror}") from error
 
@@ -433,7 +433,7 @@ class Policy(Part, frozen=True):
         """
         try:
             policy = msgspec.toml.decode(text, type=cls)
-        except (msgspec.DecodeError, ValueError) as error:
+        except (msgspec.DecodeError, ValueError, RecursionError) as error:
             raise PolicyFileError(path, str(error)) from error
         if policy.path:
             raise PolicyFileError(path, "`path` is no key of a policy")

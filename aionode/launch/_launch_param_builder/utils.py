@@ -7,6 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from aionode._process.bounded_files import read_file
 from aionode._process.bounded_yaml import loaded_yaml
 
 __all__ = [
@@ -38,7 +39,7 @@ def raise_if_file_not_found(file_path: Path) -> None:
 def load_file(file_path: Path) -> str:
     """Return the text of a file."""
     raise_if_file_not_found(file_path)
-    return file_path.read_text(encoding="utf-8")
+    return read_file(file_path).decode()
 
 
 def load_yaml(file_path: Path) -> Any:
