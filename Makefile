@@ -35,6 +35,7 @@ PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.1
 BIN := .venv/bin
 SOAK_SECONDS ?= 600
 FUZZ_SECONDS ?= 60
+FUZZ_INPUTS ?= 10000
 FAULTS_TIMES ?= 3
 MOTION_TIMES ?= 20
 WORKERS ?= auto
@@ -101,6 +102,7 @@ docs: .venv/installed-dev
 fuzz: .venv/installed-dev
 	$(BIN)/python -m pytest -q -m hypothesis --hypothesis-profile=fuzz --timeout=3600
 	$(BIN)/python -m tests.support.fuzz_cdr --cases 3000000
+	$(BIN)/python -m tests.fuzz.mutate --inputs $(FUZZ_INPUTS)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
 	$(BIN)/python -m tests.fuzz --seconds $(FUZZ_SECONDS)
 	$(BIN)/python -m tests.attacks.fuzz --seconds $(FUZZ_SECONDS)

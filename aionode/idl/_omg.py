@@ -117,8 +117,8 @@ def messages_in(text: str, file: str, *, recorded: bool) -> dict[str, MessageTex
     """
     if len(text) > LARGEST_TEXT:
         raise IdlError(file, 0, 0, f"{len(text)} characters; at most {LARGEST_TEXT} are read")
-    reader = Reader(text, recorded=recorded)
     try:
+        reader = Reader(text, recorded=recorded)
         reader.definitions(())
     except LineError as misfit:
         line = text.count("\n", 0, misfit.offset) + 1

@@ -36,6 +36,7 @@ from aionode.errors import (
 from aionode.idl import define
 from aionode.message import Message, type_name
 from aionode.names import resolve
+from tests.fuzz import files
 from tests.support.samples import all_samples
 
 __all__ = ["TARGETS", "Target", "cdr_input"]
@@ -309,6 +310,98 @@ TARGETS: Final = {
             ],
             overhead=5000,
             words=("SUBNET", "OFF", "tcp/", "[::1]", ";", "=", ",", "\0"),
+        ),
+        Target("mcap", files.run_mcap, files.mcap_seeds, overhead=200_000),
+        Target("sqlite3", files.run_sqlite, files.sqlite_seeds, overhead=200_000),
+        Target("zstd", files.run_zstd, files.zstd_seeds, overhead=200_000),
+        Target(
+            "metadata",
+            files.run_metadata,
+            files.metadata_seeds,
+            overhead=20_000,
+            words=(
+                ": ",
+                "- ",
+                "{",
+                "}",
+                "[",
+                "]",
+                "!!int",
+                "!!binary",
+                "&a ",
+                "*a",
+                "<<: *a",
+                "9" * 20,
+            ),
+        ),
+        Target(
+            "definitions",
+            files.run_definition,
+            files.definition_seeds,
+            overhead=20_000,
+            words=(
+                "=" * 80,
+                "MSG: ",
+                "IDL: ",
+                "fuzz/Inner",
+                "int32",
+                "[",
+                "]",
+                "<=",
+                "module ",
+                "{",
+            ),
+        ),
+        Target(
+            "idl_files",
+            files.run_idl_file,
+            files.idl_seeds,
+            overhead=20_000,
+            words=(
+                "module ",
+                "struct ",
+                "sequence<",
+                ">",
+                "{",
+                "};",
+                "@default (value=",
+                "<<",
+                "/*",
+            ),
+        ),
+        Target(
+            "launch_xml",
+            files.run_launch_xml,
+            files.launch_xml_seeds,
+            overhead=5000,
+            words=("<node ", "<group>", "<arg ", "/>", "$(", ")", "&#0;", "<!DOCTYPE", "if=", "'"),
+        ),
+        Target(
+            "launch_yaml",
+            files.run_launch_yaml,
+            files.launch_yaml_seeds,
+            overhead=20_000,
+            words=(
+                "- node: ",
+                "- group:",
+                "$(",
+                ")",
+                "{",
+                "}",
+                "[",
+                "]",
+                "&a ",
+                "*a",
+                "!!int ",
+                "? ",
+            ),
+        ),
+        Target(
+            "policy",
+            files.run_policy,
+            files.policy_seeds,
+            overhead=5000,
+            words=("[[allow]]", "[[who]]", "= ", "'", "/**", "[", "{", "1e999", "nan", "9" * 30),
         ),
     )
 }
