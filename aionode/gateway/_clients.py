@@ -173,11 +173,13 @@ class Clients:
     def note_refusal(self, credentials: Credentials, error: RefusedError) -> None:
         """Write down that a client was refused before it had a session."""
         self._refused += 1
-        stranger = Identity("", address=credentials.address)
-        self.robot.audit.note(stranger, "connect", "", result=error.reason, code=error.code)
+        client = Identity("", address=credentials.address)
+        if error.code == "too_many":  # it is known
+            client = self._policy.identify(credentials)
+        self.robot.audit.note(client, "connect", "", result=error.reason, code=error.code)
         # A browser does not tell its page why.
         self.robot.refusals.note(
-            stranger, "connect", Refusal.of(error), error.subject, f"refused: {error.reason}"
+            client, "connect", Refusal.of(error), error.subject, f"refused: {error.reason}"
         )
 
     def use_policy(self, policy: Policy) -> None:

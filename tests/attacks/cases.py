@@ -194,11 +194,14 @@ def attacks_on_gateway() -> list[Attack]:
         "send_bombs": ("JSON of 1 MB that is made to cost, to a gateway", "client"),
         "drive_twice": ("two programs of one identity drive through a gateway at once", "client"),
         "drive_late": ("commands behind what a gateway refuses, which wait there", "client"),
+        "take_all_places": ("a viewer of a gateway that takes all places there are", "client"),
+        "load_images": ("a page of another origin with images that have wrong tokens", "outsider"),
+        "read_hidden": ("asks parameter services of a gateway for what its policy hides", "client"),
         "read_nothing": ("20 clients of a gateway that ask for much and read nothing", "client"),
     }
     return [
         *(
-            Attack(name, who, program, pair(gateway=True), 8.0)
+            Attack(name, who, program, pair(gateway=True, parameter_size=10), 8.0)
             for program, (name, who) in tries.items()
         ),
         Attack(

@@ -293,6 +293,97 @@ def drive_frozen(seconds: float, pids: Sequence[int]) -> int:
     return tries
 
 
+def take_all_places(port: int, until: float) -> int:
+    """Keep as many WebSockets, streams and requests that wait as one identity gets.
+
+    Raises:
+        RuntimeError: a client of another identity has no place.
+    """
+    kept: list[socket.socket] = []
+    stream = (
+        b"GET /topics/none?type=std_msgs/String&timeout_sec=600 HTTP/1.1\r\nHost: 127.0.0.1\r\n"
+    )
+    token = b"Authorization: Bearer viewer\r\n"
+    beginnings = itertools.cycle(
+        (
+            UPGRADE.replace(b"\r\n\r\n", b"\r\n" + token + b"\r\n"),
+            stream + token + b"\r\n",
+            stream + token + b"Accept: text/event-stream\r\n\r\n",
+        )
+    )
+    tries = 0
+    while time.monotonic() < until:
+        for _ in range(30):
+            with suppress(OSError):
+                each = socket.create_connection(("127.0.0.1", port), timeout=0.5)
+                each.sendall(next(beginnings))
+                kept.append(each)
+                tries += 1
+        time.sleep(0.1)
+        check_operator(port)
+        while len(kept) > 150:
+            kept.pop(0).close()
+    return tries
+
+
+def load_images(port: int, until: float) -> int:
+    """Be a page of another origin, whose images have wrong tokens in their addresses.
+
+    Raises:
+        RuntimeError: the operator's own token counts no more.
+    """
+    headers = ({"Origin": "http://evil.example"}, {"Sec-Fetch-Site": "cross-site"},
+               {"User-Agent": "Mozilla/5.0"}, {"Host": "evil.example"})  # fmt: skip
+    tries = 0
+    while time.monotonic() < until:
+        for each in headers:
+            page = HTTPConnection("127.0.0.1", port, timeout=5.0)
+            for _ in range(14):
+                page.request("GET", f"/topics/camera.jpeg?token={tries}", headers=each)
+                page.getresponse().read()
+                tries += 1
+            page.close()
+        check_operator(port)
+    return tries
+
+
+def read_hidden(port: int, until: float) -> int:
+    """Ask for a parameter that the policy hides, by each service that tells of one.
+
+    Raises:
+        RuntimeError: one of them has told it.
+    """
+    tries = 0
+    headers = {"Content-Type": "application/json", "Authorization": "Bearer viewer"}
+    client = HTTPConnection("127.0.0.1", port, timeout=5.0)
+    asked = json.dumps({"names": ["large"]})
+    services = {"get_parameters": asked, "get_parameter_types": asked,
+                "describe_parameters": asked, "list_parameters": "{}"}  # fmt: skip
+    while time.monotonic() < until:
+        for service, body in services.items():
+            client.request("POST", f"/services/talker/{service}", body, headers)
+            answer = client.getresponse()
+            text = answer.read().decode()
+            if answer.status == 200 and (service != "list_parameters" or "large" in text):
+                raise RuntimeError(f"{service} tells of a parameter that is hidden: {text[:200]}")
+            tries += 1
+    return tries
+
+
+def check_operator(port: int) -> None:
+    """Ask something as the operator.
+
+    Raises:
+        RuntimeError: it is refused.
+    """
+    client = HTTPConnection("127.0.0.1", port, timeout=5.0)
+    client.request("GET", "/nodes", headers={"Authorization": "Bearer operator"})
+    status = client.getresponse().status
+    client.close()
+    if status != 200:
+        raise RuntimeError(f"the operator is refused with {status}")
+
+
 GATEWAY_PROGRAMS = {
     attack.__name__: partial(against_gateway, attack)
     for attack in (
@@ -303,5 +394,8 @@ GATEWAY_PROGRAMS = {
         guess_tokens,
         drive_twice,
         drive_late,
+        take_all_places,
+        load_images,
+        read_hidden,
     )
 } | {"drive_frozen": drive_frozen}

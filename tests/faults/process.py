@@ -400,9 +400,13 @@ async def shout(node: Node) -> None:
 
 async def serve_clients(node: Node) -> None:
     """Have a gateway."""
-    from aionode.gateway import Gateway, Policy  # few roles have one
+    from aionode.gateway import Gateway, Policy, Rule, Who  # few roles have one
 
-    async with Gateway(node, Policy.default(allow_write=True), port=0):
+    policy = Policy.default(allow_write=True)
+    tokens = [Who(name, token=name) for name in ("viewer", "operator")]
+    hidden = Rule(see=f"{node.get_fully_qualified_name()}:large")
+    policy = msgspec.structs.replace(policy, who=[*policy.who, *tokens], refuse=[hidden])
+    async with Gateway(node, policy, port=0):
         await asyncio.Event().wait()
 
 
