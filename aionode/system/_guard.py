@@ -222,13 +222,18 @@ class Guard:
         if self._ended.is_set():
             program.refuse(description.argv, LOST)
             return program
+        with contextlib.ExitStack() as copies:
+            text = os.memfd_create("aionode-program")
+            copies.callback(os.close, text)
+            os.write(text, description.encoded())
+            os.lseek(text, 0, os.SEEK_SET)
+            descriptors = [text]
+            for descriptor in (*streams, *outputs):
+                descriptors.append(os.dup(descriptor))
+                copies.callback(os.close, descriptors[-1])
+            copies.pop_all()
         self._programs[program.number] = (program, description)
-        text = os.memfd_create("aionode-program")
-        os.write(text, description.encoded())
-        os.lseek(text, 0, os.SEEK_SET)
-        self._send(
-            {"do": "start", "number": program.number}, [text, *map(os.dup, (*streams, *outputs))]
-        )
+        self._send({"do": "start", "number": program.number}, descriptors)
         return program
 
     def stop(self, program: RunningProgram) -> None:

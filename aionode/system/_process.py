@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import os
 import signal
 import sys
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-from aionode.errors import ProgramStartError
 from aionode.system._guard import ProgramDescription
 from aionode.system._member import Member
 from aionode.system._output import open_output
@@ -98,13 +99,14 @@ class ProcessMember(Member):
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
         """Start it, and wait until no process of it is left."""
         cgroup = self.process.limits.enter(self.name, self.host.log)
-        pipes, program = self._start(cgroup)
+        pipes: list[int] = []
         try:
+            pipes, program = self._start(cgroup)
             await program.started
-        except ProgramStartError as error:
+        except OSError as error:  # a ProgramStartError, or no descriptor is left
             self._stop_reading(pipes)
             self.process.limits.leave(cgroup)
-            self.host.log.note(f"{self.name}: {error}")
+            self.host.log.note(f"{self.name}: {error}{hint_at_limit(error)}")
             return MemberEnd(self.name, failed=True, text="could not be started", status=127)
         self.note_running(program.pid)
         stopper = self.host.tasks.create_task(self._stop_at(stop, program))
@@ -140,10 +142,27 @@ class ProcessMember(Member):
         Both streams share one pipe, which keeps the order of their lines, unless somebody wants to
         know them apart.
         """
-        apart = self.process.on_output is not None
-        ends = [open_output(terminal=self.process.terminal) for _ in range(2 if apart else 1)]
-        null = os.open(os.devnull, os.O_RDONLY)
-        streams = [null, ends[0][1], ends[-1][1]]
+        with ExitStack() as given, ExitStack() as kept:
+            program, outputs = self._hand_over(cgroup, given, kept)
+            kept.pop_all()
+        for stream, output in enumerate(outputs, start=1):
+            self._processes.reader.add(output, self.name, stream, self.process.on_output)
+        return outputs, program
+
+    def _hand_over(
+        self, cgroup: str | None, given: ExitStack, kept: ExitStack
+    ) -> tuple[RunningProgram, list[int]]:
+        """Have it started; what closes the descriptors that it gets, and those of its output."""
+        outputs: list[int] = []
+        streams = [os.open(os.devnull, os.O_RDONLY)]
+        given.callback(os.close, streams[0])
+        for _ in range(1 if self.process.on_output is None else 2):
+            output, pipe = open_output(terminal=self.process.terminal)
+            kept.callback(os.close, output)
+            given.callback(os.close, pipe)
+            outputs.append(output)
+            streams.append(pipe)
+        streams = [streams[0], streams[1], streams[-1]]
         if self.process.stdin and sys.__stdin__ is not None:
             terminal = sys.__stdin__.fileno()
             streams[0] = terminal
@@ -158,10 +177,11 @@ class ProcessMember(Member):
             self.process.cwd,
             cgroup,
         )
-        outputs = [output for output, _ in ends]
-        program = self._processes.guard.start(description, streams, outputs)
-        for descriptor in (null, *(pipe for _, pipe in ends)):
-            os.close(descriptor)
-        for stream, output in enumerate(outputs, start=1):
-            self._processes.reader.add(output, self.name, stream, self.process.on_output)
-        return outputs, program
+        return self._processes.guard.start(description, streams, outputs), outputs
+
+
+def hint_at_limit(error: OSError) -> str:
+    """Return what to do about an error, if this process may open no more files."""
+    if error.errno != errno.EMFILE:
+        return ""
+    return "; each program takes some of the open files of this process: raise `ulimit -n`"

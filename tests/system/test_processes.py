@@ -6,6 +6,7 @@ import asyncio
 import io
 import json
 import os
+import resource
 import signal
 import sys
 from dataclasses import asdict
@@ -327,6 +328,36 @@ async def test_a_program_that_is_not_there_fails_and_says_so(
 
     assert system.exit_status == 127
     assert "no-such-program: could not be started" in output.getvalue()
+
+
+@pytest.mark.parametrize("room", range(1, 12))
+async def test_a_program_for_which_no_descriptor_is_left_fails_and_says_so(
+    system: System, output: io.StringIO, room: int
+) -> None:
+    """At whichever of its files the limit is reached; nothing of it stays open, and others run."""
+    limit, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    async with system:
+        system.process("first", ["sleep", "60"])
+        await system.ready()
+        before = [int(path.name) for path in Path("/proc/self/fd").iterdir()]
+        highest = max(before)
+        fillers = [os.open(os.devnull, os.O_RDONLY) for _ in range(highest + 1 - len(before))]
+        resource.setrlimit(resource.RLIMIT_NOFILE, (highest + room, hard))
+        try:
+            system.process("second", ["true"])
+            while system.status()["second"].state not in {"failed", "ended"}:
+                await system.changed()
+            is_short = system.status()["second"].state == "failed"
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
+            for filler in fillers:
+                os.close(filler)
+        after = list(Path("/proc/self/fd").iterdir())
+        assert system.status()["first"].state == "running"
+
+    assert len(after) == len(before)
+    assert is_short == ("raise `ulimit -n`" in output.getvalue())
+    assert is_short or room > 3
 
 
 async def test_a_member_starts_after_those_that_it_needs_are_ready(system: System) -> None:
