@@ -12,6 +12,7 @@ from aionode.idl._definition import HALVES, split_type_name
 from aionode.idl._folder import read
 from aionode.idl._installed import installed_file
 from aionode.idl._named import NAMED
+from aionode.interfaces import shipped_packages
 from aionode.message import (
     ActionType,
     Field,
@@ -34,6 +35,9 @@ STAND_IN = re.compile(
 )
 """The docstring of classes whose definition has no comment."""
 
+OWN_COMMENTS = "# Comments: aionode's own; a sourced ROS 2 has those of its files.\n\n"
+"""Above comments that `ros2 interface show` does not print."""
+
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
 
@@ -54,7 +58,8 @@ def definition_text(
         nested: Show the fields of nested messages below each field, indented by tabs, as
             ``ros2 interface show`` does. Such text is for reading only and cannot be parsed.
         comments: Which comments to show: those of the file of the sourced ROS 2 that defines the
-            type, or else what the class says of itself and its fields.
+            type, or else what the class says of itself and its fields. A line at the top tells
+            where those of a shipped type are from.
 
     Raises:
         TypeError: `cls` is not such a class, or has no ROS name.
@@ -74,7 +79,9 @@ def definition_text(
             source_lines(part, message, nested=nested, comments=comments)
             for part, message in zip(parts, messages, strict=True)
         ]
-    return "---\n".join("".join(f"{line}\n" for line in part) for part in sections)
+    text = "---\n".join("".join(f"{line}\n" for line in part) for part in sections)
+    is_own = parts is None and package in shipped_packages()
+    return f"{OWN_COMMENTS}{text}" if is_own and "# " in text else text
 
 
 def lines(
