@@ -78,7 +78,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def replay_bag(request: pytest.FixtureRequest) -> Callable[..., Replay]:
     """A function that runs nodes on a recording, as `aionode.bag.replay` does.
 
-    Use it as ``async with replay_bag("run") as run``.
+    Use it as ``async with replay_bag("run") as run``, and ``await run.play(record=[…])`` in it:
+    `play` takes the topics.
 
     A relative path begins at the folder of the test's file.
     """

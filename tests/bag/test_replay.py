@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import bag
+from aionode.action import ServerGoalHandle
 from aionode.bag import MachineUseWarning, Outputs
 from aionode.clock import Time
 from aionode.errors import BagError
@@ -155,6 +156,34 @@ async def test_services_and_actions_follow_the_recording(numbers: Path) -> None:
     assert times_ms(runs[0]) == [400]
     assert runs[0].digest() == runs[1].digest()
     assert ids[0] == ids[1]
+
+
+async def test_a_goal_is_sent_while_the_recording_plays(
+    replay_bag: Callable[..., bag.Replay], numbers: Path
+) -> None:
+    """The node under test serves it, and the test is its client, at a time of the recording."""
+    done: list[int] = []
+
+    async with replay_bag(numbers) as run:
+        doubler = Doubler()
+        client = Node("operator").create_action_client(Fibonacci, "count")
+
+        async def count(goal: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+            await doubler.get_clock().sleep(0.3)
+            goal.succeed()
+            return Fibonacci.Result(sequence=range(goal.request.order))
+
+        async def send() -> None:
+            timer.cancel()
+            result = await client.call(Fibonacci.Goal(order=3))
+            done.extend(result.sequence)
+
+        doubler.create_action_server(Fibonacci, "count", count)
+        timer = doubler.create_timer(0.2, send)
+        outputs = await run.play(record=["/y"], topics=["/x"])
+
+    assert done == [0, 1, 2]
+    assert [record.message.data for record in outputs.records][:3] == [0.0, 2.0, 4.0]
 
 
 async def test_simulated_time_follows_the_clock_in_the_recording(tmp_path: Path) -> None:
