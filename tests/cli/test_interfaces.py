@@ -69,7 +69,7 @@ def test_show_says_what_fields_mean(screen: Any) -> None:
         "# A velocity: what `/cmd_vel` carries.\n\n"
         "# In m/s; x is forward, y to the left, z up.\nVector3 linear\n\t"
     )
-    assert screen.text.count("#") == 3
+    assert screen.text.count("#") == 4  # the first says whose comments they are
 
 
 def test_show_prints_the_comments_of_the_installed_file(
