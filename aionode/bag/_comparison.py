@@ -14,6 +14,7 @@ import msgspec
 from aionode.bag._bag import Bag
 from aionode.bag._bag import open as open_bag
 from aionode.bag._outputs import Outputs
+from aionode.errors import escaped
 from aionode.message import to_builtins
 
 if TYPE_CHECKING:
@@ -56,7 +57,8 @@ class Difference(msgspec.Struct, frozen=True):
 
     def __str__(self) -> str:
         left, right = shown(self.left), shown(self.right)
-        return f"{self.topic} at {self.offset_ns / 1e9:.6f} s: {self.field}: {left} != {right}"
+        text = f"{self.topic} at {self.offset_ns / 1e9:.6f} s: {self.field}: {left} != {right}"
+        return escaped(text, one_line=True)
 
     __repr__ = __str__
 

@@ -17,7 +17,7 @@ from aionode.bag._player_services import serve_player
 from aionode.bag._record import MOST_NS, time_of
 from aionode.bag._selection import Selection
 from aionode.clock import Duration
-from aionode.errors import BagError, DecodeError, InterfaceNotFoundError
+from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, escaped
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMessage
 from aionode.node import Node
 from aionode.qos import QoSProfile
@@ -508,7 +508,7 @@ class Player:
         return QoSProfile(depth=DEFAULT_DEPTH)
 
     def _warn(self, text: str) -> None:
-        self.node.get_logger().warning(text)
+        self.node.get_logger().warning(escaped(text, one_line=True))
 
 
 def batch_or_error(batches: Batches[tuple[int, Record]]) -> list[tuple[int, Record]] | BagError:

@@ -33,12 +33,15 @@ UNSHOWN = re.compile(
 """Control characters but tab and newline, what changes the direction of text, and surrogates."""
 
 
-def escaped(text: str) -> str:
+def escaped(text: str, *, one_line: bool = False) -> str:
     r"""Return `text` with control characters as escapes such as ``\x1b``, for people to read.
 
     A text may come from another process: printed as it is, an escape sequence could recolour,
-    overwrite or retitle a terminal. Tabs and newlines stay.
+    overwrite or retitle a terminal. Tabs and newlines stay; with `one_line` newlines are escapes,
+    too, so that a name cannot look like another line.
     """
+    if one_line:
+        text = text.replace("\n", "\\n")
     if UNSHOWN.search(text) is None:
         return text
     return UNSHOWN.sub(lambda match: match[0].encode("unicode_escape").decode(), text)

@@ -19,6 +19,7 @@ from aionode.bag import _compression
 from aionode.bag._chunks import HEAD
 from aionode.bag._summary import read_summary
 from aionode.bag._writer import topic_info
+from aionode.cli import main
 from aionode.engine.wire import cdr
 from aionode.errors import BagError
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -402,3 +403,24 @@ def test_rows_of_a_topic_that_is_not_listed_are_said(tmp_path: Path) -> None:
     heard, error = heard_before_error(tmp_path / "run")
     assert heard == ["a", "c"]
     assert "1 messages are of topic 7" in str(error)
+
+
+# Names of others
+
+
+def test_names_in_a_bag_cannot_look_like_other_lines(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A new line in a name would add a topic to `bag info`, and an escape move the cursor."""
+    odd = "/a\nTopic: /b | Type: x | Count: 9\r\x1b[2J"
+    for name in ("one", "two"):
+        with bag.BagWriter(tmp_path / name, custom_data={"x\ny": "1\n2"}) as out:
+            number = out.add_topic(topic_info(odd, String))
+            out.write(number, 1, cdr.encode(String(data=f"{name}\n\x1b")))
+    assert main(["bag", "info", str(tmp_path / "one")]) == 0
+    assert main(["bag", "info", "-t", str(tmp_path / "one")]) == 0
+    main(["bag", "diff", str(tmp_path / "one"), str(tmp_path / "two")])
+    shown = capsys.readouterr().out
+    assert "\r" not in shown
+    assert "\x1b" not in shown
+    assert not any(line.startswith(("Topic: /b", "2", "y")) for line in shown.splitlines())

@@ -21,7 +21,7 @@ from aionode.cli._nouns.bag_options import (
 from aionode.cli._nouns.bag_replay import diff_command, shrink_command
 from aionode.cli._support.options import json_option
 from aionode.cli._support.output import Output
-from aionode.errors import CommandError
+from aionode.errors import CommandError, escaped
 
 if TYPE_CHECKING:
     from aionode.bag import Bag, TopicInfo
@@ -80,7 +80,9 @@ def info_command(
         keys = {"name": lambda t: t.name, "type": lambda t: t.type, "count": count_of}
         topics = sorted(opened.connections, key=keys[sort])
         if topic_name:
-            output.items([(topic.name, {"name": topic.name}) for topic in topics])
+            output.items(
+                [(escaped(topic.name, one_line=True), {"name": topic.name}) for topic in topics]
+            )
             return
         output.item(info_text(opened, topics, verbose=verbose), info_record(opened, topics))
 
@@ -106,7 +108,8 @@ def info_text(opened: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
         if verbose:
             lines.append(f"  Hash: {topic.type_hash or 'none'}")
             lines += [f"  QoS:  {profile}" for profile in topic.qos]
-    return "\n".join(lines)
+            lines += [f"  QoS:  none: {topic.problem}"] if topic.problem else []
+    return "\n".join(escaped(line, one_line=True) for line in lines)
 
 
 def lost_text(opened: Bag) -> str:

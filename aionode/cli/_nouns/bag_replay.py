@@ -11,6 +11,7 @@ from aionode.cli._support.exit import INTERRUPTED
 from aionode.cli._support.options import json_option
 from aionode.cli._support.output import Output
 from aionode.cli._support.session import run_until_stopped
+from aionode.errors import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -84,7 +85,10 @@ async def shrink(bag: str, test: Sequence[str], place: Path, output: Output) -> 
 
     def show(piece: Piece) -> None:
         seconds = (piece.end_ns - piece.start_ns) / 1e9
-        output.item(f"fails with {seconds:.3f} s of {', '.join(piece.topics)}", piece)
+        output.item(
+            escaped(f"fails with {seconds:.3f} s of {', '.join(piece.topics)}", one_line=True),
+            piece,
+        )
 
     async def fails(piece: Piece) -> bool:
         return await _shrinking.fails(test, piece)
