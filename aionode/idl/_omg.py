@@ -21,7 +21,7 @@ from aionode.idl._definition import (
     TypeText,
     split_type_name,
 )
-from aionode.idl._parser import LARGEST_TEXT, checked, field_name, unescaped
+from aionode.idl._parser import LARGEST_TEXT, PRIMITIVES, checked, field_name, unescaped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -337,7 +337,9 @@ class Reader:
         word = self._name()
         self._expect("=")
         at = self._next.at
-        value = checked(type_, self._value(scope), at)
+        value = checked_value(type_, self._value(scope), at)
+        if type_.container != "single":
+            raise LineError(at, "a constant must be a single value, not an array")
         self._values[*scope, word.text] = value
         line, column = self._place(word.at)
         name = field_name(word.text, word.at, recorded=self._recorded, constant=True)
@@ -432,4 +434,11 @@ def default_in(type_: TypeText, notes: dict[str, Any], at: int) -> object:
         except (ValueError, SyntaxError, MemoryError, RecursionError, TypeError) as error:
             raise LineError(at, f"the default {value[:40]!r} is no list of values") from error
         value = list(given) if isinstance(given, list | tuple) else [given]
+    return checked_value(type_, value, at)
+
+
+def checked_value(type_: TypeText, value: object, at: int) -> object:
+    """Return a value as its type has it; raise `LineError` if it does not fit."""
+    if type_.name not in PRIMITIVES:
+        raise LineError(at, f"{type_.name} has no values that could be written here")
     return checked(type_, value, at)

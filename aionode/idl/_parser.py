@@ -24,7 +24,7 @@ from aionode.idl._definition import (
 )
 from aionode.message import DTYPES, FieldType, fit, fit_element
 
-__all__ = ["BUILTINS", "LARGEST_TEXT", "checked", "field_name", "parse", "unescaped"]
+__all__ = ["BUILTINS", "LARGEST_TEXT", "PRIMITIVES", "checked", "field_name", "parse", "unescaped"]
 
 PRIMITIVES = frozenset({*DTYPES, "byte", "string", "wstring"})
 BUILTINS = {

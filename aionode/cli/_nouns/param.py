@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from aionode._process.bounded_yaml import composed_yaml
 from aionode.cli._nouns.param_text import (
     LABELS,
     TYPE_NAMES,
