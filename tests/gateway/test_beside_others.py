@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 import socket
 from collections.abc import Awaitable, Callable
-from contextlib import AsyncExitStack, suppress
+from contextlib import AsyncExitStack, ExitStack, suppress
 
 import httpx
 import pytest
@@ -13,7 +14,7 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from aionode.gateway import Gateway, Policy
-from tests.support.gateway_server import address, get, http_client, serving, sessions_of
+from tests.support.gateway_server import UPGRADE, address, get, http_client, serving, sessions_of
 from tests.support.waiting import until
 
 POLICY = """
@@ -136,6 +137,25 @@ async def test_who_keeps_unread_what_is_public_keeps_nobody_out() -> None:
             reader.send(request)
 
         assert (await get(gateway, "/topics", ADMIN)).status_code == 200
+
+
+async def test_websockets_that_make_room_end_as_others_do(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    """Those that are refused stay for a moment, and are what is closed then."""
+    upgrade = UPGRADE.format(path="/", more="Authorization: Bearer viewer\r\n").encode()
+    async with serving(Policy.parse(POLICY)) as gateway:
+        with ExitStack() as stack:
+            for _ in range(60):
+                client = stack.enter_context(
+                    socket.create_connection(("127.0.0.1", gateway.port), 5.0)
+                )
+                client.sendall(upgrade)
+            await until(lambda: count(gateway, "viewer") == 4)
+            assert (await get(gateway, "/topics", ADMIN)).status_code == 200
+        await until(lambda: not gateway.stats.sessions)
+
+    assert [each for each in caplog.records if each.levelno >= logging.ERROR] == []
 
 
 @pytest.mark.parametrize("headers", FOREIGN)

@@ -458,6 +458,7 @@ class WebSocketConnection(WebSocketsSansIOProtocol):
     def connection_lost(self, exc: Exception | None) -> None:
         """Tell the server, which may wait for its last connection to end."""
         self._portions.close()
+        self.connections.add(self)  # where it made room, and uvicorn needs it once more
         super().connection_lost(exc)
         self.config.has_lost_one.set()
 
