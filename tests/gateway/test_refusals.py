@@ -13,7 +13,13 @@ from aionode import gateway as _package
 from aionode.errors import MessageError, RefusedError, ServiceError
 from aionode.gateway import Identity, Policy
 from aionode.gateway.server.door import STATUS
-from aionode.gateway.session.refusals import MOST_LINES, MOST_SUBJECTS, Refusal, Refusals
+from aionode.gateway.session.refusals import (
+    MOST_LINES,
+    MOST_PLACES,
+    MOST_SUBJECTS,
+    Refusal,
+    Refusals,
+)
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
 from aionode.testing import settle
@@ -102,6 +108,70 @@ async def test_one_client_hides_no_lines_about_another(
     assert sum("loud" in line for line in lines(caplog)) == MOST_LINES
     assert sum("quiet" in line for line in lines(caplog)) == 1
     assert refusals.counts[Refusal.NOT_ALLOWED] == 3 * MOST_SUBJECTS + 1
+
+
+async def test_how_many_lines_about_a_client_were_left_out_is_said_once_a_window(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Otherwise a flood looks no larger than the few lines that it gets."""
+    refusals, loud = Refusals(bench.robot.node), Identity("loud\x1b")
+    for _ in range(2):
+        for number in range(MOST_LINES + 7):
+            refusals.note(loud, "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
+        await bench.advance(60.0)
+    refusals.note(Identity("quiet"), "http", Refusal.NOT_ALLOWED, "publish /x", "no")
+
+    left_out = [line for line in lines(caplog) if "left out" in line]
+    assert len(left_out) == 2
+    assert all(line.startswith(r"gateway: loud\x1b: 7 more lines in 10 s") for line in left_out)
+
+
+async def test_refusals_without_room_for_a_line_are_in_the_number_of_its_next(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """That a line was left out does not make it one that was said."""
+    refusals, loud = Refusals(bench.robot.node), Identity("loud")
+    refusals.note(loud, "http", Refusal.HELD, "publish /x", "held")
+    await bench.advance(10.0)
+    for number in range(MOST_LINES):
+        refusals.note(loud, "http", Refusal.NOT_ALLOWED, f"publish /{number}", "no")
+    for _ in range(3):
+        refusals.note(loud, "http", Refusal.HELD, "publish /x", "held")
+    await bench.advance(10.0)
+    refusals.note(loud, "http", Refusal.HELD, "publish /x", "held")
+
+    assert lines(caplog)[-1].endswith("publish /x: held (3 more since the last line)")
+
+
+async def test_a_client_without_a_name_hides_no_lines_about_one_elsewhere(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """All who are unknown have the name ""; one host has many addresses of one IPv6 network."""
+    refusals = Refusals(bench.robot.node)
+    for number in range(3 * MOST_LINES):
+        loud = Identity("", address=f"2001:db8::{number:x}")
+        refusals.note(loud, "http", Refusal.UNAUTHORIZED, f"GET /{number}", "no token")
+    quiet = Identity("", address="192.0.2.1")
+    refusals.note(quiet, "http", Refusal.UNAUTHORIZED, "GET /0", "no token")
+
+    assert sum("2001:db8::" in line for line in lines(caplog)) == MOST_LINES
+    assert sum("192.0.2.1" in line for line in lines(caplog)) == 1
+
+
+async def test_clients_without_names_at_many_places_have_a_bounded_number_of_lines(
+    bench: Bench, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Addresses cost an attacker nothing, and each would have lines of its own."""
+    refusals = Refusals(bench.robot.node)
+    for number in range(2 * MOST_PLACES):
+        each = Identity("", address=f"10.0.{number // 256}.{number % 256}")
+        refusals.note(each, "http", Refusal.UNAUTHORIZED, "GET /", "no token")
+    refusals.note(Identity("known"), "http", Refusal.HELD, "publish /x", "held")
+
+    assert len(lines(caplog)) == MOST_PLACES + MOST_LINES + 1
+    await bench.advance(10.0)
+    refusals.note(Identity("known"), "http", Refusal.TOO_OLD, "publish /x", "old")
+    assert sum("unknown clients: 90 more lines" in line for line in lines(caplog)) == 1
 
 
 # All ways to it

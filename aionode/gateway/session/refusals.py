@@ -27,6 +27,12 @@ MOST_WAIT_NS: Final = 640 * S_TO_NS
 MOST_LINES: Final = 10
 """Lines about clients of one name within `WAIT_NS`: others have lines of their own."""
 
+MOST_PLACES: Final = 100
+"""Places whose clients without a name have lines of their own; those of further ones share some."""
+
+NOBODY: Final = ("", "")
+"""The client of the lines that all share who have neither a name nor a place of their own."""
+
 MOST_SUBJECTS: Final = 1_000
 """What is remembered of clients of all names: they may invent any subjects."""
 
@@ -83,17 +89,22 @@ class Line:
 
 @dataclass(slots=True)
 class Window:
-    """How many lines there were about clients of one name in `WAIT_NS`."""
+    """How many lines there were about one client in `WAIT_NS`, and how many there would have been.
 
-    until_ns: int = 0
+    A client is all those of one name, or those without a name at one place.
+    """
+
+    until_ns: int
     lines: int = 0
+    left_out: int = 0
 
 
 class Refusals:
     """Counts what is refused, dropped or late, by its kind, and warns of it.
 
     The first of each client and subject is said, and then how many more there were: after 10 s,
-    20 s and so on.
+    20 s and so on. How many lines about a client were left out, as there were too many in
+    `WAIT_NS`, is said before the next one that begins such a time.
 
     Args:
         node: The gateway's node, whose log it is.
@@ -106,8 +117,8 @@ class Refusals:
         self.counts: Counter[Refusal] = Counter()
         self._node = node
         self._now_ns = node.context.time_base.steady_ns
-        self._lines: dict[tuple[str, str, Refusal, str], Line] = {}
-        self._windows: dict[str, Window] = {}
+        self._lines: dict[tuple[tuple[str, str], str, Refusal, str], Line] = {}
+        self._windows: dict[tuple[str, str], Window] = {}
 
     def note(
         self, identity: Identity, way: str, kind: Refusal, subject: str, reason: str, count: int = 1
@@ -124,31 +135,51 @@ class Refusals:
         """
         self.counts[kind] += count
         now_ns, subject = self._now_ns(), subject[:MOST_TEXT]
-        key = (identity.name, way, kind, subject)
+        client = (identity.name, "" if identity.name else identity.place)
+        window = self._window(client, now_ns)
+        key = (client, way, kind, subject)
         line = self._lines.get(key)
         if line is not None and now_ns < line.due_ns:
             line.unsaid += count
             return
+        if window.lines >= MOST_LINES:
+            window.left_out += 1
+            if line is not None:
+                line.unsaid += count
+            return
+        window.lines += 1
         unsaid = 0
         if line is None:
             if len(self._lines) >= MOST_SUBJECTS:
                 del self._lines[next(iter(self._lines))]
-            self._lines[key] = line = Line(now_ns + WAIT_NS)
+            self._lines[key] = Line(now_ns + WAIT_NS)
         else:
             unsaid = line.unsaid
             is_over = now_ns > line.due_ns + line.wait_ns
             line.wait_ns = WAIT_NS if is_over else min(2 * line.wait_ns, MOST_WAIT_NS)
             line.due_ns, line.unsaid = now_ns + line.wait_ns, 0
-        if self._has_room(identity.name, now_ns):
-            where = f"{identity.address or 'this process'}, {way}"
-            more = f" ({unsaid} more since the last line)" if unsaid else ""
-            text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
-            self._node.get_logger().warning(f"gateway: {escaped(text)}{more}")
+        where = f"{identity.address or 'this process'}, {way}"
+        more = f" ({unsaid} more since the last line)" if unsaid else ""
+        text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
+        self._node.get_logger().warning(f"gateway: {escaped(text)}{more}")
 
-    def _has_room(self, name: str, now_ns: int) -> bool:
-        """Count a line about clients of a name, and return whether there may be one more."""
-        window = self._windows.setdefault(name, Window())
-        if now_ns >= window.until_ns:
-            window.until_ns, window.lines = now_ns + WAIT_NS, 0
-        window.lines += 1
-        return window.lines <= MOST_LINES
+    def _window(self, client: tuple[str, str], now_ns: int) -> Window:
+        """Return the window of a client's lines; those that are over are told of and forgotten."""
+        window = self._windows.get(client)
+        if window is not None and now_ns < window.until_ns:
+            return window
+        for each in [key for key, old in self._windows.items() if now_ns >= old.until_ns]:
+            self._tell_left_out(each, self._windows.pop(each).left_out)
+        if client[1] and sum(1 for _, other in self._windows if other) >= MOST_PLACES:
+            client = NOBODY
+        return self._windows.setdefault(client, Window(now_ns + WAIT_NS))
+
+    def _tell_left_out(self, client: tuple[str, str], count: int) -> None:
+        """Say how many lines about a client were left out in its window."""
+        if count:
+            name, place = client
+            who = name or (f"unknown client ({place})" if place else "unknown clients")
+            self._node.get_logger().warning(
+                f"gateway: {escaped(who)}: {count} more lines in {WAIT_NS // S_TO_NS} s were left"
+                f" out, as there are at most {MOST_LINES} about one client"
+            )
