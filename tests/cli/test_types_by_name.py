@@ -2,20 +2,31 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
-from typing import Any
+from typing import Annotated, Any
 
 import pytest
 
 from aionode import Node
 from aionode.cli._nouns.action import send_goal
+from aionode.cli._nouns.interface import proto
 from aionode.cli._nouns.service import call
 from aionode.cli._nouns.topic_echo import echo
 from aionode.cli._support.lookup import topic_type
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
-from aionode.message import ActionType, Message, ServiceType, int32
+from aionode.message import (
+    ActionType,
+    Array,
+    Floats,
+    Message,
+    ServiceType,
+    float64,
+    int32,
+    to_builtins,
+)
 from aionode.testing import settle
 
 # `by_name=False`: the command finds none of them, as if they were in another process.
@@ -110,6 +121,45 @@ async def test_send_goal_learns_an_action_type(
 
     assert status == 0
     assert screen.records[-1]["result"] == {"walked": 3}
+
+
+class Drive(ActionType, typename="foreign/action/Drive", by_name=False):
+    """An action whose goal has defaults."""
+
+    class Goal(Message):
+        """How to drive."""
+
+        tolerance: float64 = 0.05
+        heading: float64 = -1.5
+        frame: str = "map"
+        gains: Annotated[Floats, Array[float64, 2]] = (0.5, -0.25)
+
+    class Result(Message):
+        """Nothing."""
+
+    class Feedback(Message):
+        """Nothing."""
+
+
+async def test_a_goal_of_defaults_has_those_that_the_server_describes(
+    tool: Node, node_factory: Callable[..., Node], screen: Any
+) -> None:
+    """With a tolerance of 0.0 in their place, a robot hunted its goal for ever."""
+    goals: list[Any] = []
+
+    async def drive(goal: Any) -> Drive.Result:
+        goals.append(goal.request)
+        goal.succeed()
+        return Drive.Result()
+
+    node_factory("server").create_action_server(Drive, "/drive", drive)
+    await settle()
+
+    await send_goal(tool, "/drive", "foreign/action/Drive", values="{}", output=screen.output)
+    proto(await tool.find_type("foreign/action/Drive"), output=screen.json_output)
+
+    assert goals == [Drive.Goal()]
+    assert json.loads(screen.text.splitlines()[-1]) == to_builtins(Drive.Goal())
 
 
 async def test_a_type_that_no_node_describes_is_an_error_with_a_way_out(
