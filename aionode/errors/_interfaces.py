@@ -65,7 +65,8 @@ class InterfaceNotFoundError(AionodeError, LookupError):
 
 HOW_TO_FIND = (
     "names look like std_msgs/msg/String or std_srvs/srv/Trigger; `aionode interface list` shows "
-    "all known interfaces, and aionode.idl.load_interfaces() adds your own"
+    "all known interfaces; those of your own are found in the workspace, and in the folders of "
+    "--interfaces and AIONODE_INTERFACES"
 )
 
 

@@ -164,10 +164,9 @@ async def class_of(
         if users:
             raise CommandError(
                 f"Type of '{name}': {error.problem}; give a folder with its definition: "
-                "--interfaces PATH (in Python: aionode.idl.load_interfaces)"
+                "--interfaces PATH"
             ) from error
-        hint = "" if error.suggestions else "; `--interfaces PATH` loads definitions of your own"
-        raise CommandError(f"The passed {kind} type is invalid: {error}{hint}") from error
+        raise CommandError(f"The passed {kind} type is invalid: {error}") from error
     if used and interface.__ros_type__ not in used:
         raise CommandError(
             f"The passed {kind} type is invalid: '{name}' has type {', '.join(sorted(used))}, not "
