@@ -20,7 +20,6 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.message import (
     ActionType,
     Array,
-    Floats,
     Message,
     ServiceType,
     float64,
@@ -132,7 +131,7 @@ class Drive(ActionType, typename="foreign/action/Drive", by_name=False):
         tolerance: float64 = 0.05
         heading: float64 = -1.5
         frame: str = "map"
-        gains: Annotated[Floats, Array[float64, 2]] = (0.5, -0.25)
+        gains: Annotated[Any, Array[float64, 2]] = (0.5, -0.25)
 
     class Result(Message):
         """Nothing."""
