@@ -17,7 +17,13 @@ from aionode.bag._player_services import serve_player
 from aionode.bag._record import MOST_NS, time_of
 from aionode.bag._selection import Selection
 from aionode.clock import Duration
-from aionode.errors import BagError, DecodeError, InterfaceNotFoundError, escaped
+from aionode.errors import (
+    BagError,
+    DecodeError,
+    InterfaceNotFoundError,
+    NameValidationException,
+    escaped,
+)
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMessage
 from aionode.node import Node
 from aionode.qos import QoSProfile
@@ -491,7 +497,7 @@ class Player:
             publisher = self.node.create_publisher(
                 topic.msg_type, self._remap.get(topic.name, topic.name), profile
             )
-        except InterfaceNotFoundError as error:
+        except (InterfaceNotFoundError, NameValidationException) as error:
             self._warn(f"{topic.name} is not played: {error}")
             return
         self._publishers[topic.key] = publisher

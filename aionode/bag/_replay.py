@@ -20,7 +20,13 @@ from aionode.bag._outputs import Outputs, Tap
 from aionode.clock import Time
 from aionode.engine.bare_node import BareNode
 from aionode.engine.context import Context
-from aionode.errors import BagError, DecodeError, InterfaceNotFoundError
+from aionode.errors import (
+    BagError,
+    DecodeError,
+    InterfaceNotFoundError,
+    NameValidationException,
+    escaped,
+)
 from aionode.graph import EndpointKind
 from aionode.logging import get_logger
 from aionode.node import Node
@@ -180,8 +186,8 @@ class Replay:
             info = self.bag.topics[name]
             try:
                 publisher = self._player.create_publisher(info.msg_type, name, offered(info))
-            except InterfaceNotFoundError as error:
-                logger.warning(f"{name} is left out: {error}")
+            except (InterfaceNotFoundError, NameValidationException) as error:
+                logger.warning(escaped(f"{name} is left out: {error}", one_line=True))
                 continue
             self._warn_of_second(name)
             published[name] = publishing(publisher, self.clock)
