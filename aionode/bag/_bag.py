@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from copy import copy
+from errno import ENAMETOOLONG
 from itertools import islice
 from pathlib import Path
 from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
@@ -16,7 +17,7 @@ from aionode.bag._record import MOST_NS, Record, TopicInfo, time_of
 from aionode.bag._source import CHECK, McapSource
 from aionode.bag._sqlite import SqliteSource
 from aionode.clock import Duration, Time
-from aionode.errors import BagError
+from aionode.errors import BagError, brief
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterable, Iterator
@@ -335,12 +336,12 @@ def open(path: str | PathLike[str]) -> Bag:  # noqa: A001  # as in `bag.open(pat
             if mode == "file" and not (place / name).exists():
                 name = name.removesuffix(".zstd")  # noqa: PLW2901  # it was decompressed by hand
             sources.append(kind(place / name, compressed_messages=mode == "message"))
-    except FileNotFoundError as error:
+    except BaseException as error:
         close_all(sources)
-        problem = f"{FILE_NAME} names {Path(error.filename).name}, which is not there"
-        raise BagError(str(path), problem, "`aionode bag reindex` writes a new one") from error
-    except BaseException:
-        close_all(sources)
+        if isinstance(error, FileNotFoundError) or getattr(error, "errno", 0) == ENAMETOOLONG:
+            problem = f"{FILE_NAME} names {brief(name)}, which is not there"
+            remedy = "`aionode bag reindex` writes a new one"
+            raise BagError(str(path), problem, remedy) from error
         raise
     return Bag(place, sources, metadata)
 

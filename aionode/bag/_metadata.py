@@ -142,6 +142,8 @@ def read_metadata(folder: Path) -> dict[str, Any]:
         metadata: dict[str, Any] = dict(content[ROOT])
         metadata["relative_file_paths"] = [str(name) for name in metadata["relative_file_paths"]]
         metadata["storage_identifier"] = str(metadata["storage_identifier"])
+        if any("\0" in name for name in metadata["relative_file_paths"]):
+            raise ValueError("NUL in the name of a file")  # noqa: TRY301  # as the others
     except FileNotFoundError as error:
         raise BagError(
             str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` writes one"

@@ -14,6 +14,8 @@ from hypothesis import strategies as st
 
 from tests.fuzz.targets import TARGETS, Target
 
+METADATA = TARGETS["metadata"].seeds()[0]
+
 ALLOWED_BYTES = 4 << 20
 """Memory in bytes that parsing may always take, for imported modules and caches."""
 
@@ -78,6 +80,16 @@ def test_damaged_input_takes_no_more_memory_than_its_size_allows(target: Target,
         ("idl", b"\0int32[" + b"9" * 5000 + b"] x"),
         ("idl", b"\0string[1000000000] x"),
         ("idl", b"\0byte[4000000000] x"),
+        ("idl_files", b"\0module fuzz { const in32 A = 1; };"),
+        ("idl_files", b"\0module fuzz { const long A = 1; typedef long B[3]; const B C = 1; };"),
+        (
+            "idl_files",
+            b"\0module fuzz { module msg { struct Words { @default(value=1) X y; }; }; };",
+        ),
+        ("idl_files", b"\0\0"),
+        ("metadata", METADATA.replace(b"run_0", b"r" * 300)),
+        ("metadata", METADATA.replace(b"[run_0.mcap]", b'["run\\0_0.mcap"]')),
+        ("metadata", b"output_bags: [{uri: a, all: true, regex: [x]}]"),
         ("errors", b"[" * 100_000),
         ("errors", b'{"type": "\\ud800", "text": "\\ud800"}'),
     ],
