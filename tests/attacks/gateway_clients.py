@@ -320,7 +320,8 @@ def take_all_places(port: int, until: float) -> int:
                 kept.append(each)
                 tries += 1
         time.sleep(0.1)
-        check_operator(port)
+        check_client(port, "operator")
+        check_client(port, "admin")
         while len(kept) > 150:
             kept.pop(0).close()
     return tries
@@ -343,7 +344,7 @@ def load_images(port: int, until: float) -> int:
                 page.getresponse().read()
                 tries += 1
             page.close()
-        check_operator(port)
+        check_client(port, "operator")
     return tries
 
 
@@ -370,18 +371,18 @@ def read_hidden(port: int, until: float) -> int:
     return tries
 
 
-def check_operator(port: int) -> None:
-    """Ask something as the operator.
+def check_client(port: int, token: str) -> None:
+    """Ask something as the client with a token.
 
     Raises:
         RuntimeError: it is refused.
     """
     client = HTTPConnection("127.0.0.1", port, timeout=5.0)
-    client.request("GET", "/nodes", headers={"Authorization": "Bearer operator"})
+    client.request("GET", "/nodes", headers={"Authorization": f"Bearer {token}"})
     status = client.getresponse().status
     client.close()
     if status != 200:
-        raise RuntimeError(f"the operator is refused with {status}")
+        raise RuntimeError(f"the client with the token {token!r} is refused with {status}")
 
 
 GATEWAY_PROGRAMS = {

@@ -403,7 +403,7 @@ async def serve_clients(node: Node) -> None:
     from aionode.gateway import Gateway, Policy, Rule, Who  # few roles have one
 
     policy = Policy.default(allow_write=True)
-    tokens = [Who(name, token=name) for name in ("viewer", "operator")]
+    tokens = [Who(name, token=name) for name in ("viewer", "operator", "admin")]
     hidden = Rule(see=f"{node.get_fully_qualified_name()}:large")
     policy = msgspec.structs.replace(policy, who=[*policy.who, *tokens], refuse=[hidden])
     async with Gateway(node, policy, port=0):

@@ -106,7 +106,7 @@ class Role(msgspec.Struct, frozen=True):
             0 for a node without such services.
         curious: Whether it looks up types that it does not know, and makes messages of them.
         gateway: Whether it has a gateway besides, where everything is allowed on this host, and to
-            a viewer and an operator with tokens, but to see the parameter ``large``.
+            a viewer, an operator and an admin with tokens, but to see the parameter ``large``.
         control: Whether it has no node, and does nothing but watch its event loop.
         mover: What it asks to move, in a program of its own.
         wheels: The wheels that it has.
