@@ -21,7 +21,7 @@ from aionode._packages import here
 from aionode.errors import IdlError
 from aionode.idl._build import Builder, existing
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
-from aionode.idl._folder import TYPE_NAME, FileTexts, package_of, refuse
+from aionode.idl._folder import FileTexts, checked_stem, package_of, refuse
 from aionode.interfaces import shipped_packages
 from aionode.message import Interface
 
@@ -108,13 +108,14 @@ class NamedBuilder(Builder):
 def add_definitions(folder: Path, known: dict[str, Path]) -> None:
     """Add the files of a folder that define types which are not known yet.
 
-    A warning names two files that define one type differently.
+    A warning names two files that define one type differently, and one whose name is no type's.
     """
     for file in files_in(folder):
-        package = package_of_file(file)
-        if package is None:
+        try:
+            typename = f"{package_of(file)}/{file.parent.name}/{checked_stem(file)}"
+        except IdlError as error:  # no program can import it
+            warnings.warn(f"{error}; it is not used", RuntimeWarning, stacklevel=2)
             continue
-        typename = f"{package}/{file.parent.name}/{file.stem}"
         first = known.setdefault(typename, file)
         # A workspace may have its source and an installed copy.
         is_another = first is not file and first.suffix == file.suffix
@@ -136,17 +137,8 @@ def files_in(folder: Path) -> Iterator[Path]:
 
 
 def is_definition(name: str, kind: str) -> bool:
-    """Return whether a file has the name of a definition."""
-    stem, _, ending = name.partition(".")
-    return ending in {kind, "idl"} and TYPE_NAME.fullmatch(stem) is not None
-
-
-def package_of_file(file: Path) -> str | None:
-    """Return the package of a definition; None where no package can have that name."""
-    try:
-        return package_of(file)
-    except IdlError:  # no program can import it
-        return None
+    """Return whether a file has the ending of a definition, and is no hidden one."""
+    return name.endswith((f".{kind}", ".idl")) and not name.startswith(".")
 
 
 # The folders of this process

@@ -111,6 +111,17 @@ def test_one_definition_that_is_not_valid_stays_alone(
     assert go_to().Goal().tolerance == 0.05
 
 
+def test_a_file_whose_name_is_no_type_is_named(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The user would look for the type in vain."""
+    (workspace / "src/robot_interfaces/action/go_back.action").write_text(GO_TO)
+    monkeypatch.setenv("AIONODE_INTERFACES", str(workspace))
+
+    with pytest.warns(RuntimeWarning, match="'go_back' is not a valid type name.* it is not used"):
+        assert go_to().Goal().tolerance == 0.05
+
+
 async def test_a_class_of_rclpy_is_refused_with_the_line_to_write(node: Node) -> None:
     """Both classes have the same name, and the import looks like ROS's."""
     theirs: Any = type("GoTo", (), {"__module__": "robot_interfaces.action._go_to"})
