@@ -57,7 +57,7 @@ NAMES: Final = """
         TopicEndpointInfo TracebackType Waitable expand_topic_name math time
         validate_full_topic_name validate_namespace validate_node_name validate_parameter_name
         validate_topic_name
-    rclpy.parameter: ParameterMsg ParameterType ParameterValue
+    rclpy.parameter: ParameterMsg ParameterType ParameterValue yaml
     rclpy.parameter_client: CallbackGroup Client DescribeParameters Future GetParameterTypes
         GetParameters ListParameters MessageInfo Node ParameterEvent ParameterMsg
         QoSOverridingOptions SetParameters SetParametersAtomically Subscription
