@@ -173,10 +173,11 @@ class Listener:
     def install(self) -> None:
         """Handle the signals from now on, also those whose handler somebody has set meanwhile."""
         for number in SIGNALS:
-            current: object = signal.getsignal(number)
+            current: Any = signal.getsignal(number)
             is_left_alone = number == SIGQUIT and current is signal.SIG_DFL
             if current is not self and not is_left_alone:
-                self._before[number] = signal.signal(number, self)
+                self._before[number] = current  # first: a signal may wait for this handler
+                signal.signal(number, self)
 
     def remove(self) -> None:
         """Set the handlers again that were there, unless somebody has set others."""

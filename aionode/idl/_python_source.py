@@ -24,11 +24,13 @@ def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
     """Yield one import, and one for each renamed name, in the order of isort."""
     renamed = sorted(name for name in names if " as " in name)
     usual = sorted(set(names) - set(renamed), key=lambda name: import_order(name, ignore_case=True))
-    if usual:
-        line = f"from {module} import {', '.join(usual)}"
-        yield from [line] if len(line) <= WIDTH else wrapped(f"from {module} import (", usual, ")")
-    for name in renamed:
-        yield f"from {module} import {name}"
+    statements = [[name] for name in renamed] + [usual] * bool(usual)
+    for imported in sorted(statements, key=lambda each: import_order(each[0], ignore_case=True)):
+        line = f"from {module} import {', '.join(imported)}"
+        if len(line) <= WIDTH:
+            yield line
+        else:
+            yield from wrapped(f"from {module} import (", imported, ")")
 
 
 def import_order(name: str, *, ignore_case: bool = False) -> tuple[int, list[str | int]]:

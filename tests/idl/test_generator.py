@@ -192,7 +192,9 @@ def test_the_shipped_modules_are_what_the_generator_writes(tmp_path: Path) -> No
     (tmp_path / "aionode" / "__init__.py").touch()
 
     definitions = tmp_path / "definitions"
-    shutil.copytree(SOURCE, definitions, copy_function=shutil.copyfile)
+    for package in shipped_packages():  # the folder has more
+        if (SOURCE / package).is_dir():
+            shutil.copytree(SOURCE / package, definitions / package, copy_function=shutil.copyfile)
     for name, (before, constants_) in LATER_CONSTANTS.items():
         file = definitions / name
         file.write_text(file.read_text().replace(before, constants_ + before, 1))
