@@ -194,17 +194,17 @@ class SimpleFilter:
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
 
-    def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:  # noqa: N802  # ROS 2's name
+    def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:  # ROS 2's name
         """Call `cb` with each output, followed by `args`; return the number of the connection."""
         number = len(self.callbacks)
         self.callbacks[number] = (cb, args)
         return number
 
-    def _inner_callbacks(self) -> list[Callable[..., object]]:
+    def _SimpleFilter__inner_callbacks(self) -> list[Callable[..., object]]:
         """Return what was registered; the log names these functions instead of a filter's."""
         return [callback for callback, _ in self.callbacks.values()]
 
-    def signalMessage(self, *msg: Any) -> None:  # noqa: N802  # ROS 2's name
+    def signalMessage(self, *msg: Any) -> None:  # ROS 2's name
         """Call everything that was registered."""
         for callback, args in list(self.callbacks.values()):
             callback(*msg, *args)
@@ -236,7 +236,7 @@ class Subscriber(SimpleFilter):
             raise AttributeError(name)
         return getattr(self.sub, name)
 
-    def getTopic(self) -> str:  # noqa: N802  # ROS 2's name
+    def getTopic(self) -> str:  # ROS 2's name
         """Return the name of the topic, as it was given."""
         return self.topic
 
@@ -255,22 +255,22 @@ class Cache(SimpleFilter):
     ) -> None:
         super().__init__()
         self.cache_size = cache_size
-        self._stamps = Stamps(allow_headerless=allow_headerless)
-        self._entries: deque[tuple[Time, Any]] = deque(maxlen=cache_size)
+        self._Cache__stamps = Stamps(allow_headerless=allow_headerless)
+        self._Cache__entries: deque[tuple[Time, Any]] = deque(maxlen=cache_size)
         self.connectInput(f)
 
-    def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802  # ROS 2's name
+    def connectInput(self, f: SimpleFilter) -> None:  # ROS 2's name
         """Store another filter's messages as well."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
         """Store a message, and pass it on."""
-        stamp = self._stamps.of(msg)
+        stamp = self._Cache__stamps.of(msg)
         if stamp is not None:
-            self._entries.append((stamp, msg))
+            self._Cache__entries.append((stamp, msg))
             self.signalMessage(msg)
 
-    def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # noqa: N802  # ROS 2's name
+    def getInterval(self, from_stamp: Time, to_stamp: Time) -> list[Any]:  # ROS 2's name
         """Return the messages between two stamps, both included, in the order of their arrival.
 
         Raises:
@@ -279,35 +279,35 @@ class Cache(SimpleFilter):
         first, last = from_stamp.nanoseconds, to_stamp.nanoseconds
         if first > last:
             raise ValueError(f"from_stamp {from_stamp} is later than to_stamp {to_stamp}")
-        return [msg for stamp, msg in self._entries if first <= stamp.nanoseconds <= last]
+        return [msg for stamp, msg in self._Cache__entries if first <= stamp.nanoseconds <= last]
 
-    def getElemAfterTime(self, stamp: Time) -> Any:  # noqa: N802  # ROS 2's name
+    def getElemAfterTime(self, stamp: Time) -> Any:  # ROS 2's name
         """Return the first message at or after a stamp, or None."""
-        later = (msg for at, msg in self._entries if at.nanoseconds >= stamp.nanoseconds)
+        later = (msg for at, msg in self._Cache__entries if at.nanoseconds >= stamp.nanoseconds)
         return next(later, None)
 
-    def getElemBeforeTime(self, stamp: Time) -> Any:  # noqa: N802  # ROS 2's name
+    def getElemBeforeTime(self, stamp: Time) -> Any:  # ROS 2's name
         """Return the last message at or before a stamp, or None."""
         earlier = (
-            msg for at, msg in reversed(self._entries) if at.nanoseconds <= stamp.nanoseconds
+            msg for at, msg in reversed(self._Cache__entries) if at.nanoseconds <= stamp.nanoseconds
         )
         return next(earlier, None)
 
-    def getLastestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name, and its spelling
+    def getLastestTime(self) -> Time | None:  # ROS 2's name, and its spelling
         """Return the stamp of the last message, or None."""
-        return self._entries[-1][0] if self._entries else None
+        return self._Cache__entries[-1][0] if self._Cache__entries else None
 
-    def getLatestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name, spelled right
+    def getLatestTime(self) -> Time | None:  # ROS 2's name, spelled right
         """Return the stamp of the last message, or None."""
         return self.getLastestTime()
 
-    def getOldestTime(self) -> Time | None:  # noqa: N802  # ROS 2's name
+    def getOldestTime(self) -> Time | None:  # ROS 2's name
         """Return the stamp of the first message, or None."""
-        return self._entries[0][0] if self._entries else None
+        return self._Cache__entries[0][0] if self._Cache__entries else None
 
-    def getLast(self) -> Any:  # noqa: N802  # ROS 2's name
+    def getLast(self) -> Any:  # ROS 2's name
         """Return the last message, or None."""
-        return self._entries[-1][1] if self._entries else None
+        return self._Cache__entries[-1][1] if self._Cache__entries else None
 
 
 class Chain(SimpleFilter):
@@ -320,45 +320,68 @@ class Chain(SimpleFilter):
 
     def __init__(self) -> None:
         super().__init__()
-        self._filters: list[Any] = []
+        self.__filters: list[Any] = []
 
-    def connectInput(self, f: SimpleFilter) -> None:  # noqa: N802  # ROS 2's name
+    def connectInput(self, f: SimpleFilter) -> None:  # ROS 2's name
         """Take the output of another filter as input."""
         self.incoming_connection = f.registerCallback(self.add)
 
-    def addFilter(self, f: Any) -> int:  # noqa: N802  # ROS 2's name
+    def addFilter(self, f: Any) -> int:  # ROS 2's name
         """Append a filter; return its index."""
-        index = len(self._filters)
-        if self._filters:
-            f.connectInput(self._filters[-1])
-        self._filters.append(f)
-        f.registerCallback(self._on_output, index)
+        index = len(self.__filters)
+        if self.__filters:
+            f.connectInput(self.__filters[-1])
+        self.__filters.append(f)
+        f.registerCallback(self.__on_output, index)
         return index
 
-    def getFilter(self, index: int) -> Any:  # noqa: N802  # ROS 2's name
+    def getFilter(self, index: int) -> Any:  # ROS 2's name
         """Return a filter of the chain.
 
         Raises:
             KeyError: there is no filter of this index.
         """
-        if not 0 <= index < len(self._filters):
-            raise KeyError(f"the chain has {len(self._filters)} filters, and none of index {index}")
-        return self._filters[index]
+        if not 0 <= index < len(self.__filters):
+            raise KeyError(
+                f"the chain has {len(self.__filters)} filters, and none of index {index}"
+            )
+        return self.__filters[index]
 
     def add(self, *msg: Any) -> None:
         """Give a message to the first filter."""
-        if self._filters:
-            self._filters[0].add(*msg)
+        if self.__filters:
+            self.__filters[0].add(*msg)
         else:
             self.signalMessage(*msg)
 
-    def _on_output(self, *msg_and_index: Any) -> None:
+    def __on_output(self, *msg_and_index: Any) -> None:
         *msg, index = msg_and_index
-        if index == len(self._filters) - 1:
+        if index == len(self.__filters) - 1:
             self.signalMessage(*msg)
 
 
-class TimeSynchronizer(SimpleFilter):
+class Synchronizer(SimpleFilter):
+    """Calls back with one message of each input that belong together, as a matcher says."""
+
+    def __init__(self, fs: Sequence[SimpleFilter], matcher: Matcher, stamps: Stamps) -> None:
+        super().__init__()
+        self._Synchronizer__matcher = matcher
+        self._Synchronizer__stamps = stamps
+        self.connectInput(fs)
+
+    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # ROS 2's name
+        """Take one message of each of these filters; there are as many as before."""
+        self.input_connections = [f.registerCallback(self.add, index) for index, f in enumerate(fs)]
+
+    def add(self, msg: Any, index: int) -> None:
+        """Add a message of an input."""
+        stamp = self._Synchronizer__stamps.of(msg)
+        if stamp is not None:
+            for messages in self._Synchronizer__matcher.add(index, stamp.nanoseconds, msg):
+                self.signalMessage(*messages)
+
+
+class TimeSynchronizer(Synchronizer):
     """Calls back with one message of each input, all with the same stamp.
 
     Args:
@@ -367,26 +390,12 @@ class TimeSynchronizer(SimpleFilter):
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
-        super().__init__()
-        self._matcher = Matcher(len(fs), queue_size)
-        self._stamps = Stamps(allow_headerless=False)
-        self.connectInput(fs)
-
-    def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # noqa: N802  # ROS 2's name
-        """Take one message of each of these filters; there are as many as before."""
-        self.input_connections = [f.registerCallback(self.add, index) for index, f in enumerate(fs)]
+        super().__init__(fs, Matcher(len(fs), queue_size), Stamps(allow_headerless=False))
 
     @property
     def dropped(self) -> int:
         """The number of messages that were dropped before the others arrived."""
-        return self._matcher.dropped
-
-    def add(self, msg: Any, index: int) -> None:
-        """Add a message of an input."""
-        stamp = self._stamps.of(msg)
-        if stamp is not None:
-            for messages in self._matcher.add(index, stamp.nanoseconds, msg):
-                self.signalMessage(*messages)
+        return self._Synchronizer__matcher.dropped
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
@@ -411,10 +420,9 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         slop: float,
         allow_headerless: bool = False,
     ) -> None:
-        SimpleFilter.__init__(self)
-        self._matcher = ApproximateMatcher(len(fs), queue_size, slop)
-        self._stamps = Stamps(allow_headerless=allow_headerless)
-        self.connectInput(fs)
+        matcher = ApproximateMatcher(len(fs), queue_size, slop)
+        stamps = Stamps(allow_headerless=allow_headerless)
+        Synchronizer.__init__(self, fs, matcher, stamps)
 
 
 # Iteration

@@ -72,7 +72,7 @@ def lookups() -> None:
         for edge in range(EDGES):
             core.set_transform(stamped(f"f{edge}", f"f{edge + 1}", SECOND + step * 10**7), "bench")
     asked = Time(nanoseconds=5 * SECOND + 3_000_000)
-    tree = core._frames  # noqa: SLF001  # the arithmetic alone has no other name
+    tree = core._BufferCore__frames  # noqa: SLF001  # the arithmetic alone has no other name
     edges = walk(tree, "f0", f"f{EDGES}", asked.nanoseconds).up
     arithmetic_us = fastest_us(lambda: unit(chained(edges)))
     lookup_us = fastest_us(lambda: core.lookup_transform_core("f0", f"f{EDGES}", asked))

@@ -28,6 +28,8 @@ def is_private(name: str) -> bool:
 OTHERS: Final = frozenset(
     {
         "_AXES2TUPLE",  # tf_transformations
+        "_LoadComposableNodes__composable_node_descriptions",  # launch_ros
+        "_LoadComposableNodes__target_container",
         "_Service__service",  # rclpy
         "_TYPE_SUPPORT",  # the classes that ROS generates
         "_allFramesAsDot",  # tf2

@@ -16,7 +16,12 @@ from typing import Any
 from aionode._process.bounded_files import read_file
 from aionode.errors import AionodeError, LaunchFileError
 from aionode.launch._frontend import description_of
-from aionode.launch._launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
+from aionode.launch._launch.actions import (
+    DeclareLaunchArgument,
+    GroupAction,
+    IncludeLaunchDescription,
+    TimerAction,
+)
 from aionode.launch._launch.event_handler import entities_of
 from aionode.launch._launch.launch_context import KnownLater, LaunchContext
 from aionode.launch._launch.launch_description import LaunchDescription
@@ -270,7 +275,7 @@ def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
         if isinstance(step, Timer):
             entities = step.entities
         elif isinstance(step, Watch) and not step.ends:
-            entities = step.handler.known_entities() or []
+            entities = step.handler._BaseEventHandler__known_entities() or []
         else:
             continue
         if id(entities) in checked:
@@ -282,7 +287,7 @@ def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
 def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -> None:
     """Do what an entity says, and what it consists of."""
     if depth > MAX_DEPTH:
-        path, _, line = entity.where.rpartition(":")
+        path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
         problem = f"includes more than {MAX_DEPTH} levels; does a file include itself?"
         raise LaunchFileError(path, problem, line=int(line))
     try:
@@ -291,7 +296,7 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
         raise
     except LaunchFileError as error:
         if error.line is None and isinstance(entity, IncludeLaunchDescription):
-            path, _, line = entity.where.rpartition(":")
+            path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
             problem = f"includes {error.path}, which {error.problem}"
             raise LaunchFileError(path, problem, line=int(line)) from error
         raise
@@ -303,7 +308,7 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
 
 def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:
     """Return the error of an entity: at the line of the user's function, else at its own."""
-    path, _, line = entity.where.rpartition(":")
+    path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         if frame.filename.endswith((".launch.py", "_launch.py")):
             path, line = frame.filename, str(frame.lineno)
@@ -334,8 +339,10 @@ def arguments_of(description: Any, path: str) -> list[DeclareLaunchArgument]:
                     )
                 except Exception:  # noqa: BLE001, S112  # its path depends on arguments
                     continue
-            else:
-                collect(getattr(entity, "actions", ()), depth)
+            elif isinstance(entity, GroupAction):
+                collect(entity._GroupAction__actions, depth)
+            elif isinstance(entity, TimerAction):
+                collect(entity.actions, depth)
 
     collect([description], 0)
     return list(declared.values())

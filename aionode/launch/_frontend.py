@@ -35,18 +35,18 @@ def register_substitutions() -> None:
         "and": substitutions.AndSubstitution,
         "anon": substitutions.AnonName,
         "any": substitutions.AnySubstitution,
-        "command": substitutions.Command.of_words,
+        "command": substitutions.Command._Substitution__of_words,
         "dirname": substitutions.ThisLaunchFileDir,
-        "env": substitutions.EnvironmentVariable.of_words,
+        "env": substitutions.EnvironmentVariable._Substitution__of_words,
         "equals": substitutions.EqualsSubstitution,
-        "eval": substitutions.PythonExpression.of_words,
+        "eval": substitutions.PythonExpression._Substitution__of_words,
         "exec-in-pkg": launch_ros.substitutions.ExecutableInPackage,
         "file-content": substitutions.FileContent,
         "filename": substitutions.ThisLaunchFile,
-        "find-exec": substitutions.FindExecutable.of_words,
+        "find-exec": substitutions.FindExecutable._Substitution__of_words,
         "find-pkg-prefix": launch_ros.substitutions.FindPackagePrefix,
         "find-pkg-share": launch_ros.substitutions.FindPackageShare,
-        "for-var": substitutions.ForEachVar.of_words,
+        "for-var": substitutions.ForEachVar._Substitution__of_words,
         "if": substitutions.IfElseSubstitution,
         "index": substitutions.ForLoopIndex,
         "launch_log_dir": substitutions.LaunchLogDir,
@@ -54,9 +54,9 @@ def register_substitutions() -> None:
         "not": substitutions.NotSubstitution,
         "not-equals": substitutions.NotEqualsSubstitution,
         "or": substitutions.OrSubstitution,
-        "param": launch_ros.substitutions.Parameter.of_words,
+        "param": launch_ros.substitutions.Parameter._Substitution__of_words,
         "path-join": lambda *words: substitutions.PathJoinSubstitution(words),
-        "var": substitutions.LaunchConfiguration.of_words,
+        "var": substitutions.LaunchConfiguration._Substitution__of_words,
     }
     SUBSTITUTIONS.update(kinds)
 
@@ -194,7 +194,7 @@ def action_of(element: Element) -> actions.Action:
         raise
     except (TypeError, ValueError, KeyError, RuntimeError) as error:
         raise LaunchFileError(path, str(error), line=int(line)) from error
-    action.where = element.where
+    action._LaunchDescriptionEntity__where = element.where
     return action
 
 

@@ -65,7 +65,7 @@ def of_handler(
 ) -> Iterator[dict[str, Any]]:
     """Yield what an event handler does."""
     condition = f"at the {step.handler.describe()}"
-    entities = step.handler.known_entities()
+    entities = step.handler._BaseEventHandler__known_entities()
     if entities is None:
         yield {"when": [*when, condition], "calls": "a function"}
     else:

@@ -224,8 +224,8 @@ class RunningLaunch:
     ) -> Callable[[bytes, int], object] | None:
         """Return what is told of the output of a process; None if nobody asks for that."""
         listeners: list[Callable[[bytes, int], object]] = []
-        if step.action.cached_output:
-            listeners.append(step.action.note_output)
+        if step.action._ExecuteLocal__cached_output:
+            listeners.append(step.action._ExecuteLocal__note_output)
         if self._hears_output:
             listeners.append(events.note_output)
 
@@ -257,14 +257,14 @@ class RunningLaunch:
 
     async def _wait_for(self, step: Timer) -> None:
         await self._clock.sleep(step.period_sec)
-        if not (step.action.is_canceled or self._is_shutdown):
+        if not (step.action._TimerAction__is_canceled or self._is_shutdown):
             self.carry_out(evaluate(step.entities, step.context))
 
     async def _call(self, step: Call) -> None:
         """Run a coroutine; what it adds to its context is done at once."""
         step.context.steps = AtOnce(self.carry_out)
         try:
-            await step.action.call(step.context)
+            await step.action._OpaqueCoroutine__call(step.context)
         except Exception as error:
             raise failure_of(step.action, error) from error
 

@@ -70,21 +70,21 @@ class SimpleManagedEntity(ManagedEntity):
     """A managed entity that is enabled while its node is active, and does nothing else."""
 
     def __init__(self) -> None:
-        self._activated = False
+        self._SimpleManagedEntity__activated = False
 
     @property
     def is_activated(self) -> bool:
         """Whether it is enabled."""
-        return self._activated
+        return self._SimpleManagedEntity__activated
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # as inherited
         """Enable it."""
-        self._activated = True
+        self._SimpleManagedEntity__activated = True
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
         """Disable it."""
-        self._activated = False
+        self._SimpleManagedEntity__activated = False
         return TransitionCallbackReturn.SUCCESS
 
     @staticmethod

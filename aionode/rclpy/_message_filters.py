@@ -7,7 +7,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from aionode import message_filters
-from aionode.message_filters import Chain, SimpleFilter
+from aionode.message_filters import (
+    ApproximateMatcher,
+    Chain,
+    Matcher,
+    SimpleFilter,
+    Synchronizer,
+)
 from aionode.rclpy.clock import ROSClock
 from aionode.rclpy.time import Time
 
@@ -61,16 +67,28 @@ class Cache(message_filters.Cache):
     ) -> None:
         super().__init__(f, cache_size, allow_headerless)
         self.allow_headerless = allow_headerless
-        self._stamps = Stamps(allow_headerless=allow_headerless)
+        self._Cache__stamps = Stamps(allow_headerless=allow_headerless)
 
 
-class LockedSynchronizer(message_filters.TimeSynchronizer):
-    """A synchronizer whose inputs may be called in several threads at once."""
+class TimeSynchronizer(Synchronizer):
+    """Calls back with one message of each input, all with the same stamp.
 
-    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int, *options: Any) -> None:
+    The inputs may be called in several threads at once.
+    """
+
+    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
+        self._TimeSynchronizer__connect(fs, Matcher(len(fs), queue_size), queue_size)
+
+    def _TimeSynchronizer__connect(
+        self,
+        fs: Sequence[SimpleFilter],
+        matcher: Matcher,
+        queue_size: int,
+        allow_headerless: bool = False,
+    ) -> None:
         self.lock = threading.RLock()  # a callback may give another message to its own input
-        super().__init__(fs, queue_size, *options)
         self.queue_size = queue_size
+        super().__init__(fs, matcher, Stamps(allow_headerless=allow_headerless))
 
     def add(self, msg: Any, index: int) -> None:
         """Add a message of an input."""
@@ -78,18 +96,7 @@ class LockedSynchronizer(message_filters.TimeSynchronizer):
             super().add(msg, index)
 
 
-class TimeSynchronizer(LockedSynchronizer):
-    """Calls back with one message of each input, all with the same stamp.
-
-    The inputs may be called in several threads at once.
-    """
-
-    def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
-        super().__init__(fs, queue_size)
-        self._stamps = Stamps(allow_headerless=False)
-
-
-class ApproximateTimeSynchronizer(LockedSynchronizer, message_filters.ApproximateTimeSynchronizer):
+class ApproximateTimeSynchronizer(TimeSynchronizer):
     """Calls back with one message of each input, whose stamps differ by less than `slop` seconds.
 
     The inputs may be called in several threads at once.
@@ -102,6 +109,6 @@ class ApproximateTimeSynchronizer(LockedSynchronizer, message_filters.Approximat
         slop: float,
         allow_headerless: bool = False,
     ) -> None:
-        super().__init__(fs, queue_size, slop, allow_headerless)
         self.allow_headerless = allow_headerless
-        self._stamps = Stamps(allow_headerless=allow_headerless)
+        matcher = ApproximateMatcher(len(fs), queue_size, slop)
+        self._TimeSynchronizer__connect(fs, matcher, queue_size, allow_headerless)

@@ -27,20 +27,22 @@ class TransformBroadcaster:
         pub_tf: The publisher.
     """
 
-    _message: Any = TFMessage
+    _TransformBroadcaster__message: Any = TFMessage
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         qos = DEPTH if qos is None else qos
-        self.pub_tf = node.create_publisher(self._message, TOPIC, qos)
+        self.pub_tf = node.create_publisher(self._TransformBroadcaster__message, TOPIC, qos)
 
-    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # tf2's name
+    def sendTransform(
+        self, transform: TransformStamped | Iterable[TransformStamped]
+    ) -> None:  # tf2's name
         """Publish one transform, or several in one message; never waits.
 
         Raises:
             MessageError: it is not a transform (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
-        self.pub_tf.publish(self._message(transforms=listed(transform)))
+        self.pub_tf.publish(self._TransformBroadcaster__message(transforms=listed(transform)))
 
 
 class StaticTransformBroadcaster:
@@ -58,15 +60,19 @@ class StaticTransformBroadcaster:
         net_message: The message that was published last.
     """
 
-    _message: Any = TFMessage
+    _StaticTransformBroadcaster__message: Any = TFMessage
 
     def __init__(self, node: Node, qos: QoSProfile | int | None = None) -> None:
         if qos is None:
             qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        self.pub_tf = node.create_publisher(self._message, STATIC_TOPIC, qos)
-        self.net_message = self._message()
+        self.pub_tf = node.create_publisher(
+            self._StaticTransformBroadcaster__message, STATIC_TOPIC, qos
+        )
+        self.net_message = self._StaticTransformBroadcaster__message()
 
-    def sendTransform(self, transform: TransformStamped | Iterable[TransformStamped]) -> None:  # noqa: N802  # tf2's name
+    def sendTransform(
+        self, transform: TransformStamped | Iterable[TransformStamped]
+    ) -> None:  # tf2's name
         """Publish one or several transforms, with all that were sent before; never waits.
 
         Raises:
@@ -77,7 +83,7 @@ class StaticTransformBroadcaster:
             getattr(stamped, "child_frame_id", None): stamped  # `publish` refuses others
             for stamped in [*self.net_message.transforms, *listed(transform)]
         }
-        message = self._message(transforms=list(by_child.values()))
+        message = self._StaticTransformBroadcaster__message(transforms=list(by_child.values()))
         self.pub_tf.publish(message)
         self.net_message = message
 

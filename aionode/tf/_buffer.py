@@ -138,7 +138,7 @@ class Buffer(NodeBufferCore):
             asyncio.CancelledError: it was destroyed, and the current task is one of its own.
         """
         parts = ((target_frame, source_frame, time_ns_of(time)),)
-        return await self._wait(
+        return await self._BufferCore__wait(
             parts,
             partial(self.lookup_transform_core, target_frame, source_frame, time),
             timeout_sec,
@@ -162,7 +162,7 @@ class Buffer(NodeBufferCore):
             (target_frame, fixed_frame, time_ns_of(target_time)),
             (fixed_frame, source_frame, time_ns_of(source_time)),
         )
-        return await self._wait(
+        return await self._BufferCore__wait(
             parts,
             partial(
                 self.lookup_transform_full_core,
@@ -235,7 +235,7 @@ class Buffer(NodeBufferCore):
         Raises:
             InvalidArgumentException: a name is empty or begins with a slash (a ValueError).
         """
-        self._expect_names(target_frame, source_frame)
+        self._BufferCore__expect_names(target_frame, source_frame)
         return Changes(self, target_frame, source_frame)
 
     def filter(
@@ -255,5 +255,5 @@ class Buffer(NodeBufferCore):
             ValueError: `queue_size` is less than 1.
             InvalidArgumentException: the name is empty or begins with a slash (a ValueError).
         """
-        self._expect_names(target_frame)
+        self._BufferCore__expect_names(target_frame)
         return Filtered(self, subscription, target_frame, queue_size)

@@ -106,14 +106,18 @@ class BufferCore:
         cache_ns = duration_ns(cache_time)
         if cache_ns < 0:
             raise ValueError(f"cache_time is {cache_ns / S_TO_NS:g} s; it must not be negative")
-        self._cache_ns = cache_ns
-        self._room = Room()
-        self._frames = Tree()
-        self._routes = Routes(self._frames)
-        self._authorities: dict[str, str] = {}
-        self._rivals: dict[str, str] = {}  # for each frame, who has sent it before its authority
-        self._reported: set[tuple[str, str]] = set()  # kinds of refusals, and their senders
-        self._logger = get_logger("tf2_buffer")
+        self._BufferCore__cache_ns = cache_ns
+        self._BufferCore__room = Room()
+        self._BufferCore__frames = Tree()
+        self._BufferCore__routes = Routes(self._BufferCore__frames)
+        self._BufferCore__authorities: dict[str, str] = {}
+        self._BufferCore__rivals: dict[
+            str, str
+        ] = {}  # for each frame, who has sent it before its authority
+        self._BufferCore__reported: set[tuple[str, str]] = (
+            set()
+        )  # kinds of refusals, and their senders
+        self._BufferCore__logger = get_logger("tf2_buffer")
 
     # Setting
 
@@ -128,7 +132,7 @@ class BufferCore:
             transform: A TransformStamped.
             authority: Who has sent it.
         """
-        self._set(transform, authority, is_static=False)
+        self._BufferCore__set(transform, authority, is_static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
         """Add a transform that holds at any time; it replaces the history of the frame.
@@ -137,9 +141,9 @@ class BufferCore:
             transform: A TransformStamped.
             authority: Who has sent it.
         """
-        self._set(transform, authority, is_static=True)
+        self._BufferCore__set(transform, authority, is_static=True)
 
-    def _set(self, msg: Any, authority: str, *, is_static: bool) -> bool:  # the checks
+    def _BufferCore__set(self, msg: Any, authority: str, *, is_static: bool) -> bool:  # the checks
         """Add a transform; return whether it was taken."""
         header = msg.header
         child, parent = msg.child_frame_id, header.frame_id
@@ -159,29 +163,35 @@ class BufferCore:
         ):
             refusals = mistakes(child, parent, pose, authority)
             if refusals:
-                self._refuse(refusals, authority)
+                self._BufferCore__refuse(refusals, authority)
                 return False
         if excess > ROUNDING:
             pose = unit(pose)
-        frame = self._frames.get(child)
-        if frame is None or frame.is_static is not is_static or parent not in self._frames.names:
-            frame = self._admitted(child, parent, pose, authority, is_static=is_static)
+        frame = self._BufferCore__frames.get(child)
+        if (
+            frame is None
+            or frame.is_static is not is_static
+            or parent not in self._BufferCore__frames.names
+        ):
+            frame = self._BufferCore__admitted(child, parent, pose, authority, is_static=is_static)
             if frame is None:
                 return False
         before = frame.latest()
         stamp_ns = time_ns_of(header.stamp)
         if not frame.insert(stamp_ns, parent, pose):
             text = old_data(child, _frame_listing.seconds_text(stamp_ns), authority)
-            self._report("TF_OLD_DATA", authority, text)
+            self._BufferCore__report("TF_OLD_DATA", authority, text)
             return False
         if before is None or before[1] != parent:
-            self._routes.forget()
-        if self._authorities.get(child) != authority:
-            self._note_authority(child, authority)
-        self._changed(child, frame, before)
+            self._BufferCore__routes.forget()
+        if self._BufferCore__authorities.get(child) != authority:
+            self._BufferCore__note_authority(child, authority)
+        self._BufferCore__changed(child, frame, before)
         return True
 
-    def _changed(self, child: str, frame: Frame, before: tuple[int, str] | None) -> None:
+    def _BufferCore__changed(
+        self, child: str, frame: Frame, before: tuple[int, str] | None
+    ) -> None:
         """Take note that a frame has a new transform; for subclasses.
 
         Args:
@@ -190,68 +200,80 @@ class BufferCore:
             before: Its newest stamp and parent before that.
         """
 
-    def _admitted(
+    def _BufferCore__admitted(
         self, child: str, parent: str, pose: Pose, authority: str, *, is_static: bool
     ) -> Frame | None:
         """Return the place for a frame of the given kind; None if there is no room for its name."""
-        new = [name for name in (child, parent) if name not in self._frames.names]
+        new = [name for name in (child, parent) if name not in self._BufferCore__frames.names]
         if any(len(name) > MAX_NAME for name in new):
-            self._report("TF_LONG_FRAME_ID", authority, too_long(MAX_NAME, authority))
+            self._BufferCore__report("TF_LONG_FRAME_ID", authority, too_long(MAX_NAME, authority))
             return None
-        if len(self._frames.names) + len(new) > MAX_FRAMES:
-            self._report("TF_TOO_MANY_FRAMES", authority, too_many(MAX_FRAMES, authority))
+        if len(self._BufferCore__frames.names) + len(new) > MAX_FRAMES:
+            self._BufferCore__report(
+                "TF_TOO_MANY_FRAMES", authority, too_many(MAX_FRAMES, authority)
+            )
             return None
-        self._frames.names.update(dict.fromkeys(new))
-        frame = self._frames.get(child)
+        self._BufferCore__frames.names.update(dict.fromkeys(new))
+        frame = self._BufferCore__frames.get(child)
         if frame is None or frame.is_static is not is_static:
             if frame is not None:
                 frame.clear()  # gives back its room
             frame = (
-                StaticFrame(parent, pose) if is_static else DynamicFrame(self._cache_ns, self._room)
+                StaticFrame(parent, pose)
+                if is_static
+                else DynamicFrame(self._BufferCore__cache_ns, self._BufferCore__room)
             )
-            self._frames[child] = frame
-            self._routes.forget()
+            self._BufferCore__frames[child] = frame
+            self._BufferCore__routes.forget()
         return frame
 
-    def _note_authority(self, child: str, authority: str) -> None:
+    def _BufferCore__note_authority(self, child: str, authority: str) -> None:
         """Record who sends a frame, and report it if two do so in turns."""
-        last = self._authorities.get(child)
-        self._authorities[child] = authority
+        last = self._BufferCore__authorities.get(child)
+        self._BufferCore__authorities[child] = authority
         if last is None:
             return
-        if self._rivals.get(child) == authority:
+        if self._BufferCore__rivals.get(child) == authority:
             text = two_broadcasters(child, last, authority)
-            self._report("TF_TWO_BROADCASTERS", child, text)
-        self._rivals[child] = last
+            self._BufferCore__report("TF_TWO_BROADCASTERS", child, text)
+        self._BufferCore__rivals[child] = last
 
-    def _rename_authority(self, before: str, name: str) -> None:
+    def _BufferCore__rename_authority(self, before: str, name: str) -> None:
         """Give an authority another name in all that is recorded."""
-        for record in (self._authorities, self._rivals):
+        for record in (self._BufferCore__authorities, self._BufferCore__rivals):
             record.update(dict.fromkeys([c for c, by in record.items() if by == before], name))
-        for child in [c for c, by in self._rivals.items() if by == self._authorities[c]]:
-            del self._rivals[child]  # two publishers of one node
+        for child in [
+            c
+            for c, by in self._BufferCore__rivals.items()
+            if by == self._BufferCore__authorities[c]
+        ]:
+            del self._BufferCore__rivals[child]  # two publishers of one node
 
-    def _refuse(self, refusals: list[tuple[str, str]], authority: str) -> None:
+    def _BufferCore__refuse(self, refusals: list[tuple[str, str]], authority: str) -> None:
         """Log what is wrong with a transform."""
         for kind, text in refusals:
-            self._report(kind, authority, text, is_error=True)
+            self._BufferCore__report(kind, authority, text, is_error=True)
 
-    def _report(self, kind: str, about: str, text: str, *, is_error: bool = False) -> None:
+    def _BufferCore__report(
+        self, kind: str, about: str, text: str, *, is_error: bool = False
+    ) -> None:
         """Log a refusal, once for each kind and sender: others decide how often it comes."""
-        if (kind, about) in self._reported or len(self._reported) >= MAX_REPORTS:
+        if (kind, about) in self._BufferCore__reported or len(
+            self._BufferCore__reported
+        ) >= MAX_REPORTS:
             return
-        self._reported.add((kind, about))
+        self._BufferCore__reported.add((kind, about))
         text = shortened(escaped(text))
         if is_error:
-            self._logger.error(text)
+            self._BufferCore__logger.error(text)
         else:
-            self._logger.warning(text)
+            self._BufferCore__logger.warning(text)
 
     def clear(self) -> None:
         """Forget the history of all frames; static transforms and the names of frames stay."""
-        for frame in self._frames.values():
+        for frame in self._BufferCore__frames.values():
             frame.clear()
-        self._routes.forget()
+        self._BufferCore__routes.forget()
 
     # Looking up
 
@@ -267,14 +289,14 @@ class BufferCore:
             InvalidArgumentException: a name is empty or begins with a slash.
         """
         time_ns = time_ns_of(time)
-        route = self._routes.find(target_frame, source_frame)
+        route = self._BufferCore__routes.find(target_frame, source_frame)
         if route is not None:  # and so both frames exist
             stamp_ns = time_ns or route.latest_ns()
             pose = route.pose(stamp_ns)
             if pose is not None:
-                return self._message(target_frame, source_frame, unit(pose), stamp_ns)
-        pose, stamp_ns = self._lookup(target_frame, source_frame, time_ns)
-        return self._message(target_frame, source_frame, unit(pose), stamp_ns)
+                return self._BufferCore__message(target_frame, source_frame, unit(pose), stamp_ns)
+        pose, stamp_ns = self._BufferCore__lookup(target_frame, source_frame, time_ns)
+        return self._BufferCore__message(target_frame, source_frame, unit(pose), stamp_ns)
 
     def lookup_transform_full_core(
         self,
@@ -301,11 +323,13 @@ class BufferCore:
             ("source_frame", source_frame),
             ("fixed_frame", fixed_frame),
         ):
-            self._expect_frame(f"lookupTransform argument {argument}", frame)
-        inner, _ = self._lookup(fixed_frame, source_frame, time_ns_of(source_time))
-        outer, stamp_ns = self._lookup(target_frame, fixed_frame, time_ns_of(target_time))
+            self._BufferCore__expect_frame(f"lookupTransform argument {argument}", frame)
+        inner, _ = self._BufferCore__lookup(fixed_frame, source_frame, time_ns_of(source_time))
+        outer, stamp_ns = self._BufferCore__lookup(
+            target_frame, fixed_frame, time_ns_of(target_time)
+        )
         pose = unit(composed(unit(outer), unit(inner)))
-        return self._message(target_frame, source_frame, pose, stamp_ns)
+        return self._BufferCore__message(target_frame, source_frame, pose, stamp_ns)
 
     def can_transform_core(
         self, target_frame: str, source_frame: str, time: Any
@@ -315,10 +339,10 @@ class BufferCore:
         if target_frame == source_frame:
             return True, ""
         names = {"target_frame": target_frame, "source_frame": source_frame}
-        problem = self._problem_of(names)
+        problem = self._BufferCore__problem_of(names)
         if problem:
             return False, problem
-        failure = walk(self._frames, target_frame, source_frame, time_ns).failure
+        failure = walk(self._BufferCore__frames, target_frame, source_frame, time_ns).failure
         return failure is None, "" if failure is None else failure.text
 
     def can_transform_full_core(
@@ -330,7 +354,7 @@ class BufferCore:
         fixed_frame: str,
     ) -> tuple[bool, str]:
         """Return whether the transform between two times is available, and why not."""
-        problem = self._problem_of(
+        problem = self._BufferCore__problem_of(
             {
                 "target_frame": target_frame,
                 "source_frame": source_frame,
@@ -343,7 +367,7 @@ class BufferCore:
             (target_frame, fixed_frame, target_time),
             (fixed_frame, source_frame, source_time),
         ):
-            failure = walk(self._frames, target, source, time_ns_of(time)).failure
+            failure = walk(self._BufferCore__frames, target, source, time_ns_of(time)).failure
             if failure is not None:
                 return False, failure.text
         return True, ""
@@ -357,13 +381,13 @@ class BufferCore:
             TransformException: the frames are in different trees.
         """
         for frame in (target_frame, source_frame):
-            self._expect_frame("get_latest_common_time", frame)
-        latest = self._latest_ns(target_frame, source_frame)
+            self._BufferCore__expect_frame("get_latest_common_time", frame)
+        latest = self._BufferCore__latest_ns(target_frame, source_frame)
         if isinstance(latest, Failure):
             raise TransformException(latest.text)
         return Time(nanoseconds=max(latest, 0))
 
-    def lookupVelocityCore(  # noqa: N802  # tf2's name
+    def lookupVelocityCore(  # tf2's name
         self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
     ) -> Velocity:
         """Return the linear and angular velocity of a frame, seen from another.
@@ -387,7 +411,7 @@ class BufferCore:
             averaging_interval,
         )
 
-    def lookupVelocityFullCore(  # noqa: N802  # tf2's name
+    def lookupVelocityFullCore(  # tf2's name
         self,
         tracking_frame: str,
         observation_frame: str,
@@ -411,9 +435,11 @@ class BufferCore:
         Raises:
             TransformException: as `lookup_transform_core`.
         """
-        latest = self._latest_ns(observation_frame, tracking_frame)
+        latest = self._BufferCore__latest_ns(observation_frame, tracking_frame)
         return velocity(
-            lambda target, source, time_ns: unit(self._lookup(target, source, time_ns)[0]),
+            lambda target, source, time_ns: unit(
+                self._BufferCore__lookup(target, source, time_ns)[0]
+            ),
             0 if isinstance(latest, Failure) else latest,
             (tracking_frame, observation_frame, reference_frame, reference_point_frame),
             reference_point,
@@ -425,24 +451,28 @@ class BufferCore:
 
     def all_frames_as_yaml(self) -> str:
         """Return parent, broadcaster, rate and times of each frame, as YAML."""
-        return _frame_listing.frames_as_yaml(self._frames, self._authorities)
+        return _frame_listing.frames_as_yaml(
+            self._BufferCore__frames, self._BufferCore__authorities
+        )
 
     def all_frames_as_string(self) -> str:
         """Return one line for each frame, with its parent."""
-        return _frame_listing.frames_as_string(self._frames)
+        return _frame_listing.frames_as_string(self._BufferCore__frames)
 
-    def _allFramesAsDot(self, time: Any = None) -> str:  # noqa: N802  # tf2's name
+    def _allFramesAsDot(self, time: Any = None) -> str:  # tf2's name
         """Return the tree in the language of Graphviz; with a time, also how old the data is."""
         now_ns = 0 if time is None else time_ns_of(time)
-        return _frame_listing.frames_as_dot(self._frames, self._authorities, now_ns)
+        return _frame_listing.frames_as_dot(
+            self._BufferCore__frames, self._BufferCore__authorities, now_ns
+        )
 
-    def _frameExists(self, frame_id: str) -> bool:  # noqa: N802  # tf2's name
+    def _frameExists(self, frame_id: str) -> bool:  # tf2's name
         """Return whether a frame was ever mentioned, as child or parent."""
-        return frame_id in self._frames.names
+        return frame_id in self._BufferCore__frames.names
 
-    def _getFrameStrings(self) -> list[str]:  # noqa: N802  # tf2's name
+    def _getFrameStrings(self) -> list[str]:  # tf2's name
         """Return the names of all frames that were ever mentioned."""
-        return list(self._frames.names)
+        return list(self._BufferCore__frames.names)
 
     def _chain(
         self,
@@ -458,7 +488,7 @@ class BufferCore:
             TransformException: as `lookup_transform_full_core`.
         """
         return chain(
-            self._frames,
+            self._BufferCore__frames,
             (target_frame, time_ns_of(target_time)),
             (source_frame, time_ns_of(source_time)),
             fixed_frame,
@@ -466,41 +496,43 @@ class BufferCore:
 
     # Within
 
-    def _lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
+    def _BufferCore__lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
         """Return the pose of `source` in `target`, and its stamp."""
         if target == source:  # tf2 answers for frames that do not exist, too
-            frame = self._frames.get(target)
+            frame = self._BufferCore__frames.get(target)
             if time_ns == 0 and frame is not None:
                 time_ns = frame.newest_ns
             return Walk(time_ns).pose(), time_ns
-        self._expect_frame("lookupTransform argument target_frame", target)
-        self._expect_frame("lookupTransform argument source_frame", source)
-        result = self._find(target, source, time_ns)
+        self._BufferCore__expect_frame("lookupTransform argument target_frame", target)
+        self._BufferCore__expect_frame("lookupTransform argument source_frame", source)
+        result = self._BufferCore__find(target, source, time_ns)
         if isinstance(result, Failure):
             raise result.exception()
         return result
 
-    def _find(self, target: str, source: str, time_ns: int) -> tuple[Pose, int] | Failure:
+    def _BufferCore__find(
+        self, target: str, source: str, time_ns: int
+    ) -> tuple[Pose, int] | Failure:
         """Return the pose of one existing frame in another, and its stamp, or why there is none."""
-        route = self._routes.find(target, source)
+        route = self._BufferCore__routes.find(target, source)
         if route is not None:
             stamp_ns = time_ns or route.latest_ns()
             pose = route.pose(stamp_ns)
             if pose is not None:
                 return pose, stamp_ns
-        way = walk(self._frames, target, source, time_ns)
+        way = walk(self._BufferCore__frames, target, source, time_ns)
         return way.failure or (way.pose(), way.time_ns)
 
-    def _latest_ns(self, target: str, source: str) -> int | Failure:
+    def _BufferCore__latest_ns(self, target: str, source: str) -> int | Failure:
         """Return the newest time at which a transform is available."""
         if target == source:
-            frame = self._frames.get(source)
+            frame = self._BufferCore__frames.get(source)
             return 0 if frame is None else frame.newest_ns
-        return latest_common_ns(self._frames, target, source)
+        return latest_common_ns(self._BufferCore__frames, target, source)
 
-    def _expect_frame(self, subject: str, frame: str) -> None:
+    def _BufferCore__expect_frame(self, subject: str, frame: str) -> None:
         """Raise the error of tf2 if a frame does not exist."""
-        if frame in self._frames.names:
+        if frame in self._BufferCore__frames.names:
             return
         if not frame or frame.startswith("/"):
             wrong = "cannot start with a '/'" if frame else "cannot be empty"
@@ -509,10 +541,10 @@ class BufferCore:
             )
         raise LookupException(f'"{frame}" passed to {subject} does not exist. ')
 
-    def _problem_of(self, arguments: dict[str, str]) -> str:
+    def _BufferCore__problem_of(self, arguments: dict[str, str]) -> str:
         """Return why one of some frames cannot be asked for; empty if all can."""
         for argument, frame in arguments.items():
-            if frame in self._frames.names:
+            if frame in self._BufferCore__frames.names:
                 continue
             wrong = "frame does not exist"
             if not frame:
@@ -524,7 +556,9 @@ class BufferCore:
             )
         return ""
 
-    def _message(self, target: str, source: str, pose: Pose, stamp_ns: int) -> TransformStamped:
+    def _BufferCore__message(
+        self, target: str, source: str, pose: Pose, stamp_ns: int
+    ) -> TransformStamped:
         sec, nanosec = divmod(stamp_ns, S_TO_NS)
         x, y, z, i, j, k, w = pose
         # In the order of the fields: with their names, which the types ask for, this takes three

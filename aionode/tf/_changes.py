@@ -33,12 +33,12 @@ class Changes:
     async def __anext__(self) -> TransformStamped:
         """Wait for a transform that differs from the last one. Cancelling loses nothing."""
         buffer = self._buffer
-        while not buffer._entity.destroyed:
-            latest = buffer._latest_pose(self._target, self._source)
+        while not buffer._BufferCore__entity.destroyed:
+            latest = buffer._BufferCore__latest_pose(self._target, self._source)
             if latest is not None and latest != self._last:
                 self._last = latest
                 pose, stamp_ns = latest
-                return buffer._message(self._target, self._source, pose, stamp_ns)
+                return buffer._BufferCore__message(self._target, self._source, pose, stamp_ns)
             await self._change()
         raise StopAsyncIteration
 
@@ -46,16 +46,16 @@ class Changes:
         """Wait until a frame on the way has new data."""
         buffer = self._buffer
         changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
-        tree = buffer._frames
+        tree = buffer._BufferCore__frames
         frames = {*ancestors(tree, self._source), *ancestors(tree, self._target)}
         for frame in frames:
-            buffer._followers.setdefault(frame, {})[changed] = None
+            buffer._BufferCore__followers.setdefault(frame, {})[changed] = None
         try:
             await changed
         finally:
             for frame in frames:
-                waiting = buffer._followers.get(frame)
+                waiting = buffer._BufferCore__followers.get(frame)
                 if waiting is not None:
                     waiting.pop(changed, None)
                     if not waiting:
-                        del buffer._followers[frame]
+                        del buffer._BufferCore__followers[frame]

@@ -53,7 +53,7 @@ class Filtered(Generic[MsgT]):
         self._wake: asyncio.Future[None] | None = None
         self._turn_ends_ns = 0
         # An iterator that is left behind leaves no waiters in the buffer.
-        finalize(self, remove_all, buffer._waiters, self._waiting)
+        finalize(self, remove_all, buffer._BufferCore__waiters, self._waiting)
 
     @property
     def waiting(self) -> int:
@@ -77,7 +77,7 @@ class Filtered(Generic[MsgT]):
                 self._take(subscription._take())
             if self._ready:
                 return self._ready.popleft()
-            if subscription.destroyed or self._buffer._entity.destroyed:
+            if subscription.destroyed or self._buffer._BufferCore__entity.destroyed:
                 raise StopAsyncIteration
             self._wake = asyncio.get_running_loop().create_future()
             await subscription._reader.wait(self._wake)
@@ -100,7 +100,7 @@ class Filtered(Generic[MsgT]):
 
         waiter = Waiter(((self._target, source, time_ns_of(header.stamp)),), end)
         self._waiting[waiter] = None
-        self._buffer._waiters.add(waiter)
+        self._buffer._BufferCore__waiters.add(waiter)
 
     def _end(self, waiter: Waiter, msg: Any, source: str, failure: Failure | None) -> None:
         """Take a message whose wait has ended."""
@@ -120,7 +120,7 @@ class Filtered(Generic[MsgT]):
             return
         waiter = next(iter(self._waiting))
         del self._waiting[waiter]
-        self._buffer._waiters.remove(waiter)
+        self._buffer._BufferCore__waiters.remove(waiter)
         self._count(FULL, waiter.parts[0][1], waiter.parts[0][2])
 
     def _drop(self, msg: Any, reason: str) -> None:
@@ -131,7 +131,7 @@ class Filtered(Generic[MsgT]):
         self.dropped[reason] += 1
         if self.dropped[reason] == 1:
             topic = self._subscription.topic_name
-            self._buffer._logger.warning(
+            self._buffer._BufferCore__logger.warning(
                 f"Message Filter dropping message: frame '{frame}' at time {seconds_text(time_ns)} "
                 f"for reason '{reason}'; further ones of {topic} are only counted"
             )

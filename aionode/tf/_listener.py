@@ -103,7 +103,7 @@ class TransformListener:
         if present and endpoint.gid in self.__unnamed:
             self.__unnamed.discard(endpoint.gid)
             name = endpoint.node.fully_qualified_name
-            self.buffer._rename_authority(nameless(endpoint.gid), name)
+            self.buffer._BufferCore__rename_authority(nameless(endpoint.gid), name)
 
     def unregister(self) -> None:
         """Destroy both subscriptions."""

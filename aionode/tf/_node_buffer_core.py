@@ -56,12 +56,12 @@ class NodeBufferCore(BufferCore):
         tf_static_topic: str = STATIC_TOPIC,
     ) -> None:
         super().__init__(cache_time)
-        self._logger = node.get_logger()
-        self._clock: Clock = node.get_clock()
-        self._waiters = Waiters(self._frames, self._cache_ns)
-        self._followers: dict[str, dict[asyncio.Future[None], None]] = {}
+        self._BufferCore__logger = node.get_logger()
+        self._BufferCore__clock: Clock = node.get_clock()
+        self._BufferCore__waiters = Waiters(self._BufferCore__frames, self._BufferCore__cache_ns)
+        self._BufferCore__followers: dict[str, dict[asyncio.Future[None], None]] = {}
         # Each pending wait, with what ends it and, if it has a limit, its length in nanoseconds.
-        self._pending: dict[asyncio.Future[Any], tuple[int, Alarm | None]] = {}
+        self._BufferCore__pending: dict[asyncio.Future[Any], tuple[int, Alarm | None]] = {}
         self.listener = TransformListener(
             self,
             node,
@@ -70,111 +70,119 @@ class NodeBufferCore(BufferCore):
             tf_topic=tf_topic,
             tf_static_topic=tf_static_topic,
         )
-        self._entity = node._Node__add_entity(
-            BufferEnd(f"transform buffer of {node.get_fully_qualified_name()}", self._end_waits)
+        self._BufferCore__entity = node._Node__add_entity(
+            BufferEnd(
+                f"transform buffer of {node.get_fully_qualified_name()}",
+                self._BufferCore__end_waits,
+            )
         )
-        self._jumps = self._clock.create_jump_callback(
+        self._BufferCore__jumps = self._BufferCore__clock.create_jump_callback(
             JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1)),
-            post_callback=self._on_jump,
+            post_callback=self._BufferCore__on_jump,
         )
 
     # For subclasses
 
-    async def _wait(
+    async def _BufferCore__wait(
         self,
         parts: tuple[Part, ...],
         look_up: Callable[[], TransformStamped],
         timeout_sec: float | None,
     ) -> TransformStamped:
-        self._entity._refuse_if_destroyed("wait for a transform")
-        self._expect_names(*(frame for part in parts for frame in part[:2]))
+        self._BufferCore__entity._refuse_if_destroyed("wait for a transform")
+        self._BufferCore__expect_names(*(frame for part in parts for frame in part[:2]))
         ended: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
         # The answer is taken when it is there: until the task runs, the data may have gone.
         waiter = Waiter(
             parts,
             lambda failure: settle(ended, look_up if failure is None else failure.exception()),
         )
-        self._waiters.add(waiter)
+        self._BufferCore__waiters.add(waiter)
         if not ended.done():
             limit_ns = 0 if timeout_sec is None else max(round(timeout_sec * S_TO_NS), 1)
-            self._pending[ended] = limit_ns, self._alarm(ended, limit_ns)
+            self._BufferCore__pending[ended] = limit_ns, self._BufferCore__alarm(ended, limit_ns)
         try:
             result = await ended
         except asyncio.CancelledError as cancelled:
-            cancelled.add_note(self._reason(parts))
+            cancelled.add_note(self._BufferCore__reason(parts))
             raise
         finally:
-            self._waiters.remove(waiter)
-            _, alarm = self._pending.pop(ended, (0, None))
+            self._BufferCore__waiters.remove(waiter)
+            _, alarm = self._BufferCore__pending.pop(ended, (0, None))
             if alarm is not None:
                 alarm.cancel()
         if result is DESTROYED:
-            raise self._entity._end_of_wait()
+            raise self._BufferCore__entity._end_of_wait()
         if result is TIMED_OUT:
-            raise TimeoutException(f"{self._reason(parts)}; waited {timeout_sec:g} s")
+            raise TimeoutException(f"{self._BufferCore__reason(parts)}; waited {timeout_sec:g} s")
         return result  # type: ignore[no-any-return]  # a future has one type only
 
-    def _reason(self, parts: tuple[Part, ...]) -> str:
+    def _BufferCore__reason(self, parts: tuple[Part, ...]) -> str:
         """Return what is waited for, and why it is not there."""
-        failure, _ = problem_of(self._frames, parts)
+        failure, _ = problem_of(self._BufferCore__frames, parts)
         reason = "it is available now" if failure is None else failure.text
         for part in parts:
             for frame in part[:2]:
-                if frame not in self._frames.names:
+                if frame not in self._BufferCore__frames.names:
                     reason = f'frame "{frame}" does not exist; no transform has named it'
         target, source = parts[0][0], parts[-1][1]
         at = seconds_text(parts[-1][2]) if parts[-1][2] else "the latest time"
         return f"Timed out waiting for transform from [{source}] to [{target}] at {at}: {reason}"
 
-    def _expect_names(self, *frames: str) -> None:
+    def _BufferCore__expect_names(self, *frames: str) -> None:
         """Refuse names that no frame can have, as `lookup_transform_core` does."""
         for frame in frames:
             if not frame or frame.startswith("/"):
-                self._expect_frame("wait_for_transform", frame)
+                self._BufferCore__expect_frame("wait_for_transform", frame)
 
-    def _alarm(self, ended: asyncio.Future[Any], limit_ns: int) -> Alarm | None:
+    def _BufferCore__alarm(self, ended: asyncio.Future[Any], limit_ns: int) -> Alarm | None:
         """Return what ends a wait when its limit is over, on the node's clock."""
         if not limit_ns:
             return None
-        until_ns = self._clock.now_ns() + limit_ns
-        return self._clock.call_at(until_ns, lambda: settle(ended, lambda: TIMED_OUT))
+        until_ns = self._BufferCore__clock.now_ns() + limit_ns
+        return self._BufferCore__clock.call_at(until_ns, lambda: settle(ended, lambda: TIMED_OUT))
 
-    def _changed(self, child: str, frame: Frame, before: tuple[int, str] | None) -> None:
-        self._waiters.changed(child, frame, before)
-        if self._followers:
-            for follower in self._followers.pop(child, ()):
+    def _BufferCore__changed(
+        self, child: str, frame: Frame, before: tuple[int, str] | None
+    ) -> None:
+        self._BufferCore__waiters.changed(child, frame, before)
+        if self._BufferCore__followers:
+            for follower in self._BufferCore__followers.pop(child, ()):
                 settle(follower, lambda: None)
 
-    def _latest_pose(self, target: str, source: str) -> tuple[Pose, int] | None:
+    def _BufferCore__latest_pose(self, target: str, source: str) -> tuple[Pose, int] | None:
         """Return the latest pose of a frame and its stamp; None if there is none."""
-        result = self._find(target, source, 0)
+        result = self._BufferCore__find(target, source, 0)
         return None if isinstance(result, Failure) else (unit(result[0]), result[1])
 
     def clear(self) -> None:
         """Forget the history of all frames; static transforms, names and waits stay."""
         super().clear()
-        self._waiters.ask_all()
+        self._BufferCore__waiters.ask_all()
 
-    def _on_jump(self, jump: TimeJump) -> None:
+    def _BufferCore__on_jump(self, jump: TimeJump) -> None:
         """Clear the buffer: its transforms are from another time."""
-        self._logger.warning("Detected jump back in time. Clearing tf buffer.")
+        self._BufferCore__logger.warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
         if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
             return
-        for ended, (limit_ns, alarm) in list(self._pending.items()):
+        for ended, (limit_ns, alarm) in list(self._BufferCore__pending.items()):
             if alarm is not None:  # it belongs to the time that was followed before
                 alarm.cancel()
-                self._pending[ended] = limit_ns, self._alarm(ended, limit_ns)
+                self._BufferCore__pending[ended] = (
+                    limit_ns,
+                    self._BufferCore__alarm(ended, limit_ns),
+                )
 
-    def _end_waits(self) -> None:
-        self._jumps.unregister()
+    def _BufferCore__end_waits(self) -> None:
+        self._BufferCore__jumps.unregister()
         self.listener.unregister()
-        for ended in list(self._pending):
+        for ended in list(self._BufferCore__pending):
             settle(ended, lambda: DESTROYED)
-        for followers in list(self._followers.values()):
+        for followers in list(self._BufferCore__followers.values()):
             for follower in list(followers):
                 settle(follower, lambda: None)
-        self._followers.clear()
+        self._BufferCore__followers.clear()
 
 
 TIMED_OUT: Any = object()

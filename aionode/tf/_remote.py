@@ -61,17 +61,17 @@ class BufferServer:
     """
 
     def __init__(self, buffer: Buffer, node: Node, ns: str = SERVER) -> None:
-        self._buffer = buffer
+        self._BufferServer__buffer = buffer
         self.server = node.create_action_server(
             LookupTransform,
             ns,
-            self._look_up,
+            self._BufferServer__look_up,
             cancel_callback=lambda _: CancelResponse.ACCEPT,
             on_client_lost="cancel",
         )
-        self.srv = node.create_service(FrameGraph, FRAMES_SERVICE, self._frames)
+        self.srv = node.create_service(FrameGraph, FRAMES_SERVICE, self._BufferServer__frames)
 
-    async def _look_up(
+    async def _BufferServer__look_up(
         self,
         handle: ServerGoalHandle[
             LookupTransform.Goal, LookupTransform.Result, LookupTransform.Feedback
@@ -79,7 +79,9 @@ class BufferServer:
     ) -> LookupTransform.Result:
         """Answer one question, as soon as the transform is there, or its time is over."""
         try:
-            result = LookupTransform.Result(transform=await self._transform_of(handle.request))
+            result = LookupTransform.Result(
+                transform=await self._BufferServer__transform_of(handle.request)
+            )
         except TransformException as error:
             code = next(code for kind, code in CODES if isinstance(error, kind))
             result = LookupTransform.Result(error=TF2Error(error=code, error_string=str(error)))
@@ -90,10 +92,10 @@ class BufferServer:
         handle.succeed(result)
         return result
 
-    async def _transform_of(self, goal: LookupTransform.Goal) -> TransformStamped:
+    async def _BufferServer__transform_of(self, goal: LookupTransform.Goal) -> TransformStamped:
         limit = goal.timeout
         timeout_sec = limit.sec + limit.nanosec / S_TO_NS
-        buffer = self._buffer
+        buffer = self._BufferServer__buffer
         if goal.advanced:
             two_times = (
                 goal.target_frame,
@@ -110,11 +112,11 @@ class BufferServer:
             return buffer.lookup_transform(*question)
         return await buffer.wait_for_transform(*question, timeout_sec=timeout_sec)
 
-    def _frames(
+    def _BufferServer__frames(
         self, request: FrameGraph.Request, response: FrameGraph.Response
     ) -> FrameGraph.Response:
         del request
-        response.frame_yaml = self._buffer.all_frames_as_yaml()
+        response.frame_yaml = self._BufferServer__buffer.all_frames_as_yaml()
         return response
 
     def destroy(self) -> None:
@@ -137,7 +139,7 @@ class BufferClient:
         self, node: Node, ns: str = SERVER, *, timeout_padding: Duration | float = PADDING_SEC
     ) -> None:
         padding = timeout_padding
-        self._padding_sec = (
+        self._BufferClient__padding_sec = (
             padding.nanoseconds / S_TO_NS if isinstance(padding, Duration) else padding
         )
         self.action_client = node.create_action_client(LookupTransform, ns)
@@ -171,7 +173,7 @@ class BufferClient:
             source_time=time_msg(time),
             timeout=Duration(seconds=timeout_sec).to_msg(),
         )
-        return await self._ask(goal)
+        return await self._BufferClient__ask(goal)
 
     async def lookup_transform_full(
         self,
@@ -197,7 +199,7 @@ class BufferClient:
             fixed_frame=fixed_frame,
             advanced=True,
         )
-        return await self._ask(goal)
+        return await self._BufferClient__ask(goal)
 
     async def can_transform(
         self,
@@ -231,10 +233,12 @@ class BufferClient:
         result: StampedT = apply(object_stamped, stamped)
         return result
 
-    async def _ask(self, goal: LookupTransform.Goal) -> TransformStamped:
-        limit_sec = goal.timeout.sec + goal.timeout.nanosec / S_TO_NS + self._padding_sec
+    async def _BufferClient__ask(self, goal: LookupTransform.Goal) -> TransformStamped:
+        limit_sec = (
+            goal.timeout.sec + goal.timeout.nanosec / S_TO_NS + self._BufferClient__padding_sec
+        )
         client = self.action_client
-        if not await client.wait_for_server(self._padding_sec):
+        if not await client.wait_for_server(self._BufferClient__padding_sec):
             raise TimeoutException("The BufferServer is not ready.")
         try:
             async with asyncio.timeout(limit_sec):

@@ -113,10 +113,10 @@ def wrong_stamps(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
 
 def two_broadcasters(buffer: Buffer) -> Iterator[Finding]:
     """Yield a finding for each frame that two nodes send."""
-    for frame, rival in buffer._rivals.items():
+    for frame, rival in buffer._BufferCore__rivals.items():
         yield Finding(
             "hint",
             frame,
-            f"{rival} and {buffer._authorities[frame]} both send its transform",
+            f"{rival} and {buffer._BufferCore__authorities[frame]} both send its transform",
             "stop one of them, or rename its frame",
         )

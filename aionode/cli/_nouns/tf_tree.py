@@ -61,7 +61,7 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
         now_ns: The time, to tell how old they are.
     """
     edges = []
-    for name, frame in sorted(core._frames.items()):
+    for name, frame in sorted(core._BufferCore__frames.items()):
         latest = frame.latest()
         if latest is None:
             continue
@@ -71,7 +71,7 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
                 child=name,
                 parent=latest[1],
                 static=static,
-                broadcaster=core._authorities.get(name, ""),
+                broadcaster=core._BufferCore__authorities.get(name, ""),
                 rate_hz=0.0 if static or len(frame) < 2 else rate_of(frame),
                 age_sec=0.0 if static else (now_ns - latest[0]) / 1e9,
             )

@@ -528,7 +528,9 @@ def callback_name(callback: Callable[..., Any]) -> str:
     if isinstance(callback, functools.partial):
         return callback_name(callback.func)
     owner = getattr(callback, "__self__", None)
-    inner = getattr(type(owner), "_inner_callbacks", None)  # of `aionode.message_filters`
+    inner = getattr(
+        type(owner), "_SimpleFilter__inner_callbacks", None
+    )  # of `aionode.message_filters`
     names = [] if inner is None else [callback_name(function) for function in inner(owner)]
     return ", ".join(names) or getattr(callback, "__qualname__", repr(callback))
 

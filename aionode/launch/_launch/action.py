@@ -23,16 +23,16 @@ class Action(LaunchDescriptionEntity):
                 f"{type(self).__name__}: condition= is {condition!r}, and not a condition; "
                 "launch.conditions has them, such as IfCondition('true')"
             )
-        self._condition = condition
+        self._Action__condition = condition
 
     @property
     def condition(self) -> Condition | None:
         """The condition."""
-        return self._condition
+        return self._Action__condition
 
     def visit(self, context: LaunchContext) -> Any:
         """Do it if the condition holds."""
-        if self._condition is not None and not self._condition.evaluate(context):
+        if self._Action__condition is not None and not self._Action__condition.evaluate(context):
             return None
         entities = self.execute(context)
         context.steps.append(Completed(self))

@@ -49,11 +49,11 @@ class IfCondition(Condition):
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         super().__init__()
-        self.expression = normalize_to_list_of_substitutions(predicate_expression)
+        self._IfCondition__expression = normalize_to_list_of_substitutions(predicate_expression)
 
     def evaluate(self, context: LaunchContext) -> bool:
         """Return whether it holds."""
-        return evaluate_condition_expression(context, self.expression)
+        return evaluate_condition_expression(context, self._IfCondition__expression)
 
 
 class UnlessCondition(IfCondition):
@@ -71,15 +71,15 @@ class LaunchConfigurationEquals(Condition):
         self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None
     ) -> None:
         super().__init__()
-        self.name = launch_configuration_name
-        self.expected = expected_value
+        self._LaunchConfigurationEquals__name = launch_configuration_name
+        self._LaunchConfigurationEquals__expected = expected_value
 
     def evaluate(self, context: LaunchContext) -> bool:
         """Return whether it holds."""
-        value = context.launch_configurations.get(self.name)
-        if self.expected is None or value is None:
-            return value is None and self.expected is None
-        expected = normalize_to_list_of_substitutions(self.expected)
+        value = context.launch_configurations.get(self._LaunchConfigurationEquals__name)
+        if self._LaunchConfigurationEquals__expected is None or value is None:
+            return value is None and self._LaunchConfigurationEquals__expected is None
+        expected = normalize_to_list_of_substitutions(self._LaunchConfigurationEquals__expected)
         return bool(value == perform_substitutions(context, expected))
 
 

@@ -42,25 +42,31 @@ class BaseEventHandler:
     def __init__(
         self, *, matcher: Callable[[Event], bool], handle_once: bool = False, reaction: Any = None
     ) -> None:
-        self._matcher = matcher
+        self._BaseEventHandler__matcher = matcher
         self.handle_once = handle_once
-        self._function: Callable[..., Any] | None = reaction if callable(reaction) else None
-        self._entities = None if callable(reaction) else entities_of(reaction)
+        self._BaseEventHandler__function: Callable[..., Any] | None = (
+            reaction if callable(reaction) else None
+        )
+        self._BaseEventHandler__entities = None if callable(reaction) else entities_of(reaction)
 
     def matches(self, event: Event) -> bool:
         """Return whether an event concerns this handler."""
-        return bool(self._matcher(event))
+        return bool(self._BaseEventHandler__matcher(event))
 
     def handle(self, event: Event, context: LaunchContext) -> Any:
         """Handle the event, and return the entities that are to be done, or None."""
         context.extend_locals({"event": event})
         if self.handle_once:
             context.unregister_event_handler(self)
-        return self._entities if self._function is None else self._function(event, context)
+        return (
+            self._BaseEventHandler__entities
+            if self._BaseEventHandler__function is None
+            else self._BaseEventHandler__function(event, context)
+        )
 
-    def known_entities(self) -> list[LaunchDescriptionEntity] | None:
+    def _BaseEventHandler__known_entities(self) -> list[LaunchDescriptionEntity] | None:
         """Return the entities that are done at any event; None if a function decides."""
-        return self._entities
+        return self._BaseEventHandler__entities
 
     def describe(self) -> str:
         """Return to what it reacts, such as ``exit of talker-1``."""
@@ -78,4 +84,4 @@ class EventHandler(BaseEventHandler):
     @property
     def entities(self) -> list[LaunchDescriptionEntity] | None:
         """The actions that the event starts."""
-        return self._entities
+        return self._BaseEventHandler__entities

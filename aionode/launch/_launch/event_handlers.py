@@ -26,7 +26,7 @@ __all__ = [
 class OnActionEventBase(BaseEventHandler):
     """Reacts to what happens to one action, to those that a function names, or to all."""
 
-    happens = "an event"
+    _OnActionEventBase__happens = "an event"
 
     def __init__(
         self,
@@ -49,32 +49,32 @@ class OnActionEventBase(BaseEventHandler):
             return is_test and bool(action_matcher(action))
 
         super().__init__(matcher=matcher, reaction=on_event, **options)
-        self.action_matcher = action_matcher
+        self._OnActionEventBase__action_matcher = action_matcher
 
     def describe(self) -> str:
         """Return what happens to whom."""
-        target = self.action_matcher
+        target, happens = self._OnActionEventBase__action_matcher, self._OnActionEventBase__happens
         if target is None:
-            return f"{self.happens} of any process"
+            return f"{happens} of any process"
         if isinstance(target, LaunchDescriptionEntity):
-            return f"{self.happens} of {target.describe()}"
-        return f"{self.happens} of what {getattr(target, '__name__', target)} names"
+            return f"{happens} of {target.describe()}"
+        return f"{happens} of what {getattr(target, '__name__', target)} names"
 
 
 class OnMoment(OnActionEventBase):
     """Reacts to a moment in the life of an action, as the argument says that has its name."""
 
-    argument = ""
-    event_cls: type[Event]
+    _OnMoment__argument = ""
+    _OnMoment__event_cls: type[Event]
 
     def __init__(self, *, target_action: Any = None, **options: Any) -> None:
-        if self.argument not in options:
-            raise TypeError(f"{type(self).__name__} needs {self.argument}=")
-        reaction = options.pop(self.argument)
+        if self._OnMoment__argument not in options:
+            raise TypeError(f"{type(self).__name__} needs {self._OnMoment__argument}=")
+        reaction = options.pop(self._OnMoment__argument)
         super().__init__(
             action_matcher=target_action,
             on_event=reaction,
-            target_event_cls=self.event_cls,
+            target_event_cls=self._OnMoment__event_cls,
             **options,
         )
 
@@ -82,25 +82,37 @@ class OnMoment(OnActionEventBase):
 class OnProcessExit(OnMoment):
     """Reacts to the end of a process, with ``on_exit=``."""
 
-    happens, argument, event_cls = "exit", "on_exit", ProcessExited
+    _OnActionEventBase__happens, _OnMoment__argument, _OnMoment__event_cls = (
+        "exit",
+        "on_exit",
+        ProcessExited,
+    )
 
 
 class OnProcessStart(OnMoment):
     """Reacts to the start of a process, with ``on_start=``."""
 
-    happens, argument, event_cls = "start", "on_start", ProcessStarted
+    _OnActionEventBase__happens, _OnMoment__argument, _OnMoment__event_cls = (
+        "start",
+        "on_start",
+        ProcessStarted,
+    )
 
 
 class OnExecutionComplete(OnMoment):
     """Reacts to the end of an action, with ``on_completion=``."""
 
-    happens, argument, event_cls = "completion", "on_completion", ExecutionComplete
+    _OnActionEventBase__happens, _OnMoment__argument, _OnMoment__event_cls = (
+        "completion",
+        "on_completion",
+        ExecutionComplete,
+    )
 
 
 class OnProcessIO(OnActionEventBase):
     """Reacts to what a process writes."""
 
-    happens = "output"
+    _OnActionEventBase__happens = "output"
 
     def __init__(
         self,

@@ -14,14 +14,14 @@ __all__ = ["LaunchDescriptionEntity"]
 class LaunchDescriptionEntity:
     """A part of a launch description."""
 
-    where: str
+    _LaunchDescriptionEntity__where: str
     """The file and line where the program made it."""
 
     def __new__(cls, *_args: Any, **_options: Any) -> Self:
         """Make an entity that knows its place in the user's file."""
         entity = super().__new__(cls)
         frame = sys._getframe(1)
-        entity.where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
+        entity._LaunchDescriptionEntity__where = f"{frame.f_code.co_filename}:{frame.f_lineno}"
         return entity
 
     def visit(self, context: LaunchContext) -> Any:

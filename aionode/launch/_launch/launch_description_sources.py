@@ -28,7 +28,7 @@ __all__ = [
 class LaunchDescriptionSource:
     """A description, or a file that has one."""
 
-    kind: ClassVar[str] = "any"
+    _LaunchDescriptionSource__kind: ClassVar[str] = "any"
 
     def __init__(
         self,
@@ -36,21 +36,23 @@ class LaunchDescriptionSource:
         location: SomeSubstitutionsType = "<script>",
         method: str = "unspecified mechanism from a script",
     ) -> None:
-        self._description = launch_description
-        self._subs = normalize_to_list_of_substitutions(location)
-        self.location = "".join(getattr(sub, "text", sub.describe()) for sub in self._subs)
+        self._LaunchDescriptionSource__description = launch_description
+        self._LaunchDescriptionSource__subs = normalize_to_list_of_substitutions(location)
+        self.location = "".join(
+            getattr(sub, "text", sub.describe()) for sub in self._LaunchDescriptionSource__subs
+        )
         self.method = method
 
     def get_launch_description(self, context: LaunchContext) -> Any:
         """Return the description, reading the file."""
-        if self._description is not None:
-            return self._description
-        self.location = perform_substitutions(context, self._subs)
-        return context.load_file(self.location, self.kind)
+        if self._LaunchDescriptionSource__description is not None:
+            return self._LaunchDescriptionSource__description
+        self.location = perform_substitutions(context, self._LaunchDescriptionSource__subs)
+        return context.load_file(self.location, self._LaunchDescriptionSource__kind)
 
     def try_get_launch_description_without_context(self) -> Any:
         """Return the description if it is known."""
-        return self._description
+        return self._LaunchDescriptionSource__description
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
@@ -63,7 +65,7 @@ class AnyLaunchDescriptionSource(LaunchDescriptionSource):
 class PythonLaunchDescriptionSource(AnyLaunchDescriptionSource):
     """A file in Python."""
 
-    kind = "python"
+    _LaunchDescriptionSource__kind = "python"
 
 
 class FrontendLaunchDescriptionSource(AnyLaunchDescriptionSource):
@@ -73,13 +75,13 @@ class FrontendLaunchDescriptionSource(AnyLaunchDescriptionSource):
 class XMLLaunchDescriptionSource(AnyLaunchDescriptionSource):
     """A file in XML."""
 
-    kind = "xml"
+    _LaunchDescriptionSource__kind = "xml"
 
 
 class YAMLLaunchDescriptionSource(AnyLaunchDescriptionSource):
     """A file in YAML."""
 
-    kind = "yaml"
+    _LaunchDescriptionSource__kind = "yaml"
 
 
 def load_python_launch_file_as_module(python_launch_file_path: str) -> ModuleType:

@@ -34,14 +34,14 @@ class Substitution:
         """Return what stands in the description."""
         return f"{type(self).__name__}()"
 
-    second_word: ClassVar[str] = ""
+    _Substitution__second_word: ClassVar[str] = ""
     """The name of the argument that the second word of ``$(name word word)`` is, if it has one."""
 
     @classmethod
-    def of_words(cls, *words: Any) -> Self:
+    def _Substitution__of_words(cls, *words: Any) -> Self:
         """Return the substitution that ``$(name word word)`` of a file stands for."""
-        if cls.second_word and len(words) == 2:
-            return cls(words[0], **{cls.second_word: words[1]})  # type: ignore[call-arg]  # the subclass has it
+        if cls._Substitution__second_word and len(words) == 2:
+            return cls(words[0], **{cls._Substitution__second_word: words[1]})  # type: ignore[call-arg]  # the subclass has it
         return cls(*words)
 
 

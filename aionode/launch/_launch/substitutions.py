@@ -69,20 +69,20 @@ def boolean(context: LaunchContext, sub: SomeSubstitutionsType) -> bool:
 class LaunchConfiguration(Substitution):
     """The value of a launch configuration, such as an argument."""
 
-    second_word = "default"
+    _Substitution__second_word = "default"
 
     def __init__(self, variable_name: SomeSubstitutionsType, *, default: Any = None) -> None:
         self.variable_name = normalize_to_list_of_substitutions(variable_name)
         if default is None:
-            self.default = None
+            self._LaunchConfiguration__default = None
         elif isinstance(default, str | Substitution):
-            self.default = normalize_to_list_of_substitutions(default)
+            self._LaunchConfiguration__default = normalize_to_list_of_substitutions(default)
         elif isinstance(default, Iterable):
-            self.default = normalize_to_list_of_substitutions(
+            self._LaunchConfiguration__default = normalize_to_list_of_substitutions(
                 [part if isinstance(part, str | Substitution) else str(part) for part in default]
             )
         else:
-            self.default = normalize_to_list_of_substitutions(str(default))
+            self._LaunchConfiguration__default = normalize_to_list_of_substitutions(str(default))
 
     def describe(self) -> str:
         """Return the name."""
@@ -93,19 +93,19 @@ class LaunchConfiguration(Substitution):
         name = perform_substitutions(context, self.variable_name)
         if name in context.launch_configurations:
             return str(context.launch_configurations[name])
-        if self.default is None:
+        if self._LaunchConfiguration__default is None:
             known = ", ".join(sorted(context.launch_configurations)) or "none"
             raise SubstitutionFailure(
                 f"launch configuration '{name}' does not exist here; there are: {known}"
             )
-        return perform_substitutions(context, self.default)
+        return perform_substitutions(context, self._LaunchConfiguration__default)
 
 
 class WithDefault(Substitution):
     """The value that a name has, or a default."""
 
-    second_word = "default_value"
-    problem = "'{}' does not exist"
+    _Substitution__second_word = "default_value"
+    _WithDefault__problem = "'{}' does not exist"
 
     def __init__(
         self, name: SomeSubstitutionsType, *, default_value: SomeSubstitutionsType | None = None
@@ -113,27 +113,27 @@ class WithDefault(Substitution):
         self.name = normalize_to_list_of_substitutions(name)
         self.default_value = default_value
 
-    def find(self, context: LaunchContext, name: str) -> str | None:
+    def _WithDefault__find(self, context: LaunchContext, name: str) -> str | None:
         """Return the value, if there is one."""
         raise NotImplementedError(f"{type(self).__name__}.find")
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value, or the default."""
         name = perform_substitutions(context, self.name)
-        value = self.find(context, name)
+        value = self._WithDefault__find(context, name)
         if value is not None:
             return value
         if self.default_value is None:
-            raise SubstitutionFailure(self.problem.format(name))
+            raise SubstitutionFailure(self._WithDefault__problem.format(name))
         return text_of(context, self.default_value)
 
 
 class EnvironmentVariable(WithDefault):
     """The value of an environment variable."""
 
-    problem = "environment variable '{}' does not exist"
+    _WithDefault__problem = "environment variable '{}' does not exist"
 
-    def find(self, context: LaunchContext, name: str) -> str | None:
+    def _WithDefault__find(self, context: LaunchContext, name: str) -> str | None:
         """Return the value, if there is one."""
         return context.environment.get(name)
 
@@ -215,14 +215,14 @@ class LocalSubstitution(Substitution):
 class ForEachVar(WithDefault):
     """A value of the set that a ``for_each`` of a file is at."""
 
-    problem = "no loop around this has '{}', and there is no default"
+    _WithDefault__problem = "no loop around this has '{}', and there is no default"
 
     @staticmethod
     def get_local_arg_name(name: str) -> str:
         """Return under which name `locals` has the value."""
         return f"ForEachVar__{name}"
 
-    def find(self, context: LaunchContext, name: str) -> str | None:
+    def _WithDefault__find(self, context: LaunchContext, name: str) -> str | None:
         """Return the value, if there is one."""
         return context.get_locals_as_dict().get(self.get_local_arg_name(name))
 
@@ -255,7 +255,7 @@ class FindExecutable(Substitution):
         self.name = normalize_to_list_of_substitutions(name)
 
     @classmethod
-    def of_words(cls, *words: Any) -> Self:
+    def _Substitution__of_words(cls, *words: Any) -> Self:
         """Return that of ``$(find-exec name)``."""
         return cls(name=words[0])
 
@@ -302,7 +302,7 @@ class FileContent(Substitution):
 class Command(Substitution):
     """The output of a command, such as xacro."""
 
-    second_word = "on_stderr"
+    _Substitution__second_word = "on_stderr"
 
     def __init__(
         self, command: SomeSubstitutionsType, *, on_stderr: SomeSubstitutionsType = "fail"
@@ -364,7 +364,7 @@ class PythonExpression(Substitution):
         self.python_modules = normalize_to_list_of_substitutions(python_modules)
 
     @classmethod
-    def of_words(cls, *words: Any) -> Self:
+    def _Substitution__of_words(cls, *words: Any) -> Self:
         """Return that of ``$(eval 'expression' 'module, module')``."""
         if len(words) < 2:
             return cls(words[0])
@@ -441,22 +441,22 @@ class AnySubstitution(Substitution):
     """Whether one of several holds."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
-        self.parts = args
+        self._AnySubstitution__parts = args
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return str(any(boolean(context, part) for part in self.parts)).lower()
+        return str(any(boolean(context, part) for part in self._AnySubstitution__parts)).lower()
 
 
 class AllSubstitution(Substitution):
     """Whether all of several hold."""
 
     def __init__(self, *args: SomeSubstitutionsType) -> None:
-        self.parts = args
+        self._AllSubstitution__parts = args
 
     def perform(self, context: LaunchContext) -> str:
         """Return true or false."""
-        return str(all(boolean(context, part) for part in self.parts)).lower()
+        return str(all(boolean(context, part) for part in self._AllSubstitution__parts)).lower()
 
 
 class AndSubstitution(AllSubstitution):

@@ -40,28 +40,31 @@ class ComposableNode:
         condition: Condition | None = None,
     ) -> None:
         self.package = normalize_to_list_of_substitutions(package)
-        self.plugin = normalize_to_list_of_substitutions(plugin)
-        self.name = name
-        self.namespace = namespace
+        self._ComposableNode__plugin = normalize_to_list_of_substitutions(plugin)
+        self._ComposableNode__name = name
+        self._ComposableNode__namespace = namespace
         self.parameters = list(parameters or ())
         self.remappings = list(remappings or ())
         self.extra_arguments = list(extra_arguments or ())
-        self._condition = condition
+        self._ComposableNode__condition = condition
 
     def condition(self) -> Condition | None:
         """The condition."""
-        return self._condition
+        return self._ComposableNode__condition
 
-    def component(self, context: LaunchContext) -> Component | None:
+    def _ComposableNode__component(self, context: LaunchContext) -> Component | None:
         """Return what the container gets; None if the condition does not hold."""
-        if self._condition is not None and not self._condition.evaluate(context):
+        if (
+            self._ComposableNode__condition is not None
+            and not self._ComposableNode__condition.evaluate(context)
+        ):
             return None
-        name = text_or_none(context, self.name)
-        namespace = namespace_in(context, text_or_none(context, self.namespace))
+        name = text_or_none(context, self._ComposableNode__name)
+        namespace = namespace_in(context, text_or_none(context, self._ComposableNode__namespace))
         everywhere = context.launch_configurations.get("global_params", ())
         given = [{key: value} if key else value for key, value in map(as_pair, everywhere)]
         return Component(
-            plugin=perform_substitutions(context, self.plugin),
+            plugin=perform_substitutions(context, self._ComposableNode__plugin),
             package=perform_substitutions(context, self.package),
             name=name,
             namespace=namespace,

@@ -34,11 +34,15 @@ class OnStateTransition(BaseEventHandler):
             )
 
         super().__init__(matcher=matcher, reaction=entities, **options)
-        self.target_lifecycle_node = target_lifecycle_node
-        self.goal_state = goal_state
+        self._OnStateTransition__target_lifecycle_node = target_lifecycle_node
+        self._OnStateTransition__goal_state = goal_state
 
     def describe(self) -> str:
         """Return what happens to whom."""
-        node = self.target_lifecycle_node
+        node = self._OnStateTransition__target_lifecycle_node
         named = "a managed node" if node is None else node.describe()
-        return f"{named} is {self.goal_state}" if self.goal_state else f"a transition of {named}"
+        return (
+            f"{named} is {self._OnStateTransition__goal_state}"
+            if self._OnStateTransition__goal_state
+            else f"a transition of {named}"
+        )

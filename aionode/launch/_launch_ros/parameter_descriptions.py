@@ -55,11 +55,13 @@ class Parameter:
 
     def __init__(self, name: SomeSubstitutionsType, value: Any, *, value_type: Any = None) -> None:
         self.name = normalize_to_list_of_substitutions(name)
-        self.parameter_value = ParameterValue(value, value_type=value_type)
+        self._Parameter__parameter_value = ParameterValue(value, value_type=value_type)
 
     def evaluate(self, context: LaunchContext) -> tuple[str, Any]:
         """Return the name and the value."""
-        return perform_substitutions(context, self.name), self.parameter_value.evaluate(context)
+        return perform_substitutions(context, self.name), self._Parameter__parameter_value.evaluate(
+            context
+        )
 
 
 class ParameterFile:

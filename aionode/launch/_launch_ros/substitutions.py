@@ -69,20 +69,20 @@ class ExecutableInPackage(Substitution):
         self.executable = normalize_to_list_of_substitutions(executable)
         self.package = normalize_to_list_of_substitutions(package)
 
-    def names(self, context: LaunchContext) -> tuple[str, str]:
+    def _ExecutableInPackage__names(self, context: LaunchContext) -> tuple[str, str]:
         """Return the names of the package and of the executable."""
         return (
             perform_substitutions(context, self.package),
             perform_substitutions(context, self.executable),
         )
 
-    def command(self, context: LaunchContext) -> list[str]:
+    def _ExecutableInPackage__command(self, context: LaunchContext) -> list[str]:
         """Return the command that starts it."""
-        return context.packages.command(*self.names(context))
+        return context.packages.command(*self._ExecutableInPackage__names(context))
 
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
-        program = context.packages.executable(*self.names(context))
+        program = context.packages.executable(*self._ExecutableInPackage__names(context))
         if program.root is not None:
             raise SubstitutionFailure(
                 f"{program.name} of {program.package} is a function, {program.target}, until the "
@@ -94,13 +94,13 @@ class ExecutableInPackage(Substitution):
 class Parameter(Substitution):
     """The value of a parameter that `SetParameter` has set for all nodes."""
 
-    second_word = "default"
+    _Substitution__second_word = "default"
 
     def __init__(
         self, name: SomeSubstitutionsType, *, default: SomeSubstitutionsType | None = None
     ) -> None:
         self.name = normalize_to_list_of_substitutions(name)
-        self.default = default
+        self._Parameter__default = default
 
     def perform(self, context: LaunchContext) -> str:
         """Return the value, or the default."""
@@ -108,6 +108,6 @@ class Parameter(Substitution):
         for known in context.launch_configurations.get("global_params", ()):
             if isinstance(known, tuple) and known[0] == name:
                 return str(known[1])
-        if self.default is None:
+        if self._Parameter__default is None:
             raise SubstitutionFailure(f"parameter '{name}' is not set for all nodes")
-        return text_of(context, self.default)
+        return text_of(context, self._Parameter__default)

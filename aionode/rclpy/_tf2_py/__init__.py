@@ -38,7 +38,7 @@ def locked(method: CallableT) -> CallableT:
 
     @wraps(method)
     def call(self: BufferCore, *args: Any, **options: Any) -> Any:
-        with self._lock:
+        with self._BufferCore__lock:
             try:
                 return method(self, *args, **options)
             except ExtrapolationException as error:
@@ -58,11 +58,11 @@ class BufferCore(tf.BufferCore):
 
     def __init__(self, cache_time: Any = CACHE_TIME_SEC) -> None:
         super().__init__(cache_time)
-        self._lock = threading.RLock()
+        self._BufferCore__lock = threading.RLock()
 
-    def _message(self, *parts: Any) -> Any:
+    def _BufferCore__message(self, *parts: Any) -> Any:
         """Return a transform as a message of rosidl's kind."""
-        return from_aionode(super()._message(*parts))
+        return from_aionode(super()._BufferCore__message(*parts))
 
     @locked
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:

@@ -35,13 +35,13 @@ class Buffer(BufferCore, BufferInterface):
     def __init__(self, cache_time: Duration | None = None, node: Any = None) -> None:
         BufferCore.__init__(self, CACHE_TIME_SEC if cache_time is None else cache_time)
         BufferInterface.__init__(self)
-        self._waiters = Waiters(self._frames, self._cache_ns)
-        self._new_data = threading.Condition(self._lock)
+        self._BufferCore__waiters = Waiters(self._BufferCore__frames, self._BufferCore__cache_ns)
+        self._BufferCore__new_data = threading.Condition(self._BufferCore__lock)
         if node is None:
             self.clock = Clock()
         else:
             frame_graph = service_class("tf2_msgs/srv/FrameGraph")
-            self.srv = node.create_service(frame_graph, "tf2_frames", self._on_frames)
+            self.srv = node.create_service(frame_graph, "tf2_frames", self._BufferCore__on_frames)
             self.clock = node.get_clock()
         threshold = JumpThreshold(
             min_forward=None, min_backward=Duration(seconds=-1), on_clock_change=True
@@ -50,7 +50,7 @@ class Buffer(BufferCore, BufferInterface):
             threshold, post_callback=self.time_jump_callback
         )
 
-    def _on_frames(self, request: Any, response: Any) -> Any:
+    def _BufferCore__on_frames(self, request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
@@ -59,9 +59,9 @@ class Buffer(BufferCore, BufferInterface):
         get_logger("tf2_buffer").warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
 
-    def _changed(self, child: str, frame: Any, before: Any) -> None:
-        self._waiters.changed(child, frame, before)
-        self._new_data.notify_all()
+    def _BufferCore__changed(self, child: str, frame: Any, before: Any) -> None:
+        self._BufferCore__waiters.changed(child, frame, before)
+        self._BufferCore__new_data.notify_all()
 
     # Waiting
 
@@ -95,7 +95,7 @@ class Buffer(BufferCore, BufferInterface):
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether a transform is available, after a wait of `timeout` at most."""
-        answer = self._until(
+        answer = self._BufferCore__until(
             lambda: self.can_transform_core(target_frame, source_frame, time), timeout
         )
         return answer if return_debug_tuple else answer[0]
@@ -112,15 +112,17 @@ class Buffer(BufferCore, BufferInterface):
     ) -> Any:
         """Return whether a transform between two times is available, after a wait."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
-        answer = self._until(lambda: self.can_transform_full_core(*question), timeout)
+        answer = self._BufferCore__until(lambda: self.can_transform_full_core(*question), timeout)
         return answer if return_debug_tuple else answer[0]
 
-    def _until(self, ask: Callable[[], tuple[bool, str]], timeout: Any) -> tuple[bool, str]:
+    def _BufferCore__until(
+        self, ask: Callable[[], tuple[bool, str]], timeout: Any
+    ) -> tuple[bool, str]:
         """Ask until the answer is yes, or the time is over."""
         ends_ns = perf_ns() + time_ns_of(timeout)
-        with self._new_data:
+        with self._BufferCore__new_data:
             while not (answer := ask())[0] and (left_ns := ends_ns - perf_ns()) > 0:
-                self._new_data.wait(left_ns / 1e9)
+                self._BufferCore__new_data.wait(left_ns / 1e9)
         return answer
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
@@ -144,7 +146,7 @@ class Buffer(BufferCore, BufferInterface):
         self, target_frame: str, source_frame: str, time: Any
     ) -> Future[Any]:
         """Return a future of a transform."""
-        return self._future(
+        return self._BufferCore__future(
             ((target_frame, source_frame, time_ns_of(time)),),
             lambda: self.lookup_transform_core(target_frame, source_frame, time),
         )
@@ -159,7 +161,7 @@ class Buffer(BufferCore, BufferInterface):
     ) -> Future[Any]:
         """Return a future of a transform between two times."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
-        return self._future(
+        return self._BufferCore__future(
             (
                 (target_frame, fixed_frame, time_ns_of(target_time)),
                 (fixed_frame, source_frame, time_ns_of(source_time)),
@@ -167,7 +169,7 @@ class Buffer(BufferCore, BufferInterface):
             lambda: self.lookup_transform_full_core(*question),
         )
 
-    def _future(self, parts: Any, look_up: Callable[[], Any]) -> Future[Any]:
+    def _BufferCore__future(self, parts: Any, look_up: Callable[[], Any]) -> Future[Any]:
         future: Future[Any] = Future()
 
         def end(failure: Any) -> None:
@@ -180,11 +182,11 @@ class Buffer(BufferCore, BufferInterface):
                 future.set_exception(error)
 
         waiter = Waiter(parts, end)
-        with self._lock:
-            self._waiters.add(waiter)
-        future.add_done_callback(lambda _: self._give_up(waiter))
+        with self._BufferCore__lock:
+            self._BufferCore__waiters.add(waiter)
+        future.add_done_callback(lambda _: self._BufferCore__give_up(waiter))
         return future
 
-    def _give_up(self, waiter: Waiter) -> None:
-        with self._lock:
-            self._waiters.remove(waiter)
+    def _BufferCore__give_up(self, waiter: Waiter) -> None:
+        with self._BufferCore__lock:
+            self._BufferCore__waiters.remove(waiter)

@@ -52,7 +52,7 @@ class BufferClient(BufferInterface):
         Raises:
             TransformException: it is not available, or the server does not answer.
         """
-        return self._ask(
+        return self._BufferClient__ask(
             target_frame=target_frame,
             source_frame=source_frame,
             source_time=stamp(time),
@@ -69,7 +69,7 @@ class BufferClient(BufferInterface):
         timeout: Duration = NOW,
     ) -> Any:
         """Return the transform between two frames at two times; see `lookup_transform`."""
-        return self._ask(
+        return self._BufferClient__ask(
             target_frame=target_frame,
             source_frame=source_frame,
             source_time=stamp(source_time),
@@ -107,7 +107,7 @@ class BufferClient(BufferInterface):
             return False
         return True
 
-    def _ask(self, **fields: Any) -> Any:
+    def _BufferClient__ask(self, **fields: Any) -> Any:
         goal = action_class("tf2_msgs/action/LookupTransform").Goal(**fields)
         if not self.action_client.server_is_ready():
             raise TimeoutException("The BufferServer is not ready.")

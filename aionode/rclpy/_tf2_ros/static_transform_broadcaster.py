@@ -15,4 +15,4 @@ class StaticTransformBroadcaster(tf.StaticTransformBroadcaster):
     its C++ the last.
     """
 
-    _message = message_class("tf2_msgs/msg/TFMessage")
+    _StaticTransformBroadcaster__message = message_class("tf2_msgs/msg/TFMessage")

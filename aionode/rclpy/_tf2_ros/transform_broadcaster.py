@@ -11,4 +11,4 @@ __all__ = ["TransformBroadcaster"]
 class TransformBroadcaster(tf.TransformBroadcaster):
     """Publishes transforms on /tf, with a node of rclpy."""
 
-    _message = message_class("tf2_msgs/msg/TFMessage")
+    _TransformBroadcaster__message = message_class("tf2_msgs/msg/TFMessage")

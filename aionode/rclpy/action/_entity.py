@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.rclpy._entities import in_use
-from aionode.rclpy._impl.actions import ActionClientHandle, ActionHandle, ActionServerHandle
+from aionode.rclpy._impl.actions import ActionClientHandle, ActionServerHandle
 from aionode.rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
+    from aionode.clock import Clock
+    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.qos import QoSProfile
     from aionode.rclpy._impl.wait_set import WaitSet
     from aionode.rclpy.node import Node
 
@@ -20,22 +22,30 @@ HandleT = TypeVar("HandleT", ActionClientHandle, ActionServerHandle)
 class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
     """A waitable of a node, whose handle stands for several services and topics."""
 
-    _handle: HandleT
+    _ActionEntity__handle: HandleT
     _node: Node
 
     def add_to_wait_set(self, wait_set: WaitSet) -> None:
         """Add its handles."""
-        self._handle.add_to_waitset(wait_set)
+        self._ActionEntity__handle.add_to_waitset(wait_set)
 
     def __enter__(self) -> None:
-        self._handle.__enter__()
+        self._ActionEntity__handle.__enter__()
 
     def __exit__(self, *exc: object) -> None:
-        self._handle.__exit__(*exc)
+        self._ActionEntity__handle.__exit__(*exc)
 
-    configure_introspection = in_use(ActionHandle.configure_introspection)
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Tell of the calls of its three services on ``…/_service_event``."""
+        with self._ActionEntity__handle as handle:
+            handle.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
     def destroy(self) -> None:
         """Destroy it; its futures are never completed."""
-        self._handle.destroy_when_not_in_use()
+        self._ActionEntity__handle.destroy_when_not_in_use()
         self._node.remove_waitable(self)

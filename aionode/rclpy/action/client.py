@@ -141,7 +141,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         self._action_type = action_type
         self._action_name = action_name
         with node.handle:
-            self._handle = ActionClientHandle(
+            self._ActionEntity__handle = ActionClientHandle(
                 node.handle,
                 action_type,
                 action_name,
@@ -153,12 +153,12 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             )
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle[Any, Any, Any]]] = {}
         # Of each service: future and request, by the number of the request.
-        self._pending: dict[str, dict[int, tuple[Future[Any], Any]]] = {
+        self._ActionClient__pending: dict[str, dict[int, tuple[Future[Any], Any]]] = {
             name: {} for name in SERVICES
         }
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}
         # The states that were published last: they may be here before the response of a goal.
-        self._states: list[Any] = []
+        self._ActionClient__states: list[Any] = []
         self._lock = threading.RLock()
         self._logger = node.get_logger().get_child("action_client")
         node.add_waitable(self)
@@ -202,29 +202,29 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         request.goal = goal
         if feedback_callback is not None:
             self._feedback_callbacks[bytes(request.goal_id.uuid)] = feedback_callback
-        return self._send("goal", request)
+        return self._ActionClient__send("goal", request)
 
     def _cancel_goal_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.CancelGoalService.Request()
         request.goal_info.goal_id = goal_handle.goal_id
-        return self._send("cancel", request)
+        return self._ActionClient__send("cancel", request)
 
     def _get_result_async(self, goal_handle: ClientGoalHandle[Any, Any, Any]) -> Future[Any]:
         expect_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request()
         request.goal_id = goal_handle.goal_id
-        future = self._send("result", request)
+        future = self._ActionClient__send("result", request)
         goal_id = bytes(goal_handle.goal_id.uuid)
         future.add_done_callback(lambda _: self._feedback_callbacks.pop(goal_id, None))
         return future
 
-    def _send(self, service: str, request: Any) -> Future[Any]:
+    def _ActionClient__send(self, service: str, request: Any) -> Future[Any]:
         """Send a request to one of the services; return a future that executors complete."""
         future: Future[Any] = Future()
-        pending = self._pending[service]
+        pending = self._ActionClient__pending[service]
         with self._lock:
-            sequence = getattr(self._handle, service).send_request(request)
+            sequence = getattr(self._ActionEntity__handle, service).send_request(request)
             pending[sequence] = future, request
         self.add_future(future)
 
@@ -239,11 +239,11 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
     def is_ready(self, wait_set: WaitSet) -> bool:
         """Return whether an answer, feedback or status has come."""
-        return any(part.ready() for part in self._handle.parts)
+        return any(part.ready() for part in self._ActionEntity__handle.parts)
 
     def take_data(self) -> dict[str, Any]:
         """Take one of each."""
-        handle = self._handle
+        handle = self._ActionEntity__handle
         data: dict[str, Any] = {}
         with self._lock:
             for name in SERVICES:
@@ -260,19 +260,21 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         """Complete futures, call feedback callbacks, and note states."""
         for name in SERVICES:
             if name in taken_data:
-                self._take_response(name, *taken_data[name])
+                self._ActionClient__take_response(name, *taken_data[name])
         if "feedback" in taken_data:
             feedback = taken_data["feedback"]
             callback = self._feedback_callbacks.get(bytes(feedback.goal_id.uuid))
             if callback is not None:
                 await await_or_execute(callback, feedback)
         if "status" in taken_data:
-            self._states = taken_data["status"].status_list
-            for status in self._states:
-                self._take_status(status)
+            self._ActionClient__states = taken_data["status"].status_list
+            for status in self._ActionClient__states:
+                self._ActionClient__take_status(status)
 
-    def _take_response(self, service: str, sequence: int, response: Any) -> None:
-        pending = self._pending[service].get(sequence)  # another thread may give it up meanwhile
+    def _ActionClient__take_response(self, service: str, sequence: int, response: Any) -> None:
+        pending = self._ActionClient__pending[service].get(
+            sequence
+        )  # another thread may give it up meanwhile
         if pending is None:
             self._logger.warning(
                 f"Ignoring unexpected {service} response. There may be more than one action server "
@@ -280,9 +282,11 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             )
             return
         future, request = pending
-        future.set_result(self._goal(request, response) if service == "goal" else response)
+        future.set_result(
+            self._ActionClient__goal(request, response) if service == "goal" else response
+        )
 
-    def _goal(self, request: Any, response: Any) -> ClientGoalHandle[Any, Any, Any]:
+    def _ActionClient__goal(self, request: Any, response: Any) -> ClientGoalHandle[Any, Any, Any]:
         """Return the goal of a request, which is followed if the server has accepted it."""
         handle = ClientGoalHandle(self, request.goal_id, response)
         goal_id = bytes(handle.goal_id.uuid)
@@ -292,11 +296,11 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             if goal_id in self._goal_handles:
                 raise RuntimeError(f"Two goals were accepted with the same ID ({handle})")
             self._goal_handles[goal_id] = weakref.ref(handle)
-            for status in self._states:
-                self._take_status(status)
+            for status in self._ActionClient__states:
+                self._ActionClient__take_status(status)
         return handle
 
-    def _take_status(self, status: Any) -> None:
+    def _ActionClient__take_status(self, status: Any) -> None:
         goal_id = bytes(status.goal_info.goal_id.uuid)
         reference = self._goal_handles.get(goal_id)
         if reference is None:
@@ -316,7 +320,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
     def server_is_ready(self) -> bool:
         """Return whether a server is there."""
         with self._node.handle:
-            return self._handle.is_action_server_available()
+            return self._ActionEntity__handle.is_action_server_available()
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
         """Block the thread until a server is there; nobody needs to spin.

@@ -253,7 +253,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         self._node = node
         self._action_type = action_type
         with node.handle, node.get_clock().handle:
-            self._handle = ActionServerHandle(
+            self._handle = self._ActionEntity__handle = ActionServerHandle(
                 node.handle,
                 node.get_clock().handle,
                 action_type,
@@ -266,7 +266,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 result_timeout=result_timeout,
                 max_goals=checked_max_goals(max_goals, f"action server {action_name}"),
             )
-        self._action_name = action_name
+        self._ActionServer__action_name = action_name
         self._goal_handles: dict[bytes, AnyGoalHandle] = self._handle.goals
         self._logger = node.get_logger().get_child("action_server")
         node.add_waitable(self)
@@ -283,7 +283,9 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         info = message_like(self._action_type, "action_msgs/msg/GoalInfo")()
         info.goal_id = goal_id
         accepted = False
-        if bytes(goal_id.uuid) not in self._goal_handles and not self._is_full(request.goal):
+        if bytes(goal_id.uuid) not in self._goal_handles and not self._ActionServer__is_full(
+            request.goal
+        ):
             answer = await await_or_execute(self._goal_callback, request.goal)
             if isinstance(answer, GoalResponse):
                 accepted = answer is GoalResponse.ACCEPT
@@ -291,7 +293,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 self._logger.warning(
                     "Goal request callback did not return a GoalResponse type. Rejecting goal."
                 )
-        goal_handle = self._accept(info, request.goal) if accepted else None
+        goal_handle = self._ActionServer__accept(info, request.goal) if accepted else None
         response = self._action_type.Impl.SendGoalService.Response()
         response.accepted = goal_handle is not None
         response.stamp = info.stamp
@@ -300,14 +302,14 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             self._handle.publish_status()
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
-    def _is_full(self, goal: Any) -> bool:
+    def _ActionServer__is_full(self, goal: Any) -> bool:
         """Return whether there is no room for a goal; if so, say why it is rejected."""
         why: str = self._handle.goals.refusal(goal)
         if why:
-            tell_full(self._logger, f"action server {self._action_name}", why)
+            tell_full(self._logger, f"action server {self._ActionServer__action_name}", why)
         return bool(why)
 
-    def _accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
+    def _ActionServer__accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
         now = self._node.get_clock().now().to_msg()  # its class may be of the other family
         info.stamp.sec, info.stamp.nanosec = now.sec, now.nanosec
         try:
@@ -384,7 +386,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         if result is not None:
             self._handle.result.service_send_response(result, header.request_id)
 
-    def _expire_goals(self) -> None:
+    def _ActionServer__expire_goals(self) -> None:
         with self._lock:  # a goal may end in another thread meanwhile
             forgotten = self._handle.expiry.take()
         for goal_handle in forgotten:
@@ -430,7 +432,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                     service.give_up(header.request_id)
         if "result" in taken_data:
             self._execute_get_result_request(*taken_data["result"])
-        self._expire_goals()  # last: a result may have been asked for just before
+        self._ActionServer__expire_goals()  # last: a result may have been asked for just before
 
     def get_num_entities(self) -> NumberOfEntities:
         """Return how many handles it adds to a wait set."""

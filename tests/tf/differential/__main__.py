@@ -51,7 +51,7 @@ class Case:
         self.chance = random.Random(seed)  # noqa: S311  # no secret
         self.core = BufferCore()
         self.logged: list[str] = []
-        self.core._report = self._note  # type: ignore[method-assign]
+        self.core._BufferCore__report = self._note  # type: ignore[method-assign]
         self.frames = [f"f{number}" for number in range(self.chance.randint(2, 9))]
         self.commands = ["new"]
         self.answers: list[Callable[[], str]] = [lambda: "new"]
@@ -101,7 +101,7 @@ class Case:
 
         def answer() -> str:
             self.logged.clear()
-            taken = self.core._set(msg, "me", is_static=is_static)
+            taken = self.core._BufferCore__set(msg, "me", is_static=is_static)
             return f"set {int(taken)} {quoted(''.join(self.logged))}"
 
         self.ask(f"set {int(is_static)} {parent} {child} {sec} {nanosec} {numbers} me", answer)
@@ -151,7 +151,9 @@ class Case:
             "string": ("", lambda: f"text {quoted(core.all_frames_as_string())}"),
             "dot": (f"{t}", lambda: f"text {quoted(core._allFramesAsDot(at_t))}"),
         }  # fmt: skip
-        if kind == "chain" and not {one, other, third} <= set(core._frames.names or [one]):
+        if kind == "chain" and not {one, other, third} <= set(
+            core._BufferCore__frames.names or [one]
+        ):
             return  # tf2 does not check these names
         arguments, answer = questions[kind]
         self.ask(f"{kind} {arguments}", answer)

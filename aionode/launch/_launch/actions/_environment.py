@@ -56,7 +56,7 @@ class UnsetEnvironmentVariable(Action):
 class AppendEnvironmentVariable(Action):
     """Adds to the end, or the beginning, of a list in a variable."""
 
-    at_front = False
+    _AppendEnvironmentVariable__at_front = False
 
     def __init__(
         self,
@@ -70,7 +70,7 @@ class AppendEnvironmentVariable(Action):
         self.name = normalize_to_list_of_substitutions(name)
         self.value = normalize_to_list_of_substitutions(value)
         self.separator = normalize_to_list_of_substitutions(separator)
-        self.prepend = self.at_front if prepend is None else prepend
+        self.prepend = self._AppendEnvironmentVariable__at_front if prepend is None else prepend
 
     def execute(self, context: LaunchContext) -> None:
         """Add to it."""
@@ -84,7 +84,7 @@ class AppendEnvironmentVariable(Action):
 class PrependEnvironmentVariable(AppendEnvironmentVariable):
     """Adds to the beginning of a list in a variable."""
 
-    at_front = True
+    _AppendEnvironmentVariable__at_front = True
 
 
 class PushEnvironment(Action):

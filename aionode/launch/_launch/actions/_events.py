@@ -61,7 +61,7 @@ class Shutdown(EmitEvent):
 class LogInfo(Action):
     """Writes a text to the log."""
 
-    level = "INFO"
+    _LogInfo__level = "INFO"
 
     def __init__(self, *, msg: SomeSubstitutionsType, **options: Any) -> None:
         super().__init__(**options)
@@ -69,7 +69,7 @@ class LogInfo(Action):
 
     def execute(self, context: LaunchContext) -> None:
         """Write it."""
-        context.steps.append(Log(perform_substitutions(context, self.msg), self.level))
+        context.steps.append(Log(perform_substitutions(context, self.msg), self._LogInfo__level))
 
 
 class RegisterEventHandler(Action):
@@ -110,12 +110,12 @@ class TimerAction(Action):
         super().__init__(**options)
         self.period = period
         self.actions = list(actions)
-        self.cancel_on_shutdown = cancel_on_shutdown
-        self.is_canceled = False
+        self._TimerAction__cancel_on_shutdown = cancel_on_shutdown
+        self._TimerAction__is_canceled = False
 
     def cancel(self) -> None:
         """Do it never, unless it is done already."""
-        self.is_canceled = True
+        self._TimerAction__is_canceled = True
 
     def execute(self, context: LaunchContext) -> None:
         """Begin to wait."""

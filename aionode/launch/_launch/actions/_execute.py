@@ -49,84 +49,90 @@ class ExecuteLocal(Action):
         self.process_description = process_description
         self.shell = shell
         self.output = output
-        self.on_exit = on_exit
-        self.respawn = respawn
-        self.respawn_delay = respawn_delay
-        self.respawn_max_retries = respawn_max_retries
+        self._ExecuteLocal__on_exit = on_exit
+        self._ExecuteLocal__respawn = respawn
+        self._ExecuteLocal__respawn_delay = respawn_delay
+        self._ExecuteLocal__respawn_max_retries = respawn_max_retries
         self.sigterm_timeout = sigterm_timeout
         self.sigkill_timeout = sigkill_timeout
         self.emulate_tty = emulate_tty
-        self.cached_output = cached_output
-        self.log_cmd = log_cmd
-        self._cached = {1: bytearray(), 2: bytearray()}
+        self._ExecuteLocal__cached_output = cached_output
+        self._ExecuteLocal__log_cmd = log_cmd
+        self._ExecuteLocal__cached = {1: bytearray(), 2: bytearray()}
         self.process_details: dict[str, Any] | None = None
         """Details of the process while it runs: name, cmd, pid, …."""
         self.return_code: int | None = None
 
-    def arguments_of_ros(self, context: LaunchContext) -> list[str | ParameterValues]:
+    def _ExecuteLocal__arguments_of_ros(
+        self, context: LaunchContext
+    ) -> list[str | ParameterValues]:
         """Return what follows the arguments of the description."""
         return []
 
-    def executable_words(self, context: LaunchContext) -> list[str]:
+    def _ExecuteLocal__executable_words(self, context: LaunchContext) -> list[str]:
         """Return the program and its arguments."""
         first, *rest = self.process_description.cmd
         # An executable of a package that is not built is a command, and not a path.
-        command = getattr(first[0], "command", None) if len(first) == 1 else None
+        command = (
+            getattr(first[0], "_ExecutableInPackage__command", None) if len(first) == 1 else None
+        )
         words = command(context) if callable(command) else [perform_substitutions(context, first)]
         return [*words, *(perform_substitutions(context, word) for word in rest)]
 
-    def program_name(self, context: LaunchContext, words: list[str]) -> str:
+    def _ExecuteLocal__program_name(self, context: LaunchContext, words: list[str]) -> str:
         """Return the name of the program, by which the process is called."""
-        names = getattr(self.process_description.cmd[0][0], "names", None)
+        names = getattr(self.process_description.cmd[0][0], "_ExecutableInPackage__names", None)
         return str(names(context)[1]) if callable(names) else Path(words[0]).name
 
-    def node_name_in(self, context: LaunchContext) -> str | None:
+    def _ExecuteLocal__node_name_in(self, context: LaunchContext) -> str | None:
         """Return the full name of the node that the process is, if that is known."""
         return None
 
-    def autostarts(self, context: LaunchContext) -> bool:
+    def _ExecuteLocal__autostarts(self, context: LaunchContext) -> bool:
         """Return whether it is a managed node that is configured and activated."""
         return False
 
     def execute(self, context: LaunchContext) -> None:
         """Note what is to be started."""
         described = self.process_description
-        words = self.executable_words(context)
-        program = self.program_name(context, words)
-        prefix = self._prefix(context, program)
-        argv = [*prefix, *words, *self.arguments_of_ros(context)]
-        if self.log_cmd:
+        words = self._ExecuteLocal__executable_words(context)
+        program = self._ExecuteLocal__program_name(context, words)
+        prefix = self._ExecuteLocal__prefix(context, program)
+        argv = [*prefix, *words, *self._ExecuteLocal__arguments_of_ros(context)]
+        if self._ExecuteLocal__log_cmd:
             shown = [str(getattr(word, "content", word)) for word in argv]
             context.steps.append(Log(f"process details: cmd='{shlex.join(shown)}'"))
         base = Path(prefix[0]).name if prefix else program
         if described.name is not None:
             base = perform_substitutions(context, described.name)
-        if self.on_exit is not None:
-            handler = OnProcessExit(target_action=self, on_exit=self.on_exit)
+        if self._ExecuteLocal__on_exit is not None:
+            handler = OnProcessExit(target_action=self, on_exit=self._ExecuteLocal__on_exit)
             context.register_event_handler(handler)
         context.steps.append(
             Process(
                 action=self,
                 name=context.unique_name(base),
                 argv=argv,
-                env=self._environment(context),
+                env=self._ExecuteLocal__environment(context),
                 cwd=None
                 if described.cwd is None
                 else perform_substitutions(context, described.cwd),
-                where=self.where,
-                node_name=self.node_name_in(context),
+                where=self._LaunchDescriptionEntity__where,
+                node_name=self._ExecuteLocal__node_name_in(context),
                 shell=self.shell,
-                respawn=bool(perform_typed_substitution(context, self.respawn, bool)),
-                respawn_delay_sec=self.respawn_delay or 0.0,
-                respawn_max_retries=self.respawn_max_retries,
-                output=self._output(context),
-                **self._limits(context),
-                emulate_tty=self._emulates_tty(context),
-                autostart=self.autostarts(context),
+                respawn=bool(
+                    perform_typed_substitution(context, self._ExecuteLocal__respawn, bool)
+                ),
+                respawn_delay_sec=self._ExecuteLocal__respawn_delay or 0.0,
+                respawn_max_retries=self._ExecuteLocal__respawn_max_retries,
+                output=self._ExecuteLocal__output(context),
+                **self._ExecuteLocal__limits(context),
+                emulate_tty=self._ExecuteLocal__emulates_tty(context),
+                autostart=self._ExecuteLocal__autostarts(context),
             )
         )
 
-    def _limits(self, context: LaunchContext) -> dict[str, float]:
+    def _ExecuteLocal__limits(self, context: LaunchContext) -> dict[str, float]:
         """Return how long signals are waited for, in seconds, as far as that is said."""
         times = {}
         for name, option in (("sigterm", "term_after_sec"), ("sigkill", "kill_after_sec")):
@@ -134,20 +140,20 @@ class ExecuteLocal(Action):
             given = getattr(self, f"{name}_timeout")
             given = configured if given is None else given
             if given is not None:
-                times[option] = self._number(context, f"{name}_timeout", given)
+                times[option] = self._ExecuteLocal__number(context, f"{name}_timeout", given)
         return times
 
-    def _number(self, context: LaunchContext, name: str, given: Any) -> float:
+    def _ExecuteLocal__number(self, context: LaunchContext, name: str, given: Any) -> float:
         try:
             return float(perform_typed_substitution(context, given, float))
         except ValueError as error:
             raise ValueError(f"{name}: {error}; a number of seconds fits") from None
 
-    def _emulates_tty(self, context: LaunchContext) -> bool:
+    def _ExecuteLocal__emulates_tty(self, context: LaunchContext) -> bool:
         given = context.launch_configurations.get("emulate_tty", self.emulate_tty)
         return bool(perform_typed_substitution(context, given, bool))
 
-    def _prefix(self, context: LaunchContext, program: str) -> list[str]:
+    def _ExecuteLocal__prefix(self, context: LaunchContext, program: str) -> list[str]:
         """Return the command that stands before the program, such as ``gdb --args``."""
         described = self.process_description
         if described.prefix is not None:
@@ -157,7 +163,7 @@ class ExecuteLocal(Action):
             return []
         return shlex.split(str(context.launch_configurations.get("launch-prefix", "")))
 
-    def _environment(self, context: LaunchContext) -> dict[str, str]:
+    def _ExecuteLocal__environment(self, context: LaunchContext) -> dict[str, str]:
         described = self.process_description
 
         def texts(pairs: Mapping[Any, Any]) -> dict[str, str]:
@@ -168,18 +174,18 @@ class ExecuteLocal(Action):
         base = context.environment if described.env is None else texts(described.env)
         return {**base, **texts(described.additional_env or {})}
 
-    def _output(self, context: LaunchContext) -> str:
+    def _ExecuteLocal__output(self, context: LaunchContext) -> str:
         if isinstance(self.output, Mapping):
             return ",".join(f"{name}={value}" for name, value in self.output.items())
         return text_of(context, self.output)
 
     def describe(self) -> str:
         """Return which program it starts, and where that is said."""
-        return f"{type(self).__name__} of {os.path.basename(self.where)}"  # noqa: PTH119  # with the line
+        return f"{type(self).__name__} of {os.path.basename(self._LaunchDescriptionEntity__where)}"  # noqa: PTH119  # with the line
 
-    def note_output(self, output: bytes, stream: int) -> None:
+    def _ExecuteLocal__note_output(self, output: bytes, stream: int) -> None:
         """Keep what the process has written: 1 is standard output, 2 is standard error."""
-        self._cached[stream] += output
+        self._ExecuteLocal__cached[stream] += output
 
     def get_stdout(self) -> str:
         """Return what it has written to standard output so far.
@@ -187,7 +193,7 @@ class ExecuteLocal(Action):
         Raises:
             RuntimeError: The action has no ``cached_output=True``.
         """
-        return self._written_to(1)
+        return self._ExecuteLocal__written_to(1)
 
     def get_stderr(self) -> str:
         """Return what it has written to standard error so far.
@@ -195,12 +201,12 @@ class ExecuteLocal(Action):
         Raises:
             RuntimeError: The action has no ``cached_output=True``.
         """
-        return self._written_to(2)
+        return self._ExecuteLocal__written_to(2)
 
-    def _written_to(self, stream: int) -> str:
-        if not self.cached_output:
+    def _ExecuteLocal__written_to(self, stream: int) -> str:
+        if not self._ExecuteLocal__cached_output:
             raise RuntimeError("cached output must be true to be able to get output")
-        return self._cached[stream].decode(errors="replace")
+        return self._ExecuteLocal__cached[stream].decode(errors="replace")
 
 
 class ExecuteProcess(ExecuteLocal):

@@ -54,9 +54,9 @@ class DeclareLaunchArgument(Action):
         self.description = description or ""
         self.choices = None if choices is None else list(choices)
         if self.choices is not None and isinstance(default_value, str):
-            self._check(default_value)
+            self._DeclareLaunchArgument__check(default_value)
 
-    def _check(self, value: str) -> None:
+    def _DeclareLaunchArgument__check(self, value: str) -> None:
         if self.choices is not None and value not in self.choices:
             raise ValueError(
                 f"argument '{self.name}' is {value!r}; these fit: {', '.join(self.choices)}"
@@ -74,7 +74,7 @@ class DeclareLaunchArgument(Action):
                 )
             value = perform_substitutions(context, self.default_value)
             context.launch_configurations[self.name] = value
-        self._check(context.launch_configurations[self.name])
+        self._DeclareLaunchArgument__check(context.launch_configurations[self.name])
 
 
 class SetLaunchConfiguration(Action):
@@ -130,13 +130,13 @@ class ResetLaunchConfigurations(Action):
         **options: Any,
     ) -> None:
         super().__init__(**options)
-        self.launch_configurations = dict(launch_configurations or {})
+        self._ResetLaunchConfigurations__launch_configurations = dict(launch_configurations or {})
 
     def execute(self, context: LaunchContext) -> None:
         """Remove the others."""
         kept = {
             text_of(context, name): text_of(context, value)
-            for name, value in self.launch_configurations.items()
+            for name, value in self._ResetLaunchConfigurations__launch_configurations.items()
         }
         context.launch_configurations.clear()
         context.launch_configurations.update(kept)
@@ -155,22 +155,22 @@ class GroupAction(Action):
         **options: Any,
     ) -> None:
         super().__init__(**options)
-        self.actions = list(actions)
-        self.scoped = scoped
-        self.forwarding = forwarding
-        self.launch_configurations = dict(launch_configurations or {})
+        self._GroupAction__actions = list(actions)
+        self._GroupAction__scoped = scoped
+        self._GroupAction__forwarding = forwarding
+        self._GroupAction__launch_configurations = dict(launch_configurations or {})
 
     def get_sub_entities(self) -> list[Any]:
         """Return the actions, and those that begin and end the scope."""
-        given = self.launch_configurations
+        given = self._GroupAction__launch_configurations
         sets: list[Action] = [SetLaunchConfiguration(*pair) for pair in given.items()]
-        if not self.scoped:
-            return [*sets, *self.actions]
-        if not self.forwarding:
+        if not self._GroupAction__scoped:
+            return [*sets, *self._GroupAction__actions]
+        if not self._GroupAction__forwarding:
             sets = [ResetEnvironment(), ResetLaunchConfigurations(given)]
         begin = [PushLaunchConfigurations(), PushEnvironment()]
         end = [PopEnvironment(), PopLaunchConfigurations()]
-        return [*begin, *sets, *self.actions, *end]
+        return [*begin, *sets, *self._GroupAction__actions, *end]
 
     def execute(self, context: LaunchContext) -> list[Any]:
         """Return the actions."""
@@ -189,18 +189,21 @@ class OpaqueFunction(Action):
         **options: Any,
     ) -> None:
         super().__init__(**options)
-        self.function = function
-        self.args = list(args or ())
-        self.kwargs = dict(kwargs or {})
+        self._OpaqueFunction__function = function
+        self._OpaqueFunction__args = list(args or ())
+        self._OpaqueFunction__kwargs = dict(kwargs or {})
 
     def execute(self, context: LaunchContext) -> Any:
         """Call it."""
         context.need_present(self.describe())
-        return self.function(context, *self.args, **self.kwargs)
+        return self._OpaqueFunction__function(
+            context, *self._OpaqueFunction__args, **self._OpaqueFunction__kwargs
+        )
 
     def describe(self) -> str:
         """Return which function it calls."""
-        return f"OpaqueFunction({getattr(self.function, '__name__', self.function)})"
+        function = self._OpaqueFunction__function
+        return f"OpaqueFunction({getattr(function, '__name__', function)})"
 
 
 class OpaqueCoroutine(Action):
@@ -218,20 +221,23 @@ class OpaqueCoroutine(Action):
         super().__init__(**options)
         if not inspect.iscoroutinefunction(coroutine):
             raise TypeError(f"OpaqueCoroutine: coroutine= is {coroutine!r}; an async function fits")
-        self.coroutine = coroutine
-        self.args = list(args or ())
-        self.kwargs = dict(kwargs or {})
-        self.ignore_context = ignore_context
+        self._OpaqueCoroutine__coroutine = coroutine
+        self._OpaqueCoroutine__args = list(args or ())
+        self._OpaqueCoroutine__kwargs = dict(kwargs or {})
+        self._OpaqueCoroutine__ignore_context = ignore_context
 
     def execute(self, context: LaunchContext) -> None:
         """Note that it is to be run."""
         context.steps.append(Call(self, context.fork()))
 
-    async def call(self, context: LaunchContext) -> None:
+    async def _OpaqueCoroutine__call(self, context: LaunchContext) -> None:
         """Run it to its end."""
-        first = () if self.ignore_context else (context,)
-        await self.coroutine(*first, *self.args, **self.kwargs)
+        first = () if self._OpaqueCoroutine__ignore_context else (context,)
+        await self._OpaqueCoroutine__coroutine(
+            *first, *self._OpaqueCoroutine__args, **self._OpaqueCoroutine__kwargs
+        )
 
     def describe(self) -> str:
         """Return which function it runs."""
-        return f"OpaqueCoroutine({getattr(self.coroutine, '__name__', self.coroutine)})"
+        coroutine = self._OpaqueCoroutine__coroutine
+        return f"OpaqueCoroutine({getattr(coroutine, '__name__', coroutine)})"

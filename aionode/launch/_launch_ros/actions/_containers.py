@@ -35,17 +35,23 @@ class ComposableNodeContainer(Node):
         super().__init__(
             name=name, namespace=namespace, package=package, executable=executable, **options
         )
-        self.composable_node_descriptions = list(composable_node_descriptions or ())
+        self._ComposableNodeContainer__composable_node_descriptions = list(
+            composable_node_descriptions or ()
+        )
 
     def execute(self, context: LaunchContext) -> Any:
         """Note the container, if it needs a process, and its nodes."""
-        components = components_of(context, self.composable_node_descriptions)
+        components = components_of(
+            context, self._ComposableNodeContainer__composable_node_descriptions
+        )
         if components and all(component.is_aionode for component in components):
-            self.arguments_of_ros(context)  # which settles its name
+            self._ExecuteLocal__arguments_of_ros(context)  # which settles its name
         else:
             super().execute(context)
         if components:
-            context.steps.append(LoadNodes(self.node_name, components, self.where))
+            context.steps.append(
+                LoadNodes(self.node_name, components, self._LaunchDescriptionEntity__where)
+            )
 
 
 class LoadComposableNodes(Action):
@@ -59,24 +65,26 @@ class LoadComposableNodes(Action):
         **options: Any,
     ) -> None:
         super().__init__(**options)
-        self.composable_node_descriptions = list(composable_node_descriptions)
-        self.target_container = target_container
+        self._LoadComposableNodes__composable_node_descriptions = list(composable_node_descriptions)
+        self._LoadComposableNodes__target_container = target_container
 
     def execute(self, context: LaunchContext) -> None:
         """Note the nodes."""
-        target = self.target_container
+        target = self._LoadComposableNodes__target_container
         if isinstance(target, ComposableNodeContainer):
             name: str | None = target.node_name
         else:
             name = text_or_none(context, target)
-        components = components_of(context, self.composable_node_descriptions)
+        components = components_of(context, self._LoadComposableNodes__composable_node_descriptions)
         if components:
-            context.steps.append(LoadNodes(name or "", components, self.where))
+            context.steps.append(
+                LoadNodes(name or "", components, self._LaunchDescriptionEntity__where)
+            )
 
 
 def components_of(
     context: LaunchContext, descriptions: Iterable[ComposableNode]
 ) -> list[Component]:
     """Return the nodes whose conditions hold."""
-    components = (description.component(context) for description in descriptions)
+    components = (description._ComposableNode__component(context) for description in descriptions)
     return [component for component in components if component is not None]

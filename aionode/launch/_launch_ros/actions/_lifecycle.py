@@ -29,16 +29,11 @@ class LifecycleNode(Node):
         **options: Any,
     ) -> None:
         super().__init__(name=name, namespace=namespace, **options)
-        self.autostart = autostart
+        self._LifecycleNode__autostart = autostart
 
-    def autostarts(self, context: LaunchContext) -> bool:
+    def _ExecuteLocal__autostarts(self, context: LaunchContext) -> bool:
         """Return whether the node is configured and activated."""
-        return bool(perform_typed_substitution(context, self.autostart, bool))
-
-    @property
-    def is_lifecycle(self) -> bool:
-        """Always true."""
-        return True
+        return bool(perform_typed_substitution(context, self._LifecycleNode__autostart, bool))
 
 
 class LifecycleTransition(Action):
@@ -52,12 +47,15 @@ class LifecycleTransition(Action):
         **options: Any,
     ) -> None:
         super().__init__(**options)
-        self.lifecycle_node_names = list(lifecycle_node_names)
-        self.transition_ids = list(transition_ids)
+        self._LifecycleTransition__lifecycle_node_names = list(lifecycle_node_names)
+        self._LifecycleTransition__transition_ids = list(transition_ids)
 
     def execute(self, context: LaunchContext) -> list[Action]:
         """Return the requests."""
-        names = [text_or_none(context, name) or "" for name in self.lifecycle_node_names]
+        names = [
+            text_or_none(context, name) or ""
+            for name in self._LifecycleTransition__lifecycle_node_names
+        ]
         return [
             EmitEvent(
                 event=ChangeState(
@@ -65,5 +63,5 @@ class LifecycleTransition(Action):
                 )
             )
             for name in names
-            for transition in self.transition_ids
+            for transition in self._LifecycleTransition__transition_ids
         ]

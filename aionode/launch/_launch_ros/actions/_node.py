@@ -49,48 +49,50 @@ class Node(ExecuteProcess):
             raise TypeError(f"Node: parameters= is {parameters!r}; a list fits")
         self.node_executable = executable
         self.node_package = package
-        self.given_name = name
-        self.given_namespace = namespace
-        self.parameters = list(parameters or ())
-        self.remappings = list(remappings or ())
-        self._full_name: str | None = None
-        self._program_name = ""
+        self._Node__given_name = name
+        self._Node__given_namespace = namespace
+        self._Node__parameters = list(parameters or ())
+        self._Node__remappings = list(remappings or ())
+        self._Node__full_name: str | None = None
+        self._Node__program_name = ""
 
     @property
     def node_name(self) -> str:
         """The full name of the node, once the action has been evaluated."""
-        if self._full_name is None:
+        if self._Node__full_name is None:
             raise RuntimeError("cannot access 'node_name' before executing action")
-        return self._full_name
+        return self._Node__full_name
 
     def is_node_name_fully_specified(self) -> bool:
         """Return whether the description gives the node its name and its namespace."""
         return "<" not in self.node_name
 
-    def executable_words(self, context: LaunchContext) -> list[str]:
+    def _ExecuteLocal__executable_words(self, context: LaunchContext) -> list[str]:
         """Return the path of the executable, and the arguments."""
-        executable, *arguments = super().executable_words(context)
-        self._program_name = Path(executable).name.rpartition(":")[2]
+        executable, *arguments = super()._ExecuteLocal__executable_words(context)
+        self._Node__program_name = Path(executable).name.rpartition(":")[2]
         if self.node_package is None:
             return [*command_of(executable), *arguments]
         package = text_or_none(context, self.node_package) or ""
         return [*context.packages.command(package, executable), *arguments]
 
-    def program_name(self, context: LaunchContext, words: list[str]) -> str:
+    def _ExecuteLocal__program_name(self, context: LaunchContext, words: list[str]) -> str:
         """Return the name of the executable, or of the class."""
-        return self._program_name
+        return self._Node__program_name
 
-    def node_name_in(self, context: LaunchContext) -> str | None:
+    def _ExecuteLocal__node_name_in(self, context: LaunchContext) -> str | None:
         """Return the full name of the node, if name and namespace are known."""
         return self.node_name if self.is_node_name_fully_specified() else None
 
-    def arguments_of_ros(self, context: LaunchContext) -> list[str | ParameterValues]:
+    def _ExecuteLocal__arguments_of_ros(
+        self, context: LaunchContext
+    ) -> list[str | ParameterValues]:
         """Return what follows ``--ros-args``: name, namespace, parameters, remapping rules."""
-        name = text_or_none(context, self.given_name)
+        name = text_or_none(context, self._Node__given_name)
         if name is not None:
             validate_node_name(name)
-        namespace = namespace_in(context, text_or_none(context, self.given_namespace))
-        self._full_name = joined(
+        namespace = namespace_in(context, text_or_none(context, self._Node__given_namespace))
+        self._Node__full_name = joined(
             namespace or self.UNSPECIFIED_NODE_NAMESPACE, name or self.UNSPECIFIED_NODE_NAME
         )
         arguments: list[str | ParameterValues] = ["--ros-args"]
@@ -98,14 +100,16 @@ class Node(ExecuteProcess):
             arguments += ["-r", f"__node:={name}"]
         if namespace is not None:
             arguments += ["-r", f"__ns:={namespace}"]
-        arguments += parameter_arguments(context, self.parameters, self.node_name_in(context))
-        for source, target in remap_pairs(context, self.remappings):
+        arguments += parameter_arguments(
+            context, self._Node__parameters, self._ExecuteLocal__node_name_in(context)
+        )
+        for source, target in remap_pairs(context, self._Node__remappings):
             arguments += ["-r", f"{source}:={target}"]
         return arguments
 
     def describe(self) -> str:
         """Return which node it is, by its name where that is known."""
-        named = self.given_name if isinstance(self.given_name, str) else None
+        named = self._Node__given_name if isinstance(self._Node__given_name, str) else None
         executable = normalize_to_list_of_substitutions(self.node_executable)
         return named or "".join(getattr(sub, "text", sub.describe()) for sub in executable)
 

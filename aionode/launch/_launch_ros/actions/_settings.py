@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from aionode.launch._launch.action import Action
-from aionode.launch._launch.actions import SetEnvironmentVariable, TimerAction
+from aionode.launch._launch.actions import TimerAction
 from aionode.launch._launch.launch_context import LaunchContext
 from aionode.launch._launch.substitution import (
     SomeSubstitutionsType,
@@ -68,11 +68,15 @@ class SetParametersFromFile(Action):
 
     def __init__(self, filename: SomeSubstitutionsType, **options: Any) -> None:
         super().__init__(**options)
-        self.filename = normalize_to_list_of_substitutions(filename)
+        self._SetParametersFromFile__filename = normalize_to_list_of_substitutions(filename)
 
     def execute(self, context: LaunchContext) -> None:
         """Add it."""
-        add(context, "global_params", [perform_substitutions(context, self.filename)])
+        add(
+            context,
+            "global_params",
+            [perform_substitutions(context, self._SetParametersFromFile__filename)],
+        )
 
 
 class SetUseSimTime(Action):
@@ -99,11 +103,16 @@ class SetRemap(Action):
         add(context, "ros_remaps", [pair])
 
 
-class SetROSLogDir(SetEnvironmentVariable):
+class SetROSLogDir(Action):
     """Says where nodes write their logs."""
 
     def __init__(self, new_log_dir: SomeSubstitutionsType, **options: Any) -> None:
-        super().__init__("ROS_LOG_DIR", new_log_dir, **options)
+        super().__init__(**options)
+        self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Tell the nodes that start later."""
+        context.environment["ROS_LOG_DIR"] = perform_substitutions(context, self.log_dir)
 
 
 class ROSTimer(TimerAction):
