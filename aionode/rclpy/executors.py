@@ -202,7 +202,7 @@ class Executor:
 
     @property
     def is_spinning(self) -> bool:
-        """Whether a thread is in `spin` or `spin_until_future_complete`; of newer rclpy."""
+        """Whether a thread is in one of the methods whose names begin with spin; of newer rclpy."""
         return self._Executor__spins > 0
 
     @contextmanager
@@ -263,14 +263,19 @@ class Executor:
             NotImplementedError: it is an executor of one's own that does not define this.
             Exception: what the callback raised, or an earlier one that a thread has called.
         """
-        self._spin_once_impl(timeout_sec)
+        self._Executor__spins += 1  # not `__spinning()`, which would be a tenth of a callback
+        try:
+            self._spin_once_impl(timeout_sec)
+        finally:
+            self._Executor__spins -= 1
 
     def spin_once_until_future_complete(
         self, future: Future[Any], timeout_sec: float | TimeoutObject | None = None
     ) -> None:
         """As `spin_once`, but no longer than until `future` is done."""
         future.add_done_callback(lambda _: self.wake())
-        self._spin_once_impl(timeout_sec, future.done)
+        with self._Executor__spinning():
+            self._spin_once_impl(timeout_sec, future.done)
 
     def _spin_once_impl(
         self,

@@ -154,7 +154,18 @@ def test_a_request_may_be_answered_later_from_anywhere(
     assert wait(answer).sum == 3
 
 
-def test_an_executor_says_whether_it_spins(context: aionode.rclpy.Context, node: Node) -> None:
+@pytest.mark.parametrize(
+    "spin",
+    [
+        lambda executor, _: executor.spin_once(PATIENCE_S),
+        lambda executor, seen: executor.spin_once_until_future_complete(seen, PATIENCE_S),
+        lambda executor, seen: executor.spin_until_future_complete(seen, PATIENCE_S),
+    ],
+    ids=["once", "once until", "until"],
+)
+def test_an_executor_says_whether_it_spins(
+    context: aionode.rclpy.Context, node: Node, spin: Callable[[Any, Future[bool]], None]
+) -> None:
     """Programs decide by it whether they may wait for a callback."""
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
@@ -167,7 +178,7 @@ def test_an_executor_says_whether_it_spins(context: aionode.rclpy.Context, node:
     node.create_timer(0.0, look)
 
     assert not executor.is_spinning
-    executor.spin_until_future_complete(seen, timeout_sec=PATIENCE_S)
+    spin(executor, seen)
 
     assert seen.result()
     assert not executor.is_spinning
