@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Iterable, Sequence
 from importlib import import_module
@@ -187,8 +186,9 @@ def of_one_name(fullname: str, own: str) -> ModuleSpec | None:
     if not exists(parent):
         return None
     package = import_module(parent)
-    names = (re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower() for name in package.__all__)
-    if last.removesuffix("_action") not in names:
+    names = {name.replace("_", "").lower() for name in package.__all__}  # SetROSLogDir, set_ros_…
+    named = (last, last.removesuffix("_action"), last.removesuffix("_impl"))
+    if names.isdisjoint(name.replace("_", "") for name in named):
         return None
     return spec_from_loader(fullname, NamesLoader(package))
 

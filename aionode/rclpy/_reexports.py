@@ -19,9 +19,9 @@ NAMES: Final = """
         GetResultServiceResponse GoalStatusArray SendGoalKWargs SendGoalServiceResponse
         ServiceIntrospectionState Time TracebackType UUID Waitable time
     rclpy.action.graph: Node
-    rclpy.action.server: Action CancelGoal Clock Enum FeedbackMessage GetResultServiceRequest
-        GetResultServiceResponse GoalInfo SendGoalServiceRequest ServerGoalHandleDict
-        ServiceIntrospectionState Task TracebackType UUID Waitable traceback
+    rclpy.action.server: functools Action CancelGoal Clock Enum FeedbackMessage
+        GetResultServiceRequest GetResultServiceResponse GoalInfo SendGoalServiceRequest
+        ServerGoalHandleDict ServiceIntrospectionState Task TracebackType UUID Waitable traceback
     rclpy.callback_groups: Lock
     rclpy.client: CallbackGroup Clock Context QoSProfile ServiceIntrospectionState Srv
         SrvRequestT SrvResponseT SrvType SrvTypeRequest SrvTypeResponse TracebackType time
@@ -46,18 +46,17 @@ NAMES: Final = """
     rclpy.logging: Path
     rclpy.logging_service: GetLoggerLevels LoggerLevel LoggingSeverity SetLoggerLevels
         SetLoggerLevelsResult TOPIC_SEPARATOR_STRING qos_profile_services_default rclpy
-    rclpy.node: AllowableParameterValue AllowableParameterValueT ContentFilterOptions Context
-        FloatingPointRange IntegerRange InvalidParameterTypeException
-        InvalidParameterValueException InvalidTopicNameException ListParameters
-        ListParametersResult MessageInfo MsgT MsgType PARAMETER_SEPARATOR_STRING
-        ParameterAlreadyDeclaredException ParameterDescriptor ParameterEvent
-        ParameterImmutableException ParameterMsg ParameterNotDeclaredException ParameterType
-        ParameterUninitializedException ParameterValue RcutilsLogger SetParametersResult Srv
-        SrvRequestT SrvResponseT SrvType SrvTypeRequest SrvTypeResponse TimerInfo
-        TopicEndpointInfo TracebackType Waitable expand_topic_name math time
-        validate_full_topic_name validate_namespace validate_node_name validate_parameter_name
+    rclpy.node: warnings AllowableParameterValue AllowableParameterValueT ContentFilterOptions
+        Context FloatingPointRange IntegerRange InvalidParameterTypeException
+        InvalidParameterValueException InvalidTopicNameException ListParameters ListParametersResult
+        MessageInfo MsgT MsgType PARAMETER_SEPARATOR_STRING ParameterAlreadyDeclaredException
+        ParameterDescriptor ParameterEvent ParameterImmutableException ParameterMsg
+        ParameterNotDeclaredException ParameterType ParameterUninitializedException ParameterValue
+        RcutilsLogger SetParametersResult Srv SrvRequestT SrvResponseT SrvType SrvTypeRequest
+        SrvTypeResponse TimerInfo TopicEndpointInfo TracebackType Waitable expand_topic_name math
+        time validate_full_topic_name validate_namespace validate_node_name validate_parameter_name
         validate_topic_name
-    rclpy.parameter: ParameterMsg ParameterType ParameterValue yaml
+    rclpy.parameter: ParameterMsg ParameterType ParameterValue sys yaml
     rclpy.parameter_client: CallbackGroup Client DescribeParameters Future GetParameterTypes
         GetParameters ListParameters MessageInfo Node ParameterEvent ParameterMsg
         QoSOverridingOptions SetParameters SetParametersAtomically Subscription
@@ -100,17 +99,26 @@ NAMES: Final = """
     rclpy.waitable: TracebackType
     rclpy.qos_event: CallbackGroup EventHandlerData NumberOfEntities TracebackType Waitable
         get_logger qos_policy_name_from_kind rclpy
+    message_filters: Duration LoggingSeverity itertools rclpy reduce
+    rclpy.clock_type: rclpy.constants: rclpy.exceptions: rclpy.lifecycle.managed_entity:
+    rclpy.service_introspection: rclpy.task: ament_index_python.resources:
+    ament_index_python.search_paths: ament_index_python.packages:
+        get_resource=ament_index_python.resources.get_resource
+        get_search_paths=ament_index_python.search_paths.get_search_paths os pathlib
     tf2_ros: ActionClient Clock Duration DurabilityPolicy FrameGraph Future Header HistoryPolicy
         JumpThreshold LookupTransform Node PointCloud2 PointStamped PoseStamped
         PoseWithCovarianceStamped QoSProfile ReentrantCallbackGroup SingleThreadedExecutor TFMessage
         Thread Time=rclpy.time.Time TimeJump TransformStamped Vector3Stamped builtin_interfaces
         deepcopy rclpy sleep threading warnings
-    tf2_ros.buffer: FrameGraph Future JumpThreshold Node Time=rclpy.time.Time TimeJump
-        TransformStamped rclpy sleep tf2_ros
-    tf2_ros.buffer_client: Clock Node Time=rclpy.time.Time TransformStamped LookupTransform
-        builtin_interfaces sleep tf2_ros warnings
-    tf2_ros.buffer_interface: Header PointCloud2 PointStamped PoseStamped PoseWithCovarianceStamped
-        Time=rclpy.time.Time TransformStamped Vector3Stamped rclpy tf2_ros
+    tf2_ros.buffer: FrameGraphSrvRequest=tf2_msgs.srv.FrameGraph.Request
+        FrameGraphSrvResponse=tf2_msgs.srv.FrameGraph.Response tf2=tf2_py FrameGraph Future
+        JumpThreshold Node Time=rclpy.time.Time TimeJump TransformStamped rclpy sleep tf2_ros
+    tf2_ros.buffer_client: LookupTransformGoal=tf2_msgs.action.LookupTransform.Goal
+        LookupTransformResult=tf2_msgs.action.LookupTransform.Result tf2=tf2_py Clock Node
+        Time=rclpy.time.Time TransformStamped LookupTransform builtin_interfaces sleep tf2_ros
+        warnings
+    tf2_ros.buffer_interface: tf2=tf2_py Header PointCloud2 PointStamped PoseStamped
+        PoseWithCovarianceStamped Time=rclpy.time.Time TransformStamped Vector3Stamped rclpy tf2_ros
     tf2_ros.static_transform_broadcaster: DurabilityPolicy HistoryPolicy Node QoSProfile TFMessage
         TransformStamped
     tf2_ros.transform_broadcaster: Node QoSProfile TFMessage TransformStamped
@@ -141,7 +149,7 @@ ORIGINS: Final = """
     contextlib: ExitStack
     copy: deepcopy
     enum: Enum IntEnum
-    functools: partial
+    functools: partial reduce
     geometry_msgs.msg: Point Point32 PointStamped PolygonStamped Pose PoseStamped
         PoseWithCovarianceStamped Transform TransformStamped Vector3Stamped
     pathlib: Path
@@ -293,4 +301,6 @@ def loaded(origin: str) -> Any:
         return import_module(origin)
     except ModuleNotFoundError:
         parent, _, part = origin.rpartition(".")
-        return getattr(import_module(parent), part)
+        if not parent:
+            raise
+        return getattr(loaded(parent), part)

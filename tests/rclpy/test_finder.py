@@ -328,8 +328,12 @@ def test_aionode_itself_imports_none_of_this() -> None:
     [
         ("rclpy.node", ("Callable", "Optional", "Union")),
         ("rclpy.executors", ("Set", "TYPE_CHECKING")),
+        ("rclpy.task", ("Callable", "Optional")),
+        ("rclpy.exceptions", ("Optional", "Union")),
+        ("message_filters", ("Duration", "itertools", "reduce", "rclpy")),
+        ("ament_index_python.packages", ("get_resource", "os", "pathlib")),
         ("tf2_ros", ("TransformStamped", "Node", "Duration", "Time", "TFMessage", "Any")),
-        ("tf2_ros.buffer", ("TransformStamped", "Future")),
+        ("tf2_ros.buffer", ("TransformStamped", "Future", "FrameGraphSrvRequest", "tf2")),
         ("tf2_ros.transform_listener", ("Buffer", "Node")),
         ("tf2_geometry_msgs", ("PoseStamped", "PointStamped", "np")),
         ("tf2_sensor_msgs", ("PointCloud2", "read_points")),
@@ -351,3 +355,20 @@ def test_a_time_of_tf2_is_one_of_rclpy() -> None:
     tf2_ros, time = map(importlib.import_module, ("tf2_ros", "rclpy.time"))
 
     assert tf2_ros.Time is time.Time
+
+
+@pytest.mark.usefixtures("installed")
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [
+        ("launch.actions.execute_process", "ExecuteProcess"),
+        ("launch.actions.group_action", "GroupAction"),
+        ("launch.actions.timer_action", "TimerAction"),
+        ("launch.actions.shutdown_action", "Shutdown"),
+        ("launch_ros.actions.set_ros_log_dir", "SetROSLogDir"),
+        ("launch.utilities.perform_substitutions_impl", "perform_substitutions"),
+    ],
+)
+def test_a_class_of_launch_has_a_module_of_its_own(module: str, name: str) -> None:
+    """As in ROS, where each class and function is in a file that is named after it."""
+    assert callable(getattr(importlib.import_module(module), name))
