@@ -227,6 +227,7 @@ class Task(Future[T]):
             except BaseException as error:  # the end of the program, which runs no step again
                 self._finish()
                 self.set_exception(error)
+                self._exception_fetched = True  # whoever has called this gets it
                 raise
             self._finish()
             self.set_result(result)

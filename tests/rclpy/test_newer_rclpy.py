@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -199,6 +200,28 @@ def test_the_end_of_the_program_ends_the_spin_of_several_threads(
             executor.spin()
 
     assert caught.value.code == 7
+
+
+@pytest.mark.parametrize("executor_class", [SingleThreadedExecutor, MultiThreadedExecutor])
+def test_the_end_of_the_program_is_no_exception_that_nobody_has_retrieved(
+    context: aionode.rclpy.Context,
+    executor_class: type[SingleThreadedExecutor | MultiThreadedExecutor],
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    """`spin` raises it; rclpy prints no line more."""
+
+    async def leave() -> None:
+        raise SystemExit(7)
+
+    executor = executor_class(context=context)
+    with executor:
+        task = executor.create_task(leave)
+        with pytest.raises(SystemExit):
+            executor.spin()
+    del task
+    gc.collect()
+
+    assert "never retrieved" not in capfd.readouterr().err
 
 
 def test_a_busy_pool_takes_nothing_that_it_cannot_call(
