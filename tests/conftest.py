@@ -200,7 +200,7 @@ def own_imports() -> Iterator[None]:
             sys.meta_path.remove(finder)
     if loaded := sys.modules.get("aionode._packages._here"):
         loaded.GIVEN.clear()
-    if loaded := sys.modules.get("aionode.idl._named"):
+    if loaded := sys.modules.get("aionode.idl.named"):
         loaded.NAMED.__init__()
         loaded.SEEN.clear()
         for name, module in list(sys.modules.items()):

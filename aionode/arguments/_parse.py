@@ -29,7 +29,7 @@ from aionode.errors import (
     ParameterFileError,
     UnknownROSArgsError,
 )
-from aionode.logging._severity import LoggingSeverity, get_logging_severity_from_string
+from aionode.logging import LoggingSeverity, get_logging_severity_from_string
 from aionode.names import RemapRule
 
 __all__ = ["Arguments", "parse_arguments", "remove_ros_args"]

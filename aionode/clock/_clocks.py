@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock._time_base import Alarm, MachineTime, TimeBase
-from aionode.clock._timer_heap import TimerHeap
 from aionode.clock._values import S_TO_NS, ClockType, Duration, Time, expect_clock_type, time_at
+from aionode.clock.timer_heap import TimerHeap
 from aionode.errors import EntityDestroyedError, TimeSourceChangedError, brief
 
 if TYPE_CHECKING:

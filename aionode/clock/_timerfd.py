@@ -16,12 +16,12 @@ import weakref
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from aionode.clock._timer_heap import TimerHeap
+from aionode.clock.timer_heap import TimerHeap
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.clock._timer_heap import Entry
+    from aionode.clock.timer_heap import Entry
 
 __all__ = ["KernelAlarms", "PeriodicAlarm"]
 

@@ -6,7 +6,7 @@ import math
 from enum import IntEnum
 from typing import TYPE_CHECKING, overload
 
-from aionode.errors._base import brief
+from aionode.errors import brief
 
 if TYPE_CHECKING:
     from aionode.interfaces.builtin_interfaces import msg as builtin_msg

@@ -23,7 +23,7 @@ from aionode.endpoints.service_introspection import (
 )
 from aionode.endpoints.stats import CallbackStats
 from aionode.message import Message, type_name
-from aionode.message._memory_size import memory_size
+from aionode.message.memory_size import memory_size
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -32,7 +32,7 @@ from aionode.endpoints.stats import CallbackStats
 from aionode.engine.transport.base import ReaderRegistration
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.message import Message
-from aionode.message._memory_size import memory_size
+from aionode.message.memory_size import memory_size
 from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:

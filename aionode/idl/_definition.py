@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from aionode.message import FieldType
-from aionode.message._message import checked_type_name
+from aionode.message.type_names import checked_type_name
 
 __all__ = [
     "HALVES",

@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias
 from aionode.idl._definition import HALVES, split_type_name
 from aionode.idl._folder import read
 from aionode.idl._installed import installed_file
-from aionode.idl._named import NAMED
+from aionode.idl.named import NAMED
 from aionode.interfaces import shipped_packages
 from aionode.message import (
     ActionType,

@@ -31,7 +31,7 @@ from typing import Any
 
 from aionode.errors import InterfaceNotFoundError
 from aionode.message import ActionType, Message, ServiceType
-from aionode.message._message import TYPES_BY_NAME
+from aionode.message.type_names import TYPES_BY_NAME
 
 __all__ = [
     "get_action",
@@ -190,7 +190,7 @@ def known_packages() -> frozenset[str]:
     """Return the names of all packages: shipped, loaded, written, of folders, or sourced."""
     names: frozenset[str] = shipped_packages() | loaded_packages()
     names |= {name.split("/")[0] for name in TYPES_BY_NAME}
-    names |= import_module("aionode.idl._named").packages()  # by name: it is made of this package
+    names |= import_module("aionode.idl.named").packages()  # by name: it is made of this package
     if is_sourced():
         names |= import_module("aionode.idl._installed").packages()
     return names
@@ -315,7 +315,7 @@ def found_elsewhere(fullname: str, package: str, kind: str) -> ModuleSpec | None
     """
     if not PACKAGE_NAME.fullmatch(package) or (kind and kind not in KINDS):
         return None
-    folders = import_module("aionode.idl._named")  # by name: it is made of this package
+    folders = import_module("aionode.idl.named")  # by name: it is made of this package
     spec: ModuleSpec | None = folders.found(fullname, package, kind)
     if spec is not None:
         return spec

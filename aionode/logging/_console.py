@@ -15,7 +15,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple, TextIO
 
-from aionode.clock._values import S_TO_NS
+from aionode.clock import S_TO_NS
 from aionode.errors import ConfigurationError
 
 __all__ = [

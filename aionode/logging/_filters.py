@@ -10,7 +10,7 @@ from collections.abc import Callable
 from types import CodeType, FrameType
 from typing import TYPE_CHECKING, TypedDict
 
-from aionode.clock._values import S_TO_NS
+from aionode.clock import S_TO_NS
 from aionode.errors import brief
 
 if TYPE_CHECKING:

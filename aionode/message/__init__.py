@@ -7,14 +7,6 @@ attributes of a message class are its fields and constants, as those may have an
 
 from __future__ import annotations
 
-from aionode.message._conversion import (
-    from_builtins,
-    from_json,
-    from_yaml,
-    to_builtins,
-    to_json,
-    to_yaml,
-)
 from aionode.message._field_types import (
     DTYPES,
     Array,
@@ -52,7 +44,15 @@ from aionode.message._service_types import (
     ServiceType,
 )
 from aionode.message._snapshot import check, checker, holds_arrays, snapshot, snapshotter
-from aionode.message._validation import fit, fit_element
+from aionode.message.conversion import (
+    from_builtins,
+    from_json,
+    from_yaml,
+    to_builtins,
+    to_json,
+    to_yaml,
+)
+from aionode.message.validation import fit, fit_element
 
 __all__ = [
     "DEFAULT",

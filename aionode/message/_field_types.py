@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias, get_args, get_origin
 
-from aionode.errors._base import brief
+from aionode.errors import brief
 
 __all__ = [
     "DTYPES",

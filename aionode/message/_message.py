@@ -12,21 +12,20 @@ import functools
 import re
 import sys
 from keyword import iskeyword
-from typing import TYPE_CHECKING, Any, ClassVar, Final, dataclass_transform, get_args, get_origin
-from weakref import WeakValueDictionary
+from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, get_origin
 
 import msgspec
 
 from aionode.message._field_types import Constant, Field, field_type
 from aionode.message._serialized import unserialized
-from aionode.message._validation import default_value, plain_default, same, shown
+from aionode.message.type_names import TYPES_BY_NAME, checked_type_name
+from aionode.message.validation import default_value, plain_default, same, shown
 
 if TYPE_CHECKING:
     from types import FrameType
 
 __all__ = [
     "DEFAULT",
-    "TYPES_BY_NAME",
     "Message",
     "MessageMeta",
     "constants",
@@ -42,15 +41,7 @@ It is also the default of fields without one; writing it tells type checkers tha
 omitted.
 """
 
-TYPE_NAME = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9_]*")
 FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
-
-TYPES_BY_NAME: Final[WeakValueDictionary[str, type[Any]]] = WeakValueDictionary()
-"""The newest message, service or action class of each ROS name that this program has defined.
-
-Classes made from the descriptions of other nodes are not among them: a peer must not decide what a
-name means here.
-"""
 
 
 class MessageMeta(msgspec.StructMeta):
@@ -120,14 +111,6 @@ def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any
         key: eval(value, frame.f_globals, frame.f_locals) if isinstance(value, str) else value  # noqa: S307 (an annotation in the source of a class)
         for key, value in (annotations or {}).items()
     }
-
-
-def checked_type_name(name: str) -> str:
-    """Return `name` if it is a valid name of a ROS type; raise `TypeError` otherwise."""
-    if not TYPE_NAME.fullmatch(name):
-        msg = f"{name!r}: not a valid ROS type name; write it like 'my_robot_msgs/msg/Words'"
-        raise TypeError(msg)
-    return name
 
 
 def checked_field_name(owner: str, name: str) -> None:

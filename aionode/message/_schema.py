@@ -157,7 +157,7 @@ def pydantic_core_schema(cls: type[Message]) -> CoreSchema:
 
 def validated(cls: type[Message], value: object) -> Message:
     """Return `value` as a message of `cls`; raise MessageError, a ValueError, if it is invalid."""
-    from aionode.message._conversion import from_builtins
+    from aionode.message.conversion import from_builtins
 
     if isinstance(value, cls):
         return value
@@ -166,15 +166,15 @@ def validated(cls: type[Message], value: object) -> Message:
 
 def serialized(message: Message, info: SerializationInfo) -> dict[str, Any]:
     """Return a message as builtin types, only with values that JSON has in its JSON mode."""
-    from aionode.message._conversion import to_builtins
+    from aionode.message.conversion import to_builtins
 
     return in_json(message) if info.mode == "json" else to_builtins(message)
 
 
 def in_json(message: Message) -> dict[str, Any]:
     """Return a message as builtin types, only with values that JSON has."""
-    from aionode.message._conversion import Form, json_float, plain
     from aionode.message._snapshot import snapshot
+    from aionode.message.conversion import Form, json_float, plain
 
     return plain(snapshot(message), Form(json_float))
 

@@ -6,7 +6,8 @@ from types import new_class
 from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from aionode.message._field_types import Sequence, int8
-from aionode.message._message import TYPES_BY_NAME, Message, MessageMeta, checked_type_name
+from aionode.message._message import Message, MessageMeta
+from aionode.message.type_names import TYPES_BY_NAME, checked_type_name
 
 __all__ = ["ActionClass", "ActionType", "Interface", "ServiceClass", "ServiceType"]
 

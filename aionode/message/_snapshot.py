@@ -14,7 +14,7 @@ from aionode.errors import MessageError
 from aionode.message._field_types import INT_RANGES, FieldType
 from aionode.message._message import Message, fields, message_class, type_name
 from aionode.message._serialized import unserialized
-from aionode.message._validation import (
+from aionode.message.validation import (
     check_length,
     dtype_of,
     fit,

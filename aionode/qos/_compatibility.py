@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from enum import IntEnum
 from typing import Any, NamedTuple, TypeVar
 
-from aionode.clock._values import Duration
+from aionode.clock import Duration
 from aionode.qos._profile import (
     DeadlineBestAvailable,
     DurabilityPolicy,

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from enum import Enum, IntEnum
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from aionode.clock._values import CONST_INFINITE_NS, Duration
+from aionode.clock import CONST_INFINITE_NS, Duration
 from aionode.errors import InvalidQoSProfileException, brief
 
 __all__ = [

@@ -165,7 +165,7 @@ def maker_of(node: Callable[[], Node] | str) -> Callable[[], Any]:
     """
     if not isinstance(node, str):
         return node
-    from aionode._node_source import node_maker
+    from aionode.system.node_source import node_maker
 
     return node_maker(node)
 

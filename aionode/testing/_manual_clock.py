@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.clock import S_TO_NS, Alarm, ClockType, Time, TimeBase
-from aionode.clock._timer_heap import TimerHeap
-from aionode.clock._values import time_at
+from aionode.clock.timer_heap import TimerHeap
 from aionode.testing._quiescence import settle
 
 if TYPE_CHECKING:
@@ -39,7 +38,7 @@ class ManualClock(TimeBase):
 
     def now(self) -> Time:
         """Return the current time, of type ROS_TIME."""
-        return time_at(self._now_ns, ClockType.ROS_TIME)
+        return Time(nanoseconds=self._now_ns, clock_type=ClockType.ROS_TIME)
 
     async def advance(self, seconds: float) -> None:
         """Let `seconds` pass: everything due fires at its own time, in order.

@@ -28,14 +28,14 @@ from aionode.errors import (
     TimeoutException,
     TransformException,
 )
-from aionode.tf._apply import do_transform, register_transform, rotation_matrix
 from aionode.tf._broadcasters import StaticTransformBroadcaster, TransformBroadcaster
 from aionode.tf._buffer import Buffer
-from aionode.tf._buffer_core import BufferCore
 from aionode.tf._changes import Changes
 from aionode.tf._filter import Filtered
 from aionode.tf._listener import TransformListener
-from aionode.tf._remote import BufferClient, BufferServer
+from aionode.tf.apply import do_transform, register_transform, rotation_matrix
+from aionode.tf.buffer_core import BufferCore
+from aionode.tf.remote import BufferClient, BufferServer
 
 __all__ = [
     "BackwardExtrapolationException",

@@ -5,11 +5,11 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from aionode.tf._apply import transformer_of
-from aionode.tf._buffer_core import time_ns_of
 from aionode.tf._changes import Changes
 from aionode.tf._filter import Filtered
 from aionode.tf._node_buffer_core import LATEST, NodeBufferCore
+from aionode.tf.apply import transformer_of
+from aionode.tf.buffer_core import time_ns_of
 
 if TYPE_CHECKING:
     from aionode.endpoints.subscription import Subscription

@@ -9,9 +9,9 @@ from weakref import finalize, ref
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
-from aionode.tf._buffer_core import time_ns_of
-from aionode.tf._frame_listing import seconds_text
-from aionode.tf._waiters import Waiter
+from aionode.tf.buffer_core import time_ns_of
+from aionode.tf.frame_listing import seconds_text
+from aionode.tf.waiters import Waiter
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from aionode.endpoints.subscription import Subscription
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
     from aionode.tf._node_buffer_core import NodeBufferCore
-    from aionode.tf._waiters import Waiters
     from aionode.tf._walk import Failure
+    from aionode.tf.waiters import Waiters
 
 __all__ = ["Filtered"]
 

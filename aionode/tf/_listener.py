@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.graph import EndpointInfo
     from aionode.node import Node
-    from aionode.tf._buffer_core import BufferCore
+    from aionode.tf.buffer_core import BufferCore
 
 __all__ = ["STATIC_TOPIC", "TOPIC", "TransformListener"]
 

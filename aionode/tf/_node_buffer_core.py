@@ -9,11 +9,11 @@ from aionode.clock import S_TO_NS, ClockChange, Duration, JumpThreshold, Time
 from aionode.endpoints._core.entity import Entity
 from aionode.errors import TimeoutException, TransformException
 from aionode.tf._arithmetic import unit
-from aionode.tf._buffer_core import CACHE_TIME_SEC, BufferCore
-from aionode.tf._frame_listing import seconds_text
 from aionode.tf._listener import STATIC_TOPIC, TOPIC, TransformListener
-from aionode.tf._waiters import Part, Waiter, Waiters, problem_of
 from aionode.tf._walk import Failure
+from aionode.tf.buffer_core import CACHE_TIME_SEC, BufferCore
+from aionode.tf.frame_listing import seconds_text
+from aionode.tf.waiters import Part, Waiter, Waiters, problem_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable

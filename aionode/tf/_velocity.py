@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from aionode.clock import S_TO_NS
 from aionode.tf._arithmetic import Pose, composed, unit
-from aionode.tf._frame_listing import to_seconds
+from aionode.tf.frame_listing import to_seconds
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -13,7 +13,7 @@ from aionode.errors import (
     TransformException,
 )
 from aionode.tf._arithmetic import Pose, chained, composed, inverted
-from aionode.tf._frame_listing import frames_as_string, seconds_text
+from aionode.tf.frame_listing import frames_as_string, seconds_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable

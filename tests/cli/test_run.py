@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
-from aionode._node_source import node_maker
 from aionode.cli._main import main
 from aionode.cli._nouns.run import Programs
 from aionode.errors import CommandError, ExecutableNotFoundError, PackageNotFoundError
+from aionode.system.node_source import node_maker
 
 SOURCE = """
 from aionode import Node

@@ -26,7 +26,7 @@ from aionode.cli._nouns.tf_tree import FrameEdge, as_svg, as_text
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.testing import ManualClock, settle
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
-from aionode.tf._apply import matrix_of, pose_of
+from aionode.tf.apply import matrix_of, pose_of
 from tests.support.transforms import transform
 
 NUMBERS: dict[str, float | None] = dict.fromkeys(

@@ -44,7 +44,7 @@ from aionode.clock import (
 from aionode.clock import (
     _timerfd as timerfd,
 )
-from aionode.clock._timer_heap import TimerHeap
+from aionode.clock.timer_heap import TimerHeap
 from aionode.errors import EntityDestroyedError, TimeSourceChangedError
 from aionode.testing import ManualClock, settle
 from tests.support.living import living

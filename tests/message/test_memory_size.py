@@ -14,7 +14,7 @@ from aionode.interfaces.geometry_msgs.msg import PoseStamped, Twist
 from aionode.interfaces.nav_msgs.msg import Path
 from aionode.interfaces.sensor_msgs.msg import Image, LaserScan
 from aionode.interfaces.std_msgs.msg import Header, Int32, String
-from aionode.message._memory_size import memory_size
+from aionode.message.memory_size import memory_size
 
 LARGE = [
     String(data="x" * 100_000),

@@ -17,7 +17,7 @@ from aionode.rclpy._tf2_py import BufferCore, ExtrapolationException, LookupExce
 from aionode.rclpy._tf2_ros import Buffer, TransformRegistration, TypeException, convert
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
-from aionode.tf._waiters import Waiter
+from aionode.tf.waiters import Waiter
 from tests.support import fork_server
 from tests.support.living import living
 

@@ -37,9 +37,9 @@ from aionode.tf import (
     StaticTransformBroadcaster,
     TransformBroadcaster,
     TransformListener,
-    _waiters,
+    waiters,
 )
-from aionode.tf._waiters import Waiter
+from aionode.tf.waiters import Waiter
 from tests.support.living import living
 from tests.support.spies import returns_of
 from tests.support.transforms import message, parts, transform
@@ -119,7 +119,7 @@ async def test_data_of_other_times_and_frames_wakes_nobody(
         await waiting(buffer.wait_for_transform("map", f"f{n % 50}", at(10 + n)))
         for n in range(100)
     ]
-    asked = returns_of(monkeypatch, _waiters, "problem_of")
+    asked = returns_of(monkeypatch, waiters, "problem_of")
     for stamp in range(2, 10):
         put(buffer, *(transform("map", f"f{n}", float(stamp)) for n in range(50)))
     assert asked.empty()

@@ -23,7 +23,7 @@ from aionode.errors import (
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.logging import get_logger
 from aionode.tf import BufferCore
-from aionode.tf._buffer_core import MAX_NAME
+from aionode.tf.buffer_core import MAX_NAME
 from tests.support.transforms import parts, transform
 
 LATEST = Time()
@@ -151,7 +151,7 @@ def test_a_flood_of_frames_takes_bounded_memory(
     logged: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The frames that were there before go on."""
-    monkeypatch.setattr("aionode.tf._buffer_core.MAX_FRAMES", 100)
+    monkeypatch.setattr("aionode.tf.buffer_core.MAX_FRAMES", 100)
     core = core_with(transform("p", "c", 1.0))
     for number in range(100_000):
         core.set_transform(transform("p", f"flood{number}"), "/flood")

@@ -116,7 +116,7 @@ def file_text(record: dict[str, Any]) -> str:
     """
     import yaml
 
-    from aionode.arguments._parameter_yaml import parse_scalar
+    from aionode.arguments import parse_scalar
 
     dumper: Any = type("Quoting", (yaml.SafeDumper,), {})
 

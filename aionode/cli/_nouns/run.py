@@ -103,8 +103,8 @@ def run_nodes(args: Sequence[str], programs: Programs) -> None:
         CommandError: A node is not there, or a file that runs its nodes itself is not alone.
     """
     # Not before: a program that takes the place of this process needs no nodes here.
-    from aionode._node_source import FITS, makers_of
     from aionode.runner import run
+    from aionode.system.node_source import FITS, makers_of
 
     at = args.index(ROS_ARGS) if ROS_ARGS in args else len(args)
     specs, ros_args = args[:at], args[at:]

@@ -13,13 +13,13 @@ from aionode.cli._support.options import hertz, seconds
 from aionode.clock import Clock, ClockType, Time
 from aionode.errors import TransformException
 from aionode.tf import Buffer, StaticTransformBroadcaster, TimeoutException
-from aionode.tf._apply import matrix_of, pose_of
+from aionode.tf.apply import matrix_of, pose_of
 
 if TYPE_CHECKING:
     from aionode.cli._support.output import Output
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
     from aionode.node import Node
-    from aionode.tf._apply import Matrix
+    from aionode.tf.apply import Matrix
 
 __all__ = ["echo", "list_frames", "send_static", "tf_command", "tree"]
 

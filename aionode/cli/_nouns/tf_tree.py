@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from aionode.tf._frame_listing import rate_of
+from aionode.tf.frame_listing import rate_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.cli._support.field_path import field_of
 from aionode.errors import CommandError
 from aionode.message import Message
-from aionode.message._conversion import Form, plain, plain_value
+from aionode.message.conversion import Form, plain, plain_value
 from aionode.qos import HistoryPolicy
 
 if TYPE_CHECKING:

@@ -18,8 +18,7 @@ from aionode.qos import LivelinessPolicy, is_unlimited
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from aionode.clock import TimeBase
-    from aionode.clock._time_base import Alarm
+    from aionode.clock import Alarm, TimeBase
     from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
 

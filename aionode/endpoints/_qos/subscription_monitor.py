@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from collections import deque
     from collections.abc import Callable
 
-    from aionode.clock import Duration, TimeBase
-    from aionode.clock._time_base import Alarm
+    from aionode.clock import Alarm, Duration, TimeBase
     from aionode.endpoints._core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
     from aionode.endpoints.stats import CallbackStats

@@ -14,8 +14,7 @@ from aionode.qos import as_profile
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.clock import TimeBase
-    from aionode.clock._time_base import Alarm
+    from aionode.clock import Alarm, TimeBase
     from aionode.graph import EndpointInfo, Graph
     from aionode.qos import QoSProfile
 

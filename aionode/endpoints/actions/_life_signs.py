@@ -15,8 +15,7 @@ if TYPE_CHECKING:
     import asyncio
     from collections.abc import Callable
 
-    from aionode.clock import TimeBase
-    from aionode.clock._time_base import Alarm
+    from aionode.clock import Alarm, TimeBase
     from aionode.endpoints.client import Client, Exchange
     from aionode.graph import Graph
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.errors import brief
-from aionode.message._memory_size import memory_size
+from aionode.message.memory_size import memory_size
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.clock import TimeBase
-    from aionode.clock._time_base import Alarm
+    from aionode.clock import Alarm, TimeBase
 
 __all__ = [
     "MAX_GOALS",

@@ -15,8 +15,7 @@ from aionode.clock import ClockChange, ClockType, Duration, JumpThreshold
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.clock import Clock, TimeJump
-    from aionode.clock._time_base import Alarm
+    from aionode.clock import Alarm, Clock, TimeJump
 
 __all__ = ["ClockedSchedule", "Schedule", "Ticker"]
 

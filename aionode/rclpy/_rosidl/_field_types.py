@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from aionode.message import FieldType, type_name
-from aionode.message._conversion import IDL_NAMES
+from aionode.message.conversion import IDL_NAMES
 from aionode.rclpy._rosidl_parser.definition import (
     AbstractNestableType,
     AbstractType,

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.interfaces import get_interface, interface_names, shipped_packages
 
 if TYPE_CHECKING:
-    from aionode.idl._named import NamedInterfaces
+    from aionode.idl.named import NamedInterfaces
 
 __all__ = ["add_folder", "find", "has_interfaces", "names_in"]
 
@@ -27,16 +27,16 @@ def add_folder(path: str | Path) -> None:
     Raises:
         FileNotFoundError: The folder does not exist.
     """
-    from aionode.idl._named import named  # parsers, for few programs
+    from aionode.idl.named import named  # parsers, for few programs
 
     named().add(path)
 
 
 def folders() -> NamedInterfaces | None:
     """Return the interfaces of the folders that were named, if any was or may have been."""
-    if "aionode.idl._named" not in sys.modules and not os.environ.get("AIONODE_INTERFACES"):
+    if "aionode.idl.named" not in sys.modules and not os.environ.get("AIONODE_INTERFACES"):
         return None
-    from aionode.idl._named import named
+    from aionode.idl.named import named
 
     return named()
 

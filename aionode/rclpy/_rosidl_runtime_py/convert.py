@@ -8,7 +8,7 @@ from typing import Any
 
 import yaml
 
-from aionode.message._conversion import Form, plain
+from aionode.message.conversion import Form, plain
 from aionode.rclpy._rosidl import to_aionode
 
 __all__ = [

@@ -18,7 +18,7 @@ from aionode.tf import (
     TimeoutException,
     TransformException,
 )
-from aionode.tf._buffer_core import CACHE_TIME_SEC
+from aionode.tf.buffer_core import CACHE_TIME_SEC
 
 __all__ = [
     "BufferCore",

@@ -15,8 +15,8 @@ from aionode.rclpy.duration import Duration
 from aionode.rclpy.logging import get_logger
 from aionode.rclpy.task import Future
 from aionode.tf import ExtrapolationException
-from aionode.tf._buffer_core import CACHE_TIME_SEC, time_ns_of
-from aionode.tf._waiters import Waiter, Waiters
+from aionode.tf.buffer_core import CACHE_TIME_SEC, time_ns_of
+from aionode.tf.waiters import Waiter, Waiters
 
 __all__ = ["Buffer"]
 

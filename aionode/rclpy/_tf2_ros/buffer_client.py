@@ -11,8 +11,8 @@ from aionode.rclpy.action.client import ActionClient
 from aionode.rclpy.duration import Duration
 from aionode.rclpy.time import Time
 from aionode.tf import TimeoutException, TransformException
-from aionode.tf._buffer_core import time_ns_of
-from aionode.tf._remote import transform_in
+from aionode.tf.buffer_core import time_ns_of
+from aionode.tf.remote import transform_in
 
 __all__ = ["BufferClient"]
 

@@ -17,7 +17,7 @@ from aionode.action import (
     GoalStatus,
     ServerGoalHandle,
 )
-from aionode.clock._time_base import Alarm
+from aionode.clock import Alarm
 from aionode.endpoints.actions._client_watch import ClientWatch
 from aionode.endpoints.actions._life_signs import LifeSigns
 from aionode.engine.context import Context

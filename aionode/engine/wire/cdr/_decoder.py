@@ -23,9 +23,8 @@ from aionode.engine.wire.cdr._layout import (
     uniform_alignment,
 )
 from aionode.engine.wire.cdr._strings import StringsReader, read_wide_strings, wide_string
-from aionode.message import fields, type_name
-from aionode.message._field_types import DTYPES
-from aionode.message._validation import EMPTY
+from aionode.message import DTYPES, fields, type_name
+from aionode.message.validation import EMPTY
 
 if TYPE_CHECKING:
     from collections.abc import Callable

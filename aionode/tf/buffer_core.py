@@ -17,7 +17,7 @@ from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.logging import get_logger
-from aionode.tf import _frame_listing
+from aionode.tf import frame_listing
 from aionode.tf._arithmetic import Pose, composed, unit
 from aionode.tf._chain import chain
 from aionode.tf._frames import DynamicFrame, Frame, Room, StaticFrame, Tree
@@ -179,7 +179,7 @@ class BufferCore:
         before = frame.latest()
         stamp_ns = time_ns_of(header.stamp)
         if not frame.insert(stamp_ns, parent, pose):
-            text = old_data(child, _frame_listing.seconds_text(stamp_ns), authority)
+            text = old_data(child, frame_listing.seconds_text(stamp_ns), authority)
             self._BufferCore__report("TF_OLD_DATA", authority, text)
             return False
         if before is None or before[1] != parent:
@@ -451,18 +451,16 @@ class BufferCore:
 
     def all_frames_as_yaml(self) -> str:
         """Return parent, broadcaster, rate and times of each frame, as YAML."""
-        return _frame_listing.frames_as_yaml(
-            self._BufferCore__frames, self._BufferCore__authorities
-        )
+        return frame_listing.frames_as_yaml(self._BufferCore__frames, self._BufferCore__authorities)
 
     def all_frames_as_string(self) -> str:
         """Return one line for each frame, with its parent."""
-        return _frame_listing.frames_as_string(self._BufferCore__frames)
+        return frame_listing.frames_as_string(self._BufferCore__frames)
 
     def _allFramesAsDot(self, time: Any = None) -> str:  # tf2's name
         """Return the tree in the language of Graphviz; with a time, also how old the data is."""
         now_ns = 0 if time is None else time_ns_of(time)
-        return _frame_listing.frames_as_dot(
+        return frame_listing.frames_as_dot(
             self._BufferCore__frames, self._BufferCore__authorities, now_ns
         )
 

@@ -20,10 +20,10 @@ from aionode.interfaces.builtin_interfaces.msg import Time as TimeMsg
 from aionode.interfaces.tf2_msgs.action import LookupTransform
 from aionode.interfaces.tf2_msgs.msg import TF2Error
 from aionode.interfaces.tf2_msgs.srv import FrameGraph
-from aionode.tf._apply import transformer_of
-from aionode.tf._buffer_core import time_ns_of
-from aionode.tf._frame_listing import FRAMES_SERVICE
 from aionode.tf._node_buffer_core import LATEST
+from aionode.tf.apply import transformer_of
+from aionode.tf.buffer_core import time_ns_of
+from aionode.tf.frame_listing import FRAMES_SERVICE
 
 if TYPE_CHECKING:
     from aionode.action import ServerGoalHandle

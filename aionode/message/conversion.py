@@ -21,7 +21,7 @@ import msgspec
 from aionode.errors import MessageError
 from aionode.message._field_types import FieldType
 from aionode.message._message import Message, message_class, type_name
-from aionode.message._validation import fit, given, listed
+from aionode.message.validation import fit, given, listed
 
 __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
 
