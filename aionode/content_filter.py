@@ -42,12 +42,6 @@ MAX_DIGITS: Final = 400
 MAX_DEPTH: Final = 50
 """How deep parentheses and NOT may be nested."""
 
-COMPARISON_WORK: Final = 100
-"""Work of one comparison, in units of about a nanosecond."""
-
-NAIVE_LENGTH: Final = 100
-"""`str.find` compares at most so many characters at each place; longer literals cost no more."""
-
 
 @dataclass
 class ContentFilterOptions:
@@ -114,8 +108,6 @@ def compile_filter(
     msg_type: type[Message],
     filter_expression: str,
     expression_parameters: Sequence[str] = (),
-    *,
-    spend: Callable[[int], None] | None = None,
 ) -> Callable[[Any], bool]:
     """Return a predicate that is true for messages that pass the filter.
 
@@ -123,16 +115,13 @@ def compile_filter(
         msg_type: The class of the messages.
         filter_expression: The condition.
         expression_parameters: The literals that ``%0`` and the following stand for.
-        spend: Called before each comparison with an upper bound of its work, in units of about a
-            nanosecond. What it raises comes out of the predicate, so that a filter of another
-            process can be given up when it costs too much.
 
     Raises:
         ContentFilterError: the expression is malformed, names a field that the message does not
             have, or compares operands of different kinds; the text says what and where.
         TypeError: a parameter is not a str.
     """
-    return Parser(msg_type, filter_expression, expression_parameters, spend).parse()
+    return Parser(msg_type, filter_expression, expression_parameters).parse()
 
 
 def tokens_of(expression: str) -> list[Token]:
@@ -163,13 +152,7 @@ def tokens_of(expression: str) -> list[Token]:
 class Parser:
     """Reads one expression, from left to right, one method for each rule of the grammar."""
 
-    def __init__(
-        self,
-        msg_type: type[Message],
-        expression: str,
-        parameters: Sequence[str],
-        spend: Callable[[int], None] | None,
-    ) -> None:
+    def __init__(self, msg_type: type[Message], expression: str, parameters: Sequence[str]) -> None:
         if len(parameters) > MAX_PARAMETERS:
             raise ContentFilterError(
                 expression, 0, f"{len(parameters)} parameters given; at most {MAX_PARAMETERS} fit"
@@ -180,7 +163,6 @@ class Parser:
         self._msg_type = msg_type
         self._expression = expression
         self._parameters = parameters
-        self._spend = spend
         self._tokens = tokens_of(expression)
         self._next = 0
         self._depth = 0
@@ -255,8 +237,6 @@ class Parser:
     def _predicate(self) -> Callable[[Any], bool]:
         first = self._next
         condition = self._comparing()
-        if self._spend is not None:
-            condition = spending(condition, self._spend)
         if any("[" in token.text for token in self._tokens[first : self._next]):
             return false_without_elements(condition)
         return condition
@@ -305,16 +285,8 @@ class Parser:
         pattern = self._operand()
         if not value.is_field or pattern.is_field or {value.kind, pattern.kind} != {"text"}:
             self._fail("LIKE takes a field that is a string, and a text such as 'a%'", start)
-        like, get, spend = LikePattern(pattern.get(None)), value.get, self._spend
-        if spend is None:
-            return lambda msg: like.matches(get(msg))
-
-        def matches(msg: Any) -> bool:
-            text = get(msg)
-            spend(like.work_per_character * len(text))
-            return like.matches(text)
-
-        return matches
+        like, get = LikePattern(pattern.get(None)), value.get
+        return lambda msg: like.matches(get(msg))
 
     def _check_kinds(self, left: Operand, right: Operand, where: Token) -> None:
         if left.kind != right.kind:
@@ -447,31 +419,15 @@ def false_without_elements(condition: Callable[[Any], bool]) -> Callable[[Any], 
     return holds
 
 
-def spending(
-    condition: Callable[[Any], bool], spend: Callable[[int], None]
-) -> Callable[[Any], bool]:
-    """Return a predicate that reports the work of one comparison before it does it."""
-
-    def holds(msg: Any) -> bool:
-        spend(COMPARISON_WORK)
-        return condition(msg)
-
-    return holds
-
-
 class LikePattern:
     """A pattern of LIKE, in which ``%`` stands for any text and ``_`` for one character.
 
     A piece after a ``%`` is taken at its first place in the text, and never looked for again
     further on: so the work for a text is bounded by its length for each piece.
-
-    Attributes:
-        work_per_character: An upper bound of the work for each character of a text.
     """
 
     def __init__(self, pattern: str) -> None:
         self._first, *self._rest = map(LikePiece, pattern.split("%"))
-        self.work_per_character = 1 + sum(piece.work_per_character for piece in self._rest)
 
     def matches(self, text: str) -> bool:
         """Return whether the whole text fits the pattern."""
@@ -495,15 +451,12 @@ class LikePiece:
 
     Attributes:
         length: How many characters it stands for.
-        work_per_character: An upper bound of the work of `find` for each character of a text.
     """
 
     def __init__(self, piece: str) -> None:
         self.length = len(piece)
         self._literals = [(match.start(), match[0]) for match in re.finditer("[^_]+", piece)]
         self._longest = max(self._literals, key=lambda literal: len(literal[1]), default=(0, ""))
-        several = len(self._literals) > 1
-        self.work_per_character = self.length if several else min(self.length, NAIVE_LENGTH)
 
     def fits(self, text: str, at: int) -> bool:
         """Return whether the piece stands at this place of a text."""

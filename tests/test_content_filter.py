@@ -211,21 +211,8 @@ def test_several_wildcards_match_as_in_sql(pattern: str, expected: bool) -> None
 
 @pytest.mark.timeout(10)
 def test_a_pattern_with_many_wildcards_takes_no_time() -> None:
-    """It may come from another process, and would keep this one busy for hours."""
+    """A pattern of regular expressions would keep the loop busy for hours."""
     assert not passes(String(data="a" * 5000), f"data LIKE '{'%a' * 40}%b'")
-
-
-def test_the_work_for_a_pattern_is_known_before_it_is_done() -> None:
-    """A publisher gives up a filter of another process that costs too much."""
-    spent: list[int] = []
-    wanted = compile_filter(String, "data LIKE '%ab%' AND data <> 'x'", spend=spent.append)
-
-    assert wanted(String(data="cab" * 1000))
-
-    like, other, *rest = sorted(spent, reverse=True)
-    assert like >= 3000
-    assert 0 < other < 1000
-    assert all(one == other for one in rest)
 
 
 @given(st.text("ab_", max_size=6), st.text("ab%_", max_size=8))

@@ -268,15 +268,6 @@ class PublisherStats:
         return sum(writer.dropped for writer in self._writers)
 
     @property
-    def filtered(self) -> int:
-        """The number of messages not sent, as no subscription of another process wants them.
-
-        Counted once for each link, and once for Zenoh. What arrives and does not pass the content
-        filter of a subscription is counted by the subscription.
-        """
-        return sum(writer.filtered for writer in self._writers)
-
-    @property
     def routes(self) -> dict[str, str]:
         """The route by which each matched subscription gets its messages now.
 

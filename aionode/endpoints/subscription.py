@@ -33,7 +33,6 @@ from aionode.engine.transport.base import ReaderRegistration
 from aionode.errors import DecodeError, EntityDestroyedError
 from aionode.message import Message
 from aionode.message.memory_size import memory_size
-from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
@@ -164,10 +163,8 @@ class Subscription(Endpoint, Generic[ItemT]):
     ) -> None:
         """Receive only messages that pass a filter, from now on.
 
-        Messages that are already in the queue stay there. Publishers of aionode in other processes
-        learn of the filter as soon as the network allows, and then leave out what no subscription
-        wants, unless a liveliness lease makes every message a sign of life; `stats.filtered` counts
-        what arrived and did not pass.
+        Messages that are already in the queue stay there. `stats.filtered` counts what arrived and
+        did not pass.
 
         Args:
             filter_expression: A condition over the fields of the message, as described in
@@ -194,7 +191,6 @@ class Subscription(Endpoint, Generic[ItemT]):
                 accepts = decoding(self.msg_type, accepts)
         self._content_filter = options
         self._reader.set_filter(accepts)
-        self._announce_filter(options)
 
     def get_content_filter(self) -> ContentFilterOptions:
         """Return the content filter; its expression is empty if there is none."""
@@ -304,16 +300,6 @@ class Subscription(Endpoint, Generic[ItemT]):
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:
         """Keep what the transports returned for this reader, to be closed with it."""
         self._registrations.extend(registrations)
-        if self._content_filter is not None:
-            self._announce_filter(self._content_filter)
-
-    def _announce_filter(self, content_filter: ContentFilterOptions) -> None:
-        """Tell publishers of the filter, unless their messages are awaited as signs of life."""
-        if not is_unlimited(self.qos_profile.liveliness_lease_duration):
-            return
-        for registration in self._registrations:
-            if isinstance(registration, ReaderRegistration):
-                registration.set_content_filter(content_filter)
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
         """Return the coroutine that calls the callback; None without a callback."""

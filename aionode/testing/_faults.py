@@ -149,11 +149,6 @@ class _FaultyWriter(Writer):
         """The number of messages that the inner writer has dropped, without injected losses."""
         return self._inner.dropped
 
-    @property
-    def filtered(self) -> int:
-        """The number of messages that the inner writer has left out."""
-        return self._inner.filtered
-
     def assert_liveliness(self) -> None:
         """Tell the readers after the delay, or do not tell them."""
         if not self._faults._strikes(self._faults.drop):

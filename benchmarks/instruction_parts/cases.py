@@ -20,7 +20,6 @@ import zenoh
 
 from aionode import Context, Node
 from aionode.engine.transport.base import Reader, Registration, Requester, Serve, Transport, Writer
-from aionode.engine.transport.content_filters import ContentFilters
 from aionode.engine.transport.link import LinkTransport
 from aionode.engine.transport.link import _protocol as protocol
 from aionode.engine.transport.local import LocalTransport
@@ -93,7 +92,6 @@ class Introducer(Transport):
         self.participant = participant
         self.advertisement: str | None = None
         self.on_advertisement: Callable[[str, bool], None] = lambda _, __: None
-        self.content_filters = ContentFilters()
         self.on_unannounced_peers: Callable[[bool], None] = lambda _: None
         self.on_retransmit: Callable[[bytes], None] = lambda _: None
 
@@ -192,7 +190,6 @@ class ZenohEndpoints(Introducer):
     async def open(self, graph: Graph) -> None:
         """Connect to nothing."""
         self.state.waker.open(asyncio.get_running_loop())
-        self.state.has_unannounced_peers = False
         self.state.connect(NoSession(), graph)  # type: ignore[arg-type]  # as far as it is used
 
     async def close(self) -> None:
@@ -345,13 +342,12 @@ async def zenoh_publish(count: Count) -> AsyncIterator[Callable[[], Any]]:
         assert graph is not None  # noqa: S101  # open
         own = publisher._endpoint  # noqa: SLF001  # for a match
         theirs = NodeInfo("cd", 1, "other", "/")
-        graph.add_endpoint(
-            EndpointInfo(
-                EndpointKind.SUBSCRIPTION, theirs, 1, own.name, own.type_name, own.type_hash,
-                own.qos, bytes(16),
-            )
+        reader = EndpointInfo(
+            EndpointKind.SUBSCRIPTION, theirs, 1, own.name, own.type_name, own.type_hash,
+            own.qos, bytes(16),
         )  # fmt: skip
-        transport.state._readers_changed()  # noqa: SLF001  # as the watcher does
+        graph.add_endpoint(reader)
+        transport.state.tell_writers(reader, present=True)  # as the watcher does
 
         def publish() -> None:
             publisher.publish(String(data=TEXT))

@@ -114,25 +114,6 @@ def all_attacks() -> list[Attack]:
             10.0,
         ),
         Attack(
-            "50 content filters of 4 kB with LIKE",
-            "member",
-            "filter_costly",
-            pair(publish=clouds()),
-        ),
-        Attack(
-            "filters that let nothing through for the subscriptions of others",
-            "member",
-            "filter_others",
-            pair(),
-        ),
-        Attack(
-            "10 000 content filters of one reader",
-            "member",
-            "filter_often",
-            pair(publish=clouds()),
-            bare=True,
-        ),
-        Attack(
             "40 messages of 500 kB a second to a busy loop (depth 10 000, queues of 4 MiB)",
             "member",
             "flood_topic",

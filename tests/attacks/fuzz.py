@@ -2,8 +2,8 @@
 
 The node has to stay alive, hear its true peer, and keep its loop and its memory level. Rounds of
 ten seconds at most follow each other, each with new processes, one kind of lies and a seed;
-``--seed N --kinds filters`` repeats one. ``--planted filters`` puts a defect back that aionode once
-had, which has to be found.
+``--seed N --kinds tokens`` repeats one. ``--planted submessages`` puts a defect back that aionode
+once had, which has to be found.
 """
 
 from __future__ import annotations

@@ -14,7 +14,6 @@ from typing import Any
 
 import zenoh  # plays another participant, without aionode
 
-from aionode.engine.transport.content_filters import filter_token
 from aionode.engine.transport.reliability import submessage as acknack
 from aionode.engine.transport.reliability.submessage import SubmessageKind
 from aionode.engine.transport.zenoh.delivery.acknowledgements import submessage_key
@@ -170,17 +169,6 @@ class Liar:
         token = self.token(kind, name, interface, qos)
         self.hold(token)
         return gid_of(token)
-
-    def announce_filter(self, topic: str, gid: bytes, text: str, participant: str = "") -> None:
-        """Announce the content filter of a subscription, as its text in a token.
-
-        Args:
-            topic: That of the subscription.
-            gid: The subscription.
-            text: The filter.
-            participant: The context under whose key it stands; its own by default.
-        """
-        self.hold(filter_token(self.domain, participant or self.participant, topic, gid, text))
 
     # What it sends
 

@@ -5,8 +5,6 @@ Each takes its values from a `random.Random`, so that a seed repeats them.
 
 from __future__ import annotations
 
-import base64
-import json
 import random
 from collections.abc import Callable
 from contextlib import suppress
@@ -33,27 +31,16 @@ from aionode.interfaces.type_description_interfaces.msg import (
     TypeDescription,
 )
 from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
-from aionode.qos import QoSProfile
 from tests.attacks.liar import Liar
 
 __all__ = ["LIES", "describe", "nested_type"]
 
 NUMBERS = (-(2**63), -1, 0, 1, 2, 10, 1000, 2**31, 2**32, 2**62, 2**63 - 1)
 
-RARELY = 0.01
-"""How often a subscription has more filters than it may, as its publishers then filter no more."""
-
-MOST_OF_FILTER = 2000
-"""How many characters a filter has, so that its text in a token is not too long."""
-
 SIZES = (0, 1, 10, 100, 3000)
 
 MOST_HELD = 2000
 """How many tokens it holds at once."""
-
-MOST_OF_FILTERS = 900
-"""How many where it is about filters: Zenoh drops those of a session that ends in one piece, about
-0.1 ms for each, while a publisher of any program waits."""
 
 
 def lie_in_token(liar: Liar, chance: random.Random) -> None:
@@ -70,46 +57,6 @@ def lie_in_token(liar: Liar, chance: random.Random) -> None:
     qos = "{}:{}:{},{}:{},{}:{},{}:{},{},{}".format(*numbers)
     with suppress(zenoh.ZError):
         liar.hold("/".join((*parts, qos)))
-
-
-def lie_in_filter(liar: Liar, chance: random.Random) -> None:
-    """Subscribe with a filter of any length and depth."""
-    if len(liar.held) > MOST_OF_FILTERS:
-        liar.drop()
-        liar.be_node()
-    gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String, QoSProfile(depth=10))
-    for _ in range(30 if chance.random() < RARELY else 1):
-        liar.announce_filter("/clouds", gid, filter_text(chance))
-    (listener,) = liar.known(EndpointKind.SUBSCRIPTION, "/chatter")
-    liar.announce_filter("/chatter", listener.gid, filter_text(chance))
-
-
-def filter_text(chance: random.Random) -> str:
-    """Return the text of a filter that costs as much as it may, and lets nothing through."""
-
-    def pattern() -> str:
-        piece = chance.choice("xxa_") * chance.choice((1, 10, 100, 1000))
-        return f"%{piece}{chance.choice(('y', 'y', ''))}%" * chance.choice((1, 1, 1, 20))
-
-    depth = chance.choice((0, 0, 0, 1, 20))
-    terms = [
-        chance.choice(
-            (
-                f"data LIKE '{pattern()}'",
-                f"data = '{'x' * chance.choice(SIZES)}'",
-                f"data > %{chance.randrange(100)}",
-                f"{'NOT (' * depth}data <> ''{')' * depth}",
-            )
-        )
-        for _ in range(chance.choice((1, 1, 1, 100)))
-    ]
-    while len(terms) > 1 and len(" OR ".join(terms)) > MOST_OF_FILTER:
-        terms.pop()
-    expression = f"({' OR '.join(terms)}) AND data = 'never'"
-    if len(terms[0]) > MOST_OF_FILTER:
-        expression = f"data LIKE '%{'x' * MOST_OF_FILTER}y%'"
-    text = json.dumps([expression, ["'x'"] * 100 if "> %" in expression else []]).encode()
-    return base64.urlsafe_b64encode(text).decode().rstrip("=")
 
 
 def lie_in_message(liar: Liar, chance: random.Random) -> None:
@@ -217,7 +164,6 @@ def describe(liar: Liar, topic: str, description: TypeDescription) -> None:
 
 LIES: dict[str, Callable[[Liar, random.Random], None]] = {
     "tokens": lie_in_token,
-    "filters": lie_in_filter,
     "messages": lie_in_message,
     "requests": lie_in_request,
     "acknacks": lie_in_acknack,

@@ -5,13 +5,10 @@
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable
 from typing import Any
 
-from aionode import content_filter
-from aionode.engine.transport import content_filters
 from aionode.engine.transport.reliability import writer_proxy
 from aionode.engine.transport.reliability.limits import NEVER
 from aionode.engine.wire import _described_type as described_type
@@ -20,30 +17,6 @@ from aionode.message import fields
 from tests.faults import process
 
 __all__ = ["DEFECTS"]
-
-MANY = 10**6
-
-
-def plant_filters() -> None:
-    """Let filters of others cost anything, with patterns that are searched naively."""
-
-    def matches(like: Any, text: str) -> bool:
-        return like.pattern.fullmatch(text) is not None
-
-    plain_init = content_filter.LikePattern.__init__
-
-    def init(like: Any, pattern: str) -> None:
-        plain_init(like, pattern)
-        parts = [re.escape(part).replace("_", ".") for part in pattern.split("%")]
-        middle = "".join(f"(?:.*?{part})" for part in parts[1:-1] if part)
-        like.pattern = re.compile(f"{parts[0]}{middle}.*{parts[-1]}", re.DOTALL)
-
-    planted: Any = content_filter.LikePattern
-    planted.__init__, planted.matches = init, matches
-    budget: Any = content_filters.Budget
-    budget.spend = lambda *_: None
-    for limit in ("MAX_FILTERS_PER_READER", "MAX_APPLIED", "MAX_FILTERS"):
-        setattr(content_filters, limit, MANY)
 
 
 def plant_descriptions() -> None:
@@ -71,7 +44,6 @@ def plant_submessages() -> None:
 
 
 DEFECTS: dict[str, Callable[[], None]] = {
-    "filters": plant_filters,
     "descriptions": plant_descriptions,
     "submessages": plant_submessages,
 }

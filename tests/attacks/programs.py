@@ -6,8 +6,6 @@ processes with these ids. It prints ``begun`` when it has a session, and ``tries
 
 from __future__ import annotations
 
-import base64
-import json
 import os
 import random
 import socket
@@ -329,53 +327,6 @@ def ask_largely(liar: Liar, seconds: float) -> int:
 # Members: what is announced
 
 
-def like_text(size: int) -> str:
-    """Return a filter with a pattern of LIKE that costs much where it is searched naively."""
-    expression = f"data LIKE '%{'x' * (size * 3 // 4 - 100)}y%'"
-    return base64.urlsafe_b64encode(json.dumps([expression, []]).encode()).decode().rstrip("=")
-
-
-def filter_costly(liar: Liar, seconds: float) -> int:
-    """Subscribe 50 times to messages of 10 kB, each with a filter of 4 kB."""
-    liar.be_node()
-    begun()
-    for number in range(50):
-        gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String)
-        liar.announce_filter("/clouds", gid, like_text(4096 - number))
-    time.sleep(seconds)
-    return 50
-
-
-def filter_often(liar: Liar, seconds: float) -> int:
-    """Announce 10 000 filters of one subscription."""
-    liar.be_node()
-    begun()
-    gid = liar.announce(EndpointKind.SUBSCRIPTION, "/clouds", String)
-    for number in pace(seconds, 4000):
-        text = json.dumps([f"data LIKE '%{number}%'", []]).encode()
-        liar.announce_filter("/clouds", gid, base64.urlsafe_b64encode(text).decode().rstrip("="))
-        if number == 9999:
-            break
-    return number + 1
-
-
-def filter_others(liar: Liar, seconds: float) -> int:
-    """Announce filters that let nothing through for the subscriptions of others."""
-    ends(liar)
-    liar.be_node()
-    theirs = [*liar.endpoints(EndpointKind.SUBSCRIPTION, "/chatter")]
-    theirs += liar.endpoints(EndpointKind.SUBSCRIPTION, "/back")
-    begun()
-    for number in range(5):
-        text = json.dumps([f"data = 'never {number}'", []]).encode()
-        for each in theirs:
-            liar.announce_filter(
-                each.name, each.gid, base64.urlsafe_b64encode(text).decode().rstrip("=")
-            )
-    time.sleep(seconds)
-    return 5 * len(theirs)
-
-
 def subscribe_oddly(liar: Liar, seconds: float) -> int:
     """Subscribe 2000 times to a topic with a QoS profile that does not fit."""
     liar.be_node()
@@ -503,9 +454,6 @@ PROGRAMS: dict[str, Program] = {
             send_damaged_requests,
             ask_and_read_nothing,
             ask_largely,
-            filter_costly,
-            filter_often,
-            filter_others,
             subscribe_oddly,
             subscribe_often,
             flood_graph,

@@ -15,7 +15,6 @@ import pytest
 import trustme
 import zenoh  # noqa: TID251  # plays all participants, without aionode
 
-from aionode.engine.transport.content_filters import filter_token
 from aionode.engine.transport.zenoh.connections.handlers import direct
 from aionode.engine.transport.zenoh.delivery.acknowledgements import submessage_key
 from aionode.engine.wire._key_expression import Side, side_key
@@ -296,19 +295,16 @@ def test_a_visitor_answers_for_no_other_node(network: Network, what: str) -> Non
     assert not replies
 
 
-TEXT = "WyJkYXRhID0gMSIsW11d"
 TOKENS = {
     "its node": (f"@ros2_lv/7/{TALKER}/0/0/NN/%/%/visitor", ALLOWED),
     "a publisher of its topic": (token("MP", "visitor", "%scan"), ALLOWED),
     "a subscription that it may have": (token("MS", "visitor", "%map"), ALLOWED),
-    "a filter of that one": (filter_token(7, TALKER, "/map", GID, TEXT), ALLOWED),
     "a client that it may have": (token("SC", "visitor", "%dock"), ALLOWED),
     "another node": (f"@ros2_lv/7/{TALKER}/0/0/NN/%/%/talker", REFUSED),
     "a publisher of another topic": (token("MP", "visitor", "%chatter"), REFUSED),
     "a publisher of another node": (token("MP", "talker", "%scan"), REFUSED),
     "another subscription": (token("MS", "visitor", "%chatter"), REFUSED),
     "a server": (token("SS", "visitor", "%dock"), REFUSED),
-    "a filter of another topic": (filter_token(7, TALKER, "/chatter", GID, TEXT), REFUSED),
     "that a context acknowledges": (f"@aionode/7/{TALKER}/reliable/2", REFUSED),
     "a context that can be linked": (f"@aionode/7/{TALKER}/link/3/a/0", REFUSED),
     "that there are unannounced peers": (f"@aionode/7/{TALKER}/strangers", REFUSED),

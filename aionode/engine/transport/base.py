@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Set as AbstractSet
 
-    from aionode.content_filter import ContentFilterOptions
     from aionode.errors import DecodeError, ServiceError
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
@@ -139,17 +138,10 @@ class Reader(Protocol):
 
 
 class ReaderRegistration(Registration):
-    """A subscription that was announced to a transport, until it is closed."""
+    """A subscription in a transport with links, until it is closed."""
 
     @abstractmethod
-    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
-        """Tell the publishers that this transport reaches which messages are wanted.
-
-        They may leave out the others, and need not: the subscription leaves them out itself. An
-        empty expression wants all messages.
-        """
-
-    def is_linked(self, publisher: bytes) -> bool | None:  # noqa: ARG002  # has no links
+    def is_linked(self, publisher: bytes) -> bool | None:
         """Return whether messages of a publisher come by a link that only its process can end.
 
         Args:
@@ -158,7 +150,6 @@ class ReaderRegistration(Registration):
         Returns:
             False if there was such a link, and it has ended; None if there was none.
         """
-        return None
 
 
 class Writer(Registration):
@@ -221,11 +212,6 @@ class Writer(Registration):
     @property
     def dropped(self) -> int:
         """The number of messages dropped on their way because it was slow."""
-        return 0
-
-    @property
-    def filtered(self) -> int:
-        """The number of messages not sent to processes whose subscriptions want none of them."""
         return 0
 
     def route_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
@@ -449,7 +435,7 @@ class Transport(ABC):
     ) -> Registration:
         """Announce a subscription of `msg_type`, whose messages go to `reader`.
 
-        What it returns may be a `ReaderRegistration`, if publishers are to learn of filters.
+        What it returns may be a `ReaderRegistration`, if the transport has links.
         """
 
     @abstractmethod

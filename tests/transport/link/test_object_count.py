@@ -69,7 +69,7 @@ async def test_a_linked_subscription_is_made_of_few_objects() -> None:
         "MessageArrivals": 1,
         "StatefulReader": 1,
         "WriterProxy": 1,
-        "ReaderPlaceholder": 1,
+        "Placeholder": 1,
     }
     assert found - Counter(over_zenoh) == {
         "Subscription": 1,

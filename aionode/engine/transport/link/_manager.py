@@ -88,7 +88,6 @@ class LinkManager:
         peer_directory: What is known about other contexts.
 
     Attributes:
-        content_filters: What subscriptions of other contexts want.
         pool: Shared memory for large payloads.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         writers: The publishers that may use links.
@@ -108,7 +107,6 @@ class LinkManager:
         self.servers: dict[bytes, LinkServer] = {}
         self.requesters: dict[bytes, LinkRequester] = {}
         self._peer_directory = peer_directory
-        self.content_filters = peer_directory.content_filters
         self._secrets = LinkSecrets()
         self._domain_id = domain_id
         self._graph: Graph | None = None

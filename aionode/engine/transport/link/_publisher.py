@@ -61,16 +61,13 @@ class LinkWriter(Writer):
         self._sequence = 0
         # The same, for `write`: one of them may prove to be broken meanwhile, and is removed.
         self._targets: tuple[LinkSendQueue, ...] = ()
-        # Encodes messages that go to every process in one piece; None if there is no link, or
-        # if `_write_otherwise` has to see to them.
+        # Encodes messages in one piece; None if there is no link, or if `_write_views` has to see
+        # to them.
         self._encode: Callable[[Any], bytes] | None = None
         # Whether Zenoh has to carry messages too: a matched subscription has not switched.
         self._needs_zenoh = True
         # The registry's `changes` when that was computed; -1 to compute it again.
         self._asked_at = -1
-        # Whether a send queue has `wants`, and how many messages it has not got because of that.
-        self._is_filtered = False
-        self._filtered = 0
         # Messages dropped in send queues that were removed.
         self._dropped = 0
 
@@ -84,11 +81,6 @@ class LinkWriter(Writer):
         """The number of messages dropped because a link was slow, or Zenoh."""
         linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
         return self._dropped + linked + self._zenoh.dropped
-
-    @property
-    def filtered(self) -> int:
-        """The number of messages not sent over a link, or over Zenoh, as none is wanted there."""
-        return self._filtered + self._zenoh.filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``link``, ``zenoh``, or both while another subscription still needs Zenoh."""
@@ -118,55 +110,29 @@ class LinkWriter(Writer):
                 for send_queue in self._targets:
                     send_queue.send(sequence, data)
             else:
-                self._write_parts([payload], sequence, source_ns, self._targets)
+                self._write_parts([payload], sequence, source_ns)
             self._sequence = sequence
         elif self._targets:
-            self._write_otherwise(msg, sequence, source_ns)
+            self._write_views(msg, sequence, source_ns)
             self._sequence = sequence
         if self._needs_zenoh and self.update():
             if self._zenoh.active:
                 self._zenoh.write(msg, sequence, source_ns)
             self._sequence = sequence
 
-    def _write_otherwise(self, msg: Any, sequence: int, source_ns: int) -> None:
-        """Send a message over links that holds views, or that some processes do not want."""
-        targets = self._targets
-        if self._is_filtered:
-            targets = tuple(
-                target for target in targets if target.wants is None or target.wants(msg)
-            )
-            self._filtered += len(self._targets) - len(targets)
-        if not targets:
-            return
-        if has_views(self._msg_type):
-            parts = cdr.parts_encoder(self._msg_type)(msg)
-        else:
-            parts = [cdr.encoder(self._msg_type)(msg)]
-        self._write_parts(parts, sequence, source_ns, targets)
-
-    def update_filters(self) -> None:
-        """Find out which processes want all messages, after a change of subscriptions."""
-        filters = self._registry.content_filters
-        for send_queue in self._send_queues.values():
-            readers = dict.fromkeys(send_queue.readers, send_queue.connection.participant)
-            send_queue.wants = filters.wanted_by(self.endpoint.name, readers, self._msg_type)
-        self._targets_changed()
+    def _write_views(self, msg: Any, sequence: int, source_ns: int) -> None:
+        """Send a message over links whose type may hold arrays, which are not copied."""
+        parts = cdr.parts_encoder(self._msg_type)(msg)
+        self._write_parts(parts, sequence, source_ns)
 
     def _targets_changed(self) -> None:
         """Find out how to send from the next message on."""
-        targets = self._targets = tuple(self._send_queues.values())
-        self._is_filtered = any(send_queue.wants is not None for send_queue in targets)
+        self._targets = tuple(self._send_queues.values())
         self._encode = None
-        if targets and not self._is_filtered and not has_views(self._msg_type):
+        if self._targets and not has_views(self._msg_type):
             self._encode = cdr.encoder(self._msg_type)
 
-    def _write_parts(
-        self,
-        parts: Sequence[Data],
-        sequence: int,
-        source_ns: int,
-        targets: tuple[LinkSendQueue, ...],
-    ) -> None:
+    def _write_parts(self, parts: Sequence[Data], sequence: int, source_ns: int) -> None:
         """Send what may be large: if it is, in one shared buffer for all links."""
         pool = self._registry.pool
         size = sum(map(len, parts))
@@ -174,7 +140,7 @@ class LinkWriter(Writer):
         payload = b"".join(parts) if buffer is None else BufferRef(buffer.number, size).pack()
         in_shm = buffer is not None
         data = protocol.pack(DATA, sequence, source_ns, self._gid, payload, in_shm=in_shm)
-        for send_queue in targets:
+        for send_queue in self._targets:
             send_queue.send(sequence, data, buffer)
         if buffer is not None:
             pool.release(buffer)
@@ -238,7 +204,7 @@ class LinkWriter(Writer):
                 confirms=asked.confirms and self._reliable,
             ),
         )
-        self.update_filters()
+        self._targets_changed()
         connection.send(Opened(self._gid, asked.subscription, self._sequence))
         self.reconsider()
 
@@ -261,7 +227,6 @@ class LinkWriter(Writer):
         if send_queue is None:
             return
         send_queue.remove(reader)
-        self.update_filters()
         if not send_queue.readers:
             self._forget(connection)
         self.reconsider()

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.engine.transport.content_filters import ContentFilters
     from aionode.engine.transport.drops import Drops
     from aionode.engine.transport.link._connection import Connection
     from aionode.engine.transport.link._send_queue import LinkSendQueue
@@ -29,10 +28,6 @@ class LinkRegistry(Protocol):
     drops: Drops
     pool: BufferPool
     now_ns: Callable[[], int]
-
-    @property
-    def content_filters(self) -> ContentFilters:
-        """The content filters of subscriptions of other contexts."""
 
     @property
     def changes(self) -> int:
@@ -72,14 +67,12 @@ class PeerDirectory(Protocol):
     Attributes:
         advertisement: What it announces of this context; None for nothing.
         on_advertisement: Called with what another context announces, and whether it is present.
-        content_filters: The filters that subscriptions of other contexts have announced.
         on_unannounced_peers: Called when participants that announce nothing have come or gone.
         on_retransmit: Called with what another context has retransmitted to this one.
     """
 
     advertisement: str | None
     on_advertisement: Callable[[str, bool], None]
-    content_filters: ContentFilters
     on_unannounced_peers: Callable[[bool], None]
     on_retransmit: Callable[[bytes], None]
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from aionode.engine.transport.link._connection import whole
 from aionode.engine.transport.link._protocol import Kind
 from aionode.errors import FrameError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Iterator
 
     from aionode.engine.transport.link._connection import Connection
     from aionode.engine.transport.link._protocol import Credit
@@ -70,7 +70,6 @@ class LinkSendQueue:
         readers: The subscriptions, by gid; changes with their `Open` and `Close`.
         confirms: Whether any of them confirms messages.
         dropped: How many messages were dropped because the queue was full.
-        wants: Whether any of the subscriptions wants a message; None if one wants all.
     """
 
     __slots__ = (
@@ -86,7 +85,6 @@ class LinkSendQueue:
         "dropped",
         "name",
         "readers",
-        "wants",
     )
 
     def __init__(
@@ -96,7 +94,6 @@ class LinkSendQueue:
         self.connection = connection
         self.readers: dict[bytes, RemoteSubscription] = {}
         self.dropped = 0
-        self.wants: Callable[[Any], bool] | None = None
         self.confirms = False
         self._gid = gid
         self._depth = depth

@@ -36,7 +36,6 @@ from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from aionode.content_filter import ContentFilterOptions
     from aionode.engine.transport.base import Reader
     from aionode.engine.transport.link._connection import Connection
     from aionode.engine.transport.link._protocol import Frame
@@ -557,11 +556,6 @@ class LinkReader(ReaderRegistration):
             )
         if remote_publisher.connection is None:
             remote_publisher.open(connection)
-
-    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
-        """Announce which messages are wanted, to publishers at the other end of links as well."""
-        if isinstance(self._zenoh, ReaderRegistration):
-            self._zenoh.set_content_filter(content_filter)
 
     def is_linked(self, publisher: bytes) -> bool | None:
         """Return whether a publisher sends over a link; None if it never did."""

@@ -19,8 +19,6 @@ from aionode.engine.wire import cdr
 from aionode.errors import TransportError
 
 if TYPE_CHECKING:
-    from collections.abc import Set as AbstractSet
-
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import (
         LinkStatus,
@@ -67,7 +65,6 @@ class LinkTransport(Transport):
         if time_base is not None:
             self.manager.now_ns = time_base.system_ns
         self._peer_directory = peer_directory
-        peer_directory.content_filters.on_change.append(self._refilter)
         self._graph: Graph | None = None
 
     def __repr__(self) -> str:
@@ -77,11 +74,6 @@ class LinkTransport(Transport):
     def other_domains(self) -> frozenset[int]:
         """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
         return frozenset(getattr(self.zenoh, "other_domains", ()))
-
-    def _refilter(self, topics: AbstractSet[str]) -> None:
-        for writer in self.manager.writers.values():
-            if writer.endpoint.name in topics:
-                writer.update_filters()
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder for sockets, or descriptors, over the other transport only."""

@@ -218,10 +218,6 @@ class StatefulWriter:
         self._window_end = -1
         self._heartbeat(reader, reader.acked + 1, self.sent)
 
-    def participants(self) -> dict[bytes, str]:
-        """Return the contexts of all readers, by gid."""
-        return {gid: reader.participant for gid, reader in self.readers.items()}
-
     def remove(self, gid: bytes) -> None:
         """Remove a reader that has vanished, or wait for its return.
 

@@ -13,7 +13,6 @@ import zenoh
 
 from aionode.clock import MachineTime, perf_ns
 from aionode.engine.transport.base import Registration
-from aionode.engine.transport.content_filters import ContentFilters
 from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.loop_waker import LoopWaker, MessageArrivals, ThreadsafeQueue
 from aionode.engine.transport.network import GRAPH_BYTES, QUEUE_BYTES
@@ -34,8 +33,6 @@ from aionode.engine.wire._liveliness import endpoint_token, gid_of
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
-    from collections.abc import Set as AbstractSet
-
     from aionode.clock import TimeBase
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
@@ -62,10 +59,7 @@ class ReaderListener(Protocol):
 
     # By position, as every publisher is called for every one of them.
     def __call__(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
-        """Take one that has appeared or vanished; None if all may have changed.
-
-        Without either, the readers are the same, and their filters have changed.
-        """
+        """Take one that has appeared or vanished; None if all may have changed."""
 
 
 class LingeringWriter(Protocol):
@@ -118,11 +112,9 @@ class SessionState:
         assertions: The liveliness that publishers assert.
         time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
-        content_filters: What subscriptions of other contexts want.
         queue_bytes: How many bytes of messages may wait in one queue.
         request_room: Limits the requests that are here.
         announced: Limits what is kept of what others announce.
-        has_unannounced_peers: Whether there may be subscriptions that nothing announces.
         on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
             whether it exists, or without arguments when all may have changed; ordered sets.
     """
@@ -169,9 +161,6 @@ class SessionState:
         self.time_base = MachineTime() if time_base is None else time_base
         self.now_ns = self.time_base.system_ns
         self.on_reader: dict[str, dict[ReaderListener, None]] = {}
-        self.content_filters = ContentFilters()
-        self.content_filters.on_change.append(self._filters_changed)
-        self.has_unannounced_peers = True  # until the other sessions are known
         self._lingered: asyncio.Future[None] | None = None
         self._declarations: dict[Declaration, None] = {}
         self._graph_is_known = False
@@ -307,18 +296,6 @@ class SessionState:
             for update in list(self.on_reader.get(endpoint.name, ())):
                 update(endpoint, present)
 
-    def _readers_changed(self) -> None:
-        """Tell all publishers that more is known about the readers of other contexts."""
-        for updates in list(self.on_reader.values()):
-            for update in list(updates):
-                update()
-
-    def _filters_changed(self, topics: AbstractSet[str]) -> None:
-        """Tell the publishers of some topics that the filters of their readers have changed."""
-        for topic in topics:
-            for update in list(self.on_reader.get(topic, ())):
-                update(None, False)
-
     def _acknowledges(self, participant: str) -> None:
         """Tell the publishers of its readers that a context acknowledges."""
         if self.graph is None:
@@ -327,13 +304,6 @@ class SessionState:
             if node.participant == participant:
                 for reader in self.graph.endpoints(EndpointKind.SUBSCRIPTION, node=node):
                     self.tell_writers(reader, present=True)
-
-    def note_unannounced_peers(self, *, there_are: bool) -> None:
-        """Record whether there may be subscriptions that nothing announces, for filters."""
-        if there_are != self.has_unannounced_peers:
-            self.has_unannounced_peers = there_are
-            if self.content_filters:
-                self._readers_changed()
 
     def note_crowd(self) -> None:
         """Leave what may wait for Zenoh to threads while others have announced so much.

@@ -44,7 +44,6 @@ if TYPE_CHECKING:
     from aionode.engine.transport.base import (
         LinkStatus,
         Reader,
-        ReaderRegistration,
         Registration,
         Requester,
         Serve,
@@ -309,7 +308,7 @@ class ZenohTransport(Transport):
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> ReaderRegistration:
+    ) -> Registration:
         """Declare a subscription."""
         return ZenohReader(self._state, endpoint, msg_type, reader)
 

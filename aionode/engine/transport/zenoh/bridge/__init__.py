@@ -16,7 +16,6 @@ from aionode.engine.transport.base import Registration, Transport
 from aionode.engine.transport.zenoh.bridge._graph import BridgeWatcher
 from aionode.engine.transport.zenoh.bridge._placeholders import (
     Placeholder,
-    ReaderPlaceholder,
     RequesterPlaceholder,
     WriterPlaceholder,
 )
@@ -30,7 +29,7 @@ from aionode.engine.transport.zenoh.bridge._topics import (
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
-    from aionode.engine.transport.base import Reader, ReaderRegistration, Requester, Serve, Writer
+    from aionode.engine.transport.base import Reader, Requester, Serve, Writer
     from aionode.engine.transport.zenoh._session_state import SessionState
     from aionode.graph import EndpointInfo, Graph, NodeInfo
 
@@ -109,13 +108,13 @@ class BridgeTransport(Transport):
 
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
-    ) -> ReaderRegistration:
+    ) -> Registration:
         """Declare a subscription, once there is a bridge."""
         make = partial(BridgeReader, self._state, endpoint, msg_type, reader)
         return (
             make()
             if self._state.session is not None
-            else ReaderPlaceholder(self._state.placeholders, make)
+            else Placeholder(self._state.placeholders, make)
         )
 
     def create_server(

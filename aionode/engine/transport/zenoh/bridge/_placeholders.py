@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.engine.transport.base import ReaderRegistration, Registration, Requester, Writer
+from aionode.engine.transport.base import Registration, Requester, Writer
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.content_filter import ContentFilterOptions
     from aionode.engine.transport.base import Call, ReplyTo, SampleInfo, StopSender
     from aionode.graph import EndpointInfo
 
-__all__ = ["Placeholder", "ReaderPlaceholder", "RequesterPlaceholder", "WriterPlaceholder"]
+__all__ = ["Placeholder", "RequesterPlaceholder", "WriterPlaceholder"]
 
 EndpointT = TypeVar("EndpointT", bound=Registration)
 
@@ -108,13 +107,6 @@ class WriterPlaceholder(Placeholder[Writer], Writer):
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return how messages reach `reader`, if they do so through a bridge."""
         return None if self.endpoint is None else self.endpoint.route_of(reader)
-
-
-class ReaderPlaceholder(Placeholder[ReaderRegistration], ReaderRegistration):
-    """Stands for a subscription."""
-
-    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
-        """Do nothing: DDS nodes behind a bridge learn of no filter."""
 
 
 class RequesterPlaceholder(Placeholder[Requester], Requester):

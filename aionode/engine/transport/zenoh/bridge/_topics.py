@@ -18,7 +18,6 @@ from aionode.engine.transport.zenoh.endpoints.subscription import ZenohReader
 from aionode.qos import is_unlimited
 
 if TYPE_CHECKING:
-    from aionode.content_filter import ContentFilterOptions
     from aionode.graph import EndpointInfo
     from aionode.qos import QoSProfile
 
@@ -70,6 +69,3 @@ class BridgeReader(BridgeDeclaration, ZenohReader):
             self._accept_or_wait(payload, sample_info, None)
         else:
             self._hand_over(payload, sample_info)
-
-    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
-        """Do nothing: DDS nodes behind a bridge learn of no filter."""

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from aionode.graph import EndpointKind
 from aionode.qos import ReliabilityPolicy
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from aionode.engine.transport.reliability.stateful_writer import StatefulWriter
     from aionode.engine.transport.zenoh._session_state import SessionState
     from aionode.graph import EndpointInfo, Graph
 
@@ -60,18 +57,6 @@ class MatchedReaders:
                 self._add(reader)
             else:
                 self._mute.discard(reader.gid)
-
-    def wanted(
-        self, history: StatefulWriter | None, msg_type: type[Any]
-    ) -> Callable[[Any], bool] | None:
-        """Return whether any reader wants a message; None if all messages have to be sent."""
-        filters = self._state.content_filters
-        if not filters or self._state.has_unannounced_peers:
-            return None
-        readers = dict(self.participants)
-        if history is not None:
-            readers |= history.participants()  # also those that are away, and may return
-        return filters.wanted_by(self._endpoint.name, readers, msg_type)
 
     def _add(self, reader: EndpointInfo) -> None:
         if not (self._state.reaches(reader.node) and self._endpoint.matches(reader)):

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import zenoh
 
-from aionode.engine.transport import content_filters as _content_filters
 from aionode.engine.transport.base import LinkStatus
 from aionode.engine.transport.send_thread import SendThread
 from aionode.engine.transport.zenoh.connections.config import is_probe
@@ -40,8 +39,6 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 PREFIX: Final = "@aionode"
 
-FILTER: Final = _content_filters.KIND
-
 LINKS: Final = "links"
 """The end of the key on which a context tells which others it is linked with, one in each line."""
 
@@ -60,7 +57,6 @@ class ZenohPeerDirectory:
     Attributes:
         advertisement: What this context announces, as chunks of a key that begin with the
             participant; None to announce and look for nothing.
-        content_filters: The filters that subscriptions of other contexts have announced.
         on_advertisement: Called with the advertisement of another context, and whether it exists.
         has_unannounced_peers: Whether a peer can be reached whose subscriptions are not announced.
         on_unannounced_peers: Called with `has_unannounced_peers` when that has changed.
@@ -78,9 +74,6 @@ class ZenohPeerDirectory:
         # Whether there is an unannounced peer that is no router.
         self._has_plain_peers = False
         self._prefix = f"{PREFIX}/{state.domain_id}/"
-        self.content_filters = state.content_filters
-        self._filters_declared: Any = None
-        self._first_filters = state.queue(self._take_first_filter)
         self._tokens = state.queue(self._take_token)
         self._nodes = state.queue(self._take_node)
         self._connected = state.connections.kinds
@@ -106,24 +99,10 @@ class ZenohPeerDirectory:
     def start(self, session: zenoh.Session) -> None:
         """Declare the token, and subscribe to those of others; existing ones arrive at once.
 
-        Without links, other contexts are watched only once one of them has announced a filter: its
-        publishers then have to know whether there is any other reader.
+        Without links there is nothing to announce, and nothing to look for.
         """
-        if self.advertisement is not None:
-            self._track(session)
+        if self.advertisement is None:
             return
-        with translated("content filters"):
-            self._filters_declared = session.liveliness().declare_subscriber(
-                f"{self._prefix}*/{FILTER}**", direct(self._first_filters.put), history=True
-            )
-
-    def _take_first_filter(self, sample: zenoh.Sample) -> None:
-        session = self._state.session
-        participant = str(sample.key_expr).removeprefix(self._prefix).partition("/")[0]
-        if self._session is None and session is not None and participant != self._state.participant:
-            self._track(session)
-
-    def _track(self, session: zenoh.Session) -> None:
         self._session = session
         liveliness = session.liveliness()
         with translated("links"):
@@ -134,16 +113,14 @@ class ZenohPeerDirectory:
                 liveliness.declare_subscriber(
                     f"{ROS_PREFIX}/*/*/*/*/NN/**", direct(self._nodes.put), history=True
                 ),
+                session.declare_subscriber(
+                    self._retransmit_key(self._state.participant), direct(self._retransmits.put)
+                ),
+                session.declare_queryable(
+                    self._links_key(self._state.participant), direct(self._queries.put)
+                ),
+                liveliness.declare_token(self._prefix + self.advertisement),
             ]
-            if self.advertisement is not None:
-                retransmits = self._retransmit_key(self._state.participant)
-                self._declared += [
-                    session.declare_subscriber(retransmits, direct(self._retransmits.put)),
-                    session.declare_queryable(
-                        self._links_key(self._state.participant), direct(self._queries.put)
-                    ),
-                    liveliness.declare_token(self._prefix + self.advertisement),
-                ]
         for zid, kind in self._connected.items():
             self._connect(zid, kind)
         self._update()
@@ -155,18 +132,9 @@ class ZenohPeerDirectory:
         self._linked.clear()
         self._warn(needed=False)
         declared, self._declared = self._declared, []
-        first, self._filters_declared = self._filters_declared, None
-        if first is not None:
-            declared.append(first)
         for declaration in reversed(declared):
             declaration.undeclare()
-        for queue in (
-            self._first_filters,
-            self._tokens,
-            self._nodes,
-            self._retransmits,
-            self._queries,
-        ):
+        for queue in (self._tokens, self._nodes, self._retransmits, self._queries):
             queue.clear()
         self._known.clear()
         self._hosts.clear()
@@ -175,8 +143,6 @@ class ZenohPeerDirectory:
         self._router_matching.stop()
         self._has_plain_peers = False
         self.has_unannounced_peers = False
-        self._state.has_unannounced_peers = True
-        self.content_filters.clear()
 
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send `data` to another context from a thread; not dropped while both are open.
@@ -287,9 +253,6 @@ class ZenohPeerDirectory:
                 self._hosts.add(participant)
             else:
                 self._hosts.discard(participant)
-        elif what.startswith(FILTER):
-            if key.startswith(self._prefix) and participant != self._state.participant:
-                self.content_filters.take_token(participant, what, present=present)
         elif what.startswith("link/") and key.startswith(self._prefix):
             self.on_advertisement(key.removeprefix(self._prefix), present)
         self._update()
@@ -353,7 +316,6 @@ class ZenohPeerDirectory:
         had = self.has_unannounced_peers, self._has_plain_peers
         has_unannounced_peers = bool(self._unknown or self._hosts)
         self._has_plain_peers = bool(self._unknown - self._routers or self._hosts)
-        self._state.note_unannounced_peers(there_are=has_unannounced_peers)
         self.has_unannounced_peers = has_unannounced_peers
         if had != (has_unannounced_peers, self._has_plain_peers):
             self.on_unannounced_peers(has_unannounced_peers)

@@ -126,9 +126,6 @@ class ZenohWriter(Declaration, Writer):
             )
         # Large messages, and small ones after them to keep the order.
         self._large = self._send_queue(state.bulk, self._depth, keep_all=False)
-        # Whether any reader wants a message; None if one wants all, or may be there unseen.
-        self._wants: Callable[[Any], bool] | None = None
-        self._filtered = 0
         # Messages for readers that do not acknowledge, sent by a thread that blocks. There is none
         # until it is needed; from then on it is used for all messages, to keep the order.
         self._blocking: SendQueue | None = None
@@ -269,25 +266,21 @@ class ZenohWriter(Declaration, Writer):
         self._update()
 
     def _update(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
-        """Update `active`, the history and the filter from the matching readers.
+        """Update `active` and the history from the matching readers.
 
         Args:
             reader: The only one that may have changed; None for all of them.
-            present: Whether it exists; without a reader, whether more than filters has changed.
+            present: Whether it exists.
         """
         history, graph = self._history, self.state.graph
         self.active = self._transient
-        self._wants = None
         if graph is not None and self._publisher is not None:
-            if present or reader is not None:
-                self._matched.update(graph, reader, present=present)
+            self._matched.update(graph, reader, present=present)
             # The token of a reader can arrive before Zenoh has told of a match, or has a route to
             # it; what is lost until then is sent again.
             self.active = self.active or self._is_matching or bool(self._matched.participants)
             if history is not None:
                 self._update_readers(history, None if reader is None else reader.gid)
-            if not self._transient:  # a late reader may want what all others do not
-                self._wants = self._matched.wanted(history, self._msg_type)
         if self.active and self._encode is None:
             self._encode = cdr.encoder(self._msg_type)
 
@@ -321,10 +314,7 @@ class ZenohWriter(Declaration, Writer):
     # Messages
 
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:
-        """Send `msg`, unless no reader wants it: the history takes a jump of its numbers."""
-        if self._wants is not None and not self._wants(msg):
-            self._filtered += 1
-            return
+        """Send `msg` to the readers of other contexts."""
         encode = self._encode
         if encode is None:
             encode = self._encode = cdr.encoder(self._msg_type)
@@ -573,11 +563,6 @@ class ZenohWriter(Declaration, Writer):
     def dropped(self) -> int:
         """Number of messages that are known to have been dropped on the way."""
         return self._dropped
-
-    @property
-    def filtered(self) -> int:
-        """Number of messages that were not sent, as no reader wants them."""
-        return self._filtered
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``zenoh`` for subscriptions of other contexts."""

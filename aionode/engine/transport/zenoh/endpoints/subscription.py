@@ -10,14 +10,13 @@ import zenoh
 from zenoh import ext
 
 from aionode.clock import perf_ns
-from aionode.engine.transport.base import NOT_INLINE_NS, ReaderRegistration, SampleInfo
-from aionode.engine.transport.content_filters import filter_token, text_of_filter
+from aionode.engine.transport.base import NOT_INLINE_NS, SampleInfo
 from aionode.engine.transport.drops import Drop
 from aionode.engine.transport.reliability.limits import NEVER, OVERHEAD_BYTES
 from aionode.engine.transport.reliability.stateful_reader import StatefulReader
 from aionode.engine.transport.zenoh._session_state import Declaration
 from aionode.engine.transport.zenoh._target_numbers import TargetNumbers
-from aionode.engine.transport.zenoh.connections.handlers import direct, translated
+from aionode.engine.transport.zenoh.connections.handlers import direct
 from aionode.engine.transport.zenoh.delivery.delivery import (
     UNKNOWN_GID,
     is_reliable,
@@ -34,7 +33,6 @@ from aionode.qos import depth_of, is_unlimited, keeps_all
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.content_filter import ContentFilterOptions
     from aionode.engine.transport.base import Reader
     from aionode.engine.transport.reliability.submessage import Submessage
     from aionode.engine.transport.reliability.writer_proxy import WriterProxy
@@ -59,7 +57,7 @@ SPAN = 1_000
 """At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
 
 
-class ZenohReader(Declaration, ReaderRegistration):
+class ZenohReader(Declaration):
     """A subscription to the publishers of other contexts."""
 
     recovers: ClassVar[bool] = True  # whether its publishers send again what it misses
@@ -108,8 +106,6 @@ class ZenohReader(Declaration, ReaderRegistration):
         # The largest message of those that a KEEP_ALL subscription has not taken.
         self._largest_bytes = 0
         self._waits_for_room = False
-        self._filter_text = ""  # of the content filter, if it is announced
-        self._filter_token: zenoh.LivelinessToken | None = None
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
         self._has_lease = not is_unlimited(endpoint.qos.liveliness_lease_duration)
         if self._has_lease:
@@ -118,7 +114,6 @@ class ZenohReader(Declaration, ReaderRegistration):
 
     def declare_data(self, session: zenoh.Session) -> None:
         """Declare the subscriber; a transient local one gets the history."""
-        self._announce_filter(session)
         if self._stateful is not None:
             self.state.acknowledgements.add_reader(self._key, self.gid, self.receive_submessage)
         put = self._queue.put
@@ -147,7 +142,6 @@ class ZenohReader(Declaration, ReaderRegistration):
 
     def undeclare_data(self) -> None:
         """Undeclare the subscriber."""
-        self._announce_filter(None)
         if self._stateful is not None:
             self.state.acknowledgements.remove_reader(self._key, self.gid)
         subscribers, self._subscribers = self._subscribers, []
@@ -157,25 +151,6 @@ class ZenohReader(Declaration, ReaderRegistration):
         self._full.clear()
         if self._stateful is not None:
             self._stateful.clear()
-
-    def set_content_filter(self, content_filter: ContentFilterOptions) -> None:
-        """Announce which messages are wanted."""
-        if self.token:
-            self._filter_text = text_of_filter(content_filter)
-            self._announce_filter(self.state.session)
-
-    def _announce_filter(self, session: zenoh.Session | None) -> None:
-        """Declare the token of the filter, and then undeclare the one before it."""
-        before, self._filter_token = self._filter_token, None
-        with translated(self.token):
-            if session is not None and self._filter_text:
-                state, topic = self.state, self.endpoint.name
-                token = filter_token(
-                    state.domain_id, state.participant, topic, self.gid, self._filter_text
-                )
-                self._filter_token = session.liveliness().declare_token(token)
-            if before is not None:
-                before.undeclare()
 
     def close(self) -> None:
         """Undeclare the subscription for good."""

@@ -1,4 +1,4 @@
-"""Limits of the tokens of other contexts that are kept: nodes, endpoints, filters, links."""
+"""Limits of the tokens of other contexts that are kept: nodes, endpoints, links."""
 
 from __future__ import annotations
 
