@@ -192,6 +192,12 @@ def command_exists(arguments: list[str]) -> bool:
                 return False
             if not option.is_flag:
                 del words[:1]
+    if (
+        command.context_settings.get("ignore_unknown_options")
+        and words
+        and not words[0].startswith("-")
+    ):
+        return True  # the arguments of what it runs
     given = {word.partition("=")[0] for word in words if re.fullmatch(r"--?[a-z][a-z-]*.*", word)}
     return given - {"--ros-args", "--help", "-p", "-r"} <= options_of(command).keys()
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
 
-from aionode._packages import Packages, workspace_of
+from aionode._packages import Packages, program_module, workspace_of
 from aionode._packages._share import share_of
+from aionode._packages._standard import MODULES
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
 SETUP = """\
@@ -357,3 +359,44 @@ def test_a_home_that_is_read_only_needs_no_cache(
     (bot / "CMakeLists.txt").write_text("install(FILES b.yaml DESTINATION share/bot/config)")
 
     assert shown(bot.parents[1])["config/b.yaml"] == "b.yaml"
+
+
+def test_a_program_of_a_package_that_is_not_there_is_one_of_aionode(
+    workspace: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Launch files name it; the package itself comes first, wherever it is."""
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    name = "static_transform_publisher"
+    own = [sys.executable, "-m", "aionode.programs", "tf2_ros", name]
+
+    assert Packages().command("tf2_ros", name, ["--interfaces", "x"]) == own
+    assert Packages(workspace).command("tf2_ros", name) == own
+    built = tmp_path_factory.mktemp("built")
+    write(
+        built / "tf2_ros",
+        {
+            "package.xml": "<package><name>tf2_ros</name></package>",
+            "setup.cfg": f"[options.entry_points]\nconsole_scripts=\n {name}=tf2_ros:main\n",
+            "tf2_ros/__init__.py": "",
+        },
+    )
+    assert Packages(built).command("tf2_ros", name)[2] == "aionode.rclpy"
+
+
+def test_an_unknown_program_of_a_package_that_is_not_there_is_named_with_those_of_aionode() -> None:
+    """Nobody looks for a folder that does not exist."""
+    with pytest.raises(
+        ExecutableNotFoundError, match=r"'tf2_ros': not found, and aionode has no program 'monitor'"
+    ):
+        Packages().command("tf2_ros", "monitor")
+
+
+@pytest.mark.parametrize(
+    ("package", "name"), [(package, name) for package in MODULES for name in MODULES[package]]
+)
+def test_each_program_of_the_table_is_a_module_with_a_main(package: str, name: str) -> None:
+    """A name in the table that is none would be found only when it is started."""
+    module = program_module(package, name)
+
+    assert module is not None
+    assert callable(import_module(module).main)

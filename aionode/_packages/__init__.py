@@ -9,6 +9,16 @@ from __future__ import annotations
 from aionode._packages._executables import Executable, is_python
 from aionode._packages._here import around, here, use
 from aionode._packages._packages import Packages
+from aionode._packages._standard import program_module
 from aionode._packages._workspace import workspace_of
 
-__all__ = ["Executable", "Packages", "around", "here", "is_python", "use", "workspace_of"]
+__all__ = [
+    "Executable",
+    "Packages",
+    "around",
+    "here",
+    "is_python",
+    "program_module",
+    "use",
+    "workspace_of",
+]

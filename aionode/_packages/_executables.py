@@ -27,12 +27,14 @@ class Executable(NamedTuple):
         name: Its name.
         target: Its file, or the function that it calls: ``module:function``.
         root: The folder with the Python modules of its package, if the target is a function.
+        is_standard: Whether it is a program of aionode: the target is its module.
     """
 
     package: str
     name: str
     target: str
     root: Path | None = None
+    is_standard: bool = False
 
     def command(self, *options: str) -> list[str]:
         """Return the command that starts it; its own arguments follow.
@@ -40,6 +42,8 @@ class Executable(NamedTuple):
         Args:
             *options: Options of ``python -m aionode.rclpy``, which an executable in Python gets.
         """
+        if self.is_standard:
+            return [sys.executable, "-m", "aionode.programs", self.package, self.name]
         python = [sys.executable, "-m", "aionode.rclpy", *options]
         if self.root is not None:
             return [*python, "--path", str(self.root), "-m", self.target]

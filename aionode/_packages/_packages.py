@@ -15,6 +15,7 @@ from aionode._packages._executables import (
     runs_in_this_python,
 )
 from aionode._packages._share import share_of
+from aionode._packages._standard import standard_executables
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
@@ -77,12 +78,17 @@ class Packages:
     def executables(self, name: str) -> dict[str, Executable]:
         """Return what a package can start, by name; what is installed comes after its source.
 
+        Of a package of ROS that is not there, these are the programs that aionode has of it.
+
         Raises:
             PackageNotFoundError: There is no such package.
         """
         source = self.sources().get(name)
         prefix = next((folder for folder in prefixes() if (folder / MARKER / name).is_file()), None)
         if source is None and prefix is None:
+            standard = standard_executables(name)
+            if standard:
+                return standard
             raise self.not_found(name)
         installed = {} if prefix is None else installed_executables(prefix, name)
         return installed | ({} if source is None else executables_in(source, name))
@@ -96,8 +102,7 @@ class Packages:
         """
         known = self.executables(package)
         if name not in known:
-            place = str(self.sources().get(package) or self.prefix(package) / "lib" / package)
-            raise ExecutableNotFoundError(package, name, place, tuple(known))
+            raise ExecutableNotFoundError(package, name, self._place(package), tuple(known))
         return known[name]
 
     def command(self, package: str, name: str, options: Sequence[str] = ()) -> list[str]:
@@ -128,6 +133,13 @@ class Packages:
         if runs_in_this_python(program):
             return [sys.executable, "-m", "aionode.rclpy", *self._options(), str(program)]
         return [str(program)]
+
+    def _place(self, package: str) -> str | None:
+        """Return the folder with the executables of a package; None of one that is not there."""
+        try:
+            return str(self.sources().get(package) or self.prefix(package) / "lib" / package)
+        except PackageNotFoundError:
+            return None
 
     def _options(self) -> tuple[str, ...]:
         """Return what tells a program of the workspace."""

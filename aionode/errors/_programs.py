@@ -40,18 +40,21 @@ class ExecutableNotFoundError(AionodeError, LookupError):
     Attributes:
         package: The name of the package.
         name: The name that was looked up.
-        place: The folder of the package.
+        place: The folder of the package; None if aionode has programs of it, and it is not there.
         suggestions: Names of its executables that are similar.
     """
 
-    def __init__(self, package: str, name: str, place: str, known: Sequence[str]) -> None:
+    def __init__(self, package: str, name: str, place: str | None, known: Sequence[str]) -> None:
         self.package = package
         self.name = name
         self.place = place
         self.suggestions, hint = offered(name, "its executables", known)
         super().__init__(
-            f"package {package!r}: no executable {name!r} in {place}; {hint}; they are the scripts "
-            "of its setup.py, the programs of its CMakeLists.txt, and what was built"
+            f"package {package!r}: not found, and aionode has no program {name!r} of it; {hint}; "
+            "--workspace FOLDER names the folder that holds the package"
+            if place is None
+            else f"package {package!r}: no executable {name!r} in {place}; {hint}; they are the "
+            "scripts of its setup.py, the programs of its CMakeLists.txt, and what was built"
         )
 
 

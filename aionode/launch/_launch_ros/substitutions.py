@@ -83,6 +83,11 @@ class ExecutableInPackage(Substitution):
     def perform(self, context: LaunchContext) -> str:
         """Return the path."""
         program = context.packages.executable(*self._ExecutableInPackage__names(context))
+        if program.is_standard:
+            raise SubstitutionFailure(
+                f"{program.name} of {program.package} is a program of aionode; it has no path, and "
+                "fits as the first word of a command"
+            )
         if program.root is not None:
             raise SubstitutionFailure(
                 f"{program.name} of {program.package} is a function, {program.target}, until the "
