@@ -24,7 +24,7 @@ from typing import Any
 import uvloop
 
 from aionode import Context, Time, bag
-from aionode.bag._outputs import Tap
+from aionode.bag.replaying.outputs import Tap
 from aionode.engine.bare_node import BareNode
 from aionode.qos import QoSProfile
 from aionode.testing import ManualClock, SteppedLoop, local_context

@@ -18,20 +18,20 @@ from aionode._process.first_use import imported_on_first_use
 
 if TYPE_CHECKING:
     from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
-    from aionode.bag._comparison import Difference, compare
     from aionode.bag._copy import convert, cut, merge
-    from aionode.bag._losses import Lost
-    from aionode.bag._machine_use import MachineUseWarning
-    from aionode.bag._outputs import Outputs
-    from aionode.bag._player import Player
-    from aionode.bag._qos import qos_overrides
-    from aionode.bag._record import Record, TopicInfo
-    from aionode.bag._recorder import Recorder
-    from aionode.bag._recording import TopicStats
     from aionode.bag._repair import Checked, check, reindex
-    from aionode.bag._replay import Replay, replay
     from aionode.bag._selection import Selection
     from aionode.bag._writer import BagWriter
+    from aionode.bag.files.losses import Lost
+    from aionode.bag.files.qos import qos_overrides
+    from aionode.bag.files.record import Record, TopicInfo
+    from aionode.bag.playing.player import Player
+    from aionode.bag.recording.recorder import Recorder
+    from aionode.bag.recording.recording import TopicStats
+    from aionode.bag.replaying.comparison import Difference, compare
+    from aionode.bag.replaying.machine_use import MachineUseWarning
+    from aionode.bag.replaying.outputs import Outputs
+    from aionode.bag.replaying.replay import Replay, replay
 
 __all__ = [
     "Bag",
@@ -63,26 +63,26 @@ PLACES = {
     "Bag": "_bag",
     "BagWriter": "_writer",
     "Checked": "_repair",
-    "Difference": "_comparison",
-    "Lost": "_losses",
-    "MachineUseWarning": "_machine_use",
-    "Outputs": "_outputs",
-    "Player": "_player",
-    "Record": "_record",
-    "Recorder": "_recorder",
-    "Replay": "_replay",
+    "Difference": "replaying.comparison",
+    "Lost": "files.losses",
+    "MachineUseWarning": "replaying.machine_use",
+    "Outputs": "replaying.outputs",
+    "Player": "playing.player",
+    "Record": "files.record",
+    "Recorder": "recording.recorder",
+    "Replay": "replaying.replay",
     "Selection": "_selection",
-    "TopicInfo": "_record",
-    "TopicStats": "_recording",
+    "TopicInfo": "files.record",
+    "TopicStats": "recording.recording",
     "check": "_repair",
-    "compare": "_comparison",
+    "compare": "replaying.comparison",
     "convert": "_copy",
     "cut": "_copy",
     "merge": "_copy",
     "open": "_bag",
-    "qos_overrides": "_qos",
+    "qos_overrides": "files.qos",
     "reindex": "_repair",
-    "replay": "_replay",
+    "replay": "replaying.replay",
 }
 """The module of each public name, imported on first use: few programs need all of them."""
 

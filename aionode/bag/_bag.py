@@ -10,12 +10,12 @@ from time import sleep  # noqa: TID251  # of no time: it only lets go of the int
 from typing import TYPE_CHECKING, Any, Final, Generic, Self, TypeVar
 
 from aionode._process.concurrency import run_in_thread
-from aionode.bag._losses import LOSSES, losses_from
-from aionode.bag._metadata import FILE_NAME, read_metadata, topics_in
-from aionode.bag._order import in_order
-from aionode.bag._record import MOST_NS, Record, TopicInfo, time_of
-from aionode.bag._source import CHECK, McapSource
-from aionode.bag._sqlite import SqliteSource
+from aionode.bag.files.losses import LOSSES, losses_from
+from aionode.bag.files.metadata import FILE_NAME, read_metadata, topics_in
+from aionode.bag.files.order import in_order
+from aionode.bag.files.record import MOST_NS, Record, TopicInfo, time_of
+from aionode.bag.files.source import CHECK, McapSource
+from aionode.bag.files.sqlite import SqliteSource
 from aionode.clock import Duration, Time
 from aionode.errors import BagError, brief
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from os import PathLike
     from types import TracebackType
 
-    from aionode.bag._source import Source
+    from aionode.bag.files.source import Source
 
 __all__ = ["Bag", "Records", "open"]
 

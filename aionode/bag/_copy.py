@@ -6,16 +6,16 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from aionode.bag._bag import Bag, open  # noqa: A004  # as in `bag.open(path)`
-from aionode.bag._losses import LOSSES, added_losses, losses_text
-from aionode.bag._order import in_order
 from aionode.bag._selection import Selection
 from aionode.bag._writer import BagWriter
+from aionode.bag.files.losses import LOSSES, added_losses, losses_text
+from aionode.bag.files.order import in_order
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from os import PathLike
 
-    from aionode.bag._record import Record
+    from aionode.bag.files.record import Record
     from aionode.clock import Duration, Time
 
 __all__ = ["convert", "cut", "merge", "merged_records"]

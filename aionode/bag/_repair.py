@@ -15,12 +15,12 @@ from mcap.records import Channel, Chunk, ChunkIndex, MessageIndex, MetadataIndex
 from mcap.records import Metadata as MetadataRecord
 
 from aionode.bag._bag import Bag, merged_topics, source_of
-from aionode.bag._chunks import HEAD, MESSAGE, checked_content
-from aionode.bag._compression import TooLargeError
-from aionode.bag._mcap_writer import MAGIC, McapWriter, Span, index_record
-from aionode.bag._metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
-from aionode.bag._source import CHECK, DAMAGE, damaged
-from aionode.bag._summary import read_summary
+from aionode.bag.files.chunks import HEAD, MESSAGE, checked_content
+from aionode.bag.files.compression import TooLargeError
+from aionode.bag.files.mcap_writer import MAGIC, McapWriter, Span, index_record
+from aionode.bag.files.metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
+from aionode.bag.files.source import CHECK, DAMAGE, damaged
+from aionode.bag.files.summary import read_summary
 from aionode.errors import BagError
 
 if TYPE_CHECKING:

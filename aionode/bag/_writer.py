@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from aionode._distribution import choose_distribution
-from aionode.bag._mcap_writer import COMPRESSIONS, McapWriter, write_error
-from aionode.bag._metadata import (
+from aionode.bag.files.mcap_writer import COMPRESSIONS, McapWriter, write_error
+from aionode.bag.files.metadata import (
     FILE_NAME,
     FilePart,
     metadata_of,
@@ -19,9 +19,9 @@ from aionode.bag._metadata import (
     sync_folder,
     write_metadata,
 )
-from aionode.bag._qos import profiles_to_yaml
-from aionode.bag._record import TopicInfo
-from aionode.bag._types import definition_of
+from aionode.bag.files.qos import profiles_to_yaml
+from aionode.bag.files.record import TopicInfo
+from aionode.bag.files.types import definition_of
 from aionode.engine.wire import cdr
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import BagError, BagWriteError
@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from os import PathLike
     from types import TracebackType
 
-    from aionode.bag._mcap_writer import Parts
-    from aionode.bag._record import Record
+    from aionode.bag.files.mcap_writer import Parts
+    from aionode.bag.files.record import Record
     from aionode.clock import Time
 
 __all__ = ["BagWriter", "topic_info"]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 import msgspec
 
 from aionode import Context, bag
-from aionode.bag._yaml_files import PRESETS, static_topics_in
+from aionode.bag.yaml_files import PRESETS, static_topics_in
 from aionode.clock import Duration, Time
 from aionode.errors import AionodeError
 from aionode.logging import LoggingSeverity

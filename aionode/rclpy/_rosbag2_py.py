@@ -9,7 +9,7 @@ from typing import Any, Final, Self
 import msgspec
 
 from aionode import bag
-from aionode.bag._types import definition_of
+from aionode.bag.files.types import definition_of
 from aionode.clock import Time as PlainTime
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, BagError, InterfaceNotFoundError

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from aionode import bag
-from aionode.bag._yaml_files import outputs_in
+from aionode.bag.yaml_files import outputs_in
 from aionode.errors import AionodeError
 
 if TYPE_CHECKING:

@@ -15,10 +15,10 @@ import zstandard
 from mcap.reader import make_reader
 
 from aionode import bag
-from aionode.bag import _compression
-from aionode.bag._chunks import HEAD
-from aionode.bag._summary import read_summary
 from aionode.bag._writer import topic_info
+from aionode.bag.files.chunks import HEAD
+from aionode.bag.files.compression import decompressed
+from aionode.bag.files.summary import read_summary
 from aionode.cli import main
 from aionode.engine.wire import cdr
 from aionode.errors import BagError
@@ -317,7 +317,7 @@ def test_a_chunk_that_is_larger_than_is_believable_is_refused(
     if compression == "lz4" and said > 100:
         packed = packed[:1000]
     with pytest.raises(Exception, match=r"where its head says|fewer than|at most"):
-        _compression.decompressed(compression, packed, said)
+        decompressed(compression, packed, said)
 
 
 @pytest.mark.parametrize("name", ["run_0.mcap.zstd", "run_0.db3.zstd"])
@@ -325,7 +325,7 @@ def test_a_file_that_decompresses_to_more_than_is_believable_is_refused(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It would fill the temporary folder, from which other programs live."""
-    monkeypatch.setattr(_compression, "LARGEST_FILE", 1 << 20)
+    monkeypatch.setattr("aionode.bag.files.compression.LARGEST_FILE", 1 << 20)
     (tmp_path / name).write_bytes(zstandard.compress(bytes(64 << 20)))
     with pytest.raises(BagError, match="decompresses to more than"):
         bag.open(tmp_path / name)
@@ -340,7 +340,7 @@ def test_a_full_temporary_folder_is_named(tmp_path: Path, monkeypatch: pytest.Mo
     def is_full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(_compression, "write_plain", is_full)
+    monkeypatch.setattr("aionode.bag.files.compression.write_plain", is_full)
     with pytest.raises(BagError, match=r"no space .* set TMPDIR"):
         bag.open(packed)
 
@@ -382,7 +382,7 @@ def test_a_chunk_that_is_too_large_is_no_damage_to_repair(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With the limit raised it can be read, and a check must not take it away."""
-    monkeypatch.setattr(_compression, "LARGEST_PART", 1000)
+    monkeypatch.setattr("aionode.bag.files.compression.LARGEST_PART", 1000)
     with bag.BagWriter(tmp_path / "run") as out:
         out.write(
             out.add_topic(topic_info("/words", String)), 1, cdr.encode(String(data="a" * 99_999))

@@ -15,8 +15,8 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, W
 from rosbags.typesys import Stores, get_typestore
 
 from aionode import bag
-from aionode.bag._mcap_writer import LARGE_BYTES
 from aionode.bag._writer import topic_info
+from aionode.bag.files.mcap_writer import LARGE_BYTES
 from aionode.clock import Duration, Time
 from aionode.engine.wire import cdr
 from aionode.engine.wire.typehash import type_hash
@@ -280,7 +280,7 @@ def test_an_output_folder_that_exists_is_refused(tmp_path: Path) -> None:
 
 def test_reliability_of_old_bags_is_read_from_numbers() -> None:
     """Bags before version 9 have numbers, and Foxy's infinite times."""
-    from aionode.bag._qos import profiles_from
+    from aionode.bag.files.qos import profiles_from
 
     text = (
         "- history: 1\n  depth: 5\n  reliability: 2\n  durability: 2\n"

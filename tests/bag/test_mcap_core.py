@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 from aionode import bag
-from aionode.bag._mcap_writer import LARGE_BYTES
 from aionode.bag._writer import topic_info
+from aionode.bag.files.mcap_writer import LARGE_BYTES
 from aionode.interfaces.std_msgs.msg import Int32, String
 
 FOLDER = os.environ.get("MCAP_CORE", "")

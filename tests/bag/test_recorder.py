@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 from aionode import bag
-from aionode.bag._recorder import adapted_qos
+from aionode.bag.recording.recorder import adapted_qos
 from aionode.clock import ClockType, Time
 from aionode.engine.bare_node import BareNode
 from aionode.engine.context import Context
@@ -256,7 +256,7 @@ async def test_a_split_at_the_end_of_a_recording_is_no_error(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The node has ended when the last rows are written; nobody can be told of the file then."""
-    monkeypatch.setattr("aionode.bag._writer_thread.BATCH_S", 60)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
     async with local_context() as context:
         async with bag.Recorder(
             tmp_path / "run", topics=[], context=context, max_messages=1
@@ -344,7 +344,7 @@ async def test_a_recording_whose_folder_is_removed_says_so_at_the_next_sync(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The open file takes bytes without an error, and all of them are gone when it is closed."""
-    monkeypatch.setattr("aionode.bag._writer_thread.SYNC_NS", 0)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.SYNC_NS", 0)
     async with local_context() as context:
         recorder = bag.Recorder(tmp_path / "run", topics=[], context=context)
         with pytest.raises(BagWriteError, match="the file was removed"):  # noqa: PT012  # leaving raises
@@ -487,7 +487,7 @@ async def test_a_power_cut_takes_only_what_came_after_the_last_sync(
         loop.call_soon_threadsafe(synced.set)
 
     monkeypatch.setattr(os, "fdatasync", sync)
-    monkeypatch.setattr("aionode.bag._writer_thread.SYNC_NS", 0)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.SYNC_NS", 0)
     async with (
         local_context() as context,
         bag.Recorder(tmp_path / "run", topics=[], context=context) as recorder,

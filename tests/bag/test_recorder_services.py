@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import bag
-from aionode.bag._recorder_services import answered, when
+from aionode.bag.recording.services import answered, when
 from aionode.clock import Time
 from aionode.idl import define
 from aionode.idl._installed import replaced_types

@@ -10,8 +10,8 @@ import pytest
 from mcap.reader import make_reader
 
 from aionode import bag
-from aionode.bag import _mcap_writer
 from aionode.bag._writer import topic_info
+from aionode.bag.files import mcap_writer
 from aionode.clock import Duration, Time
 from aionode.engine.wire import cdr
 from aionode.errors import BagError, BagWriteError
@@ -157,7 +157,7 @@ def test_what_did_not_fit_does_not_take_the_space_of_the_metadata(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A full disk has a reserve for the summary and the metadata, and for nothing else."""
-    writes = _mcap_writer.write_all
+    writes = mcap_writer.write_all
     full = [True]
 
     def write_all(fd: int, pieces: Sequence[bytes]) -> None:
@@ -167,7 +167,7 @@ def test_what_did_not_fit_does_not_take_the_space_of_the_metadata(
 
     out = bag.BagWriter(tmp_path / "run")
     out.write_message("/words", String(data="x"), Time(seconds=1))
-    monkeypatch.setattr(_mcap_writer, "write_all", write_all)
+    monkeypatch.setattr(mcap_writer, "write_all", write_all)
     for end in (out.flush, out.close):
         with pytest.raises(BagWriteError, match="free some space"):
             end()

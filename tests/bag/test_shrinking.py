@@ -9,8 +9,8 @@ import msgspec
 import pytest
 
 from aionode import bag
-from aionode.bag._replay import PIECE_VARIABLE, Piece
-from aionode.bag._shrinking import fails, shrink
+from aionode.bag.replaying.replay import PIECE_VARIABLE, Piece
+from aionode.bag.replaying.shrinking import fails, shrink
 from aionode.clock import Time
 from aionode.errors import BagError
 from aionode.interfaces.std_msgs.msg import Float64

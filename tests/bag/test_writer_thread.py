@@ -8,10 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from aionode.bag import _writer_thread
-from aionode.bag._mcap_writer import MOST_AT_ONCE, write_all
 from aionode.bag._writer import BagWriter, topic_info
-from aionode.bag._writer_thread import Row, WriterThread
+from aionode.bag.files.mcap_writer import MOST_AT_ONCE, write_all
+from aionode.bag.recording.writer_thread import Row, WriterThread
 from aionode.errors import BagWriteError
 from aionode.interfaces.std_msgs.msg import String
 
@@ -51,7 +50,7 @@ def test_the_disk_confirms_in_time_although_more_comes_all_the_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On a busy machine the thread may never see an end, and a power cut would take all of it."""
-    monkeypatch.setattr(_writer_thread, "SYNC_NS", 0)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.SYNC_NS", 0)
     writer = Endless(tmp_path / "run")
     writer.thread = thread_of(writer)
     writer.thread.put(ROW)
@@ -72,7 +71,7 @@ def test_rows_that_wait_when_the_disk_is_found_full_at_the_end_are_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """On a busy machine the thread has not begun when the recording ends."""
-    monkeypatch.setattr(_writer_thread, "BATCH_S", 60)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
     thread = thread_of(Full(tmp_path / "run"))
     for _ in range(10):
         thread.put(ROW)
@@ -85,12 +84,12 @@ def test_no_more_than_a_number_of_small_messages_waits_or_is_kept(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Empty messages have few bytes, and take memory all the same."""
-    monkeypatch.setattr(_writer_thread, "BATCH_S", 60)
-    monkeypatch.setattr(_writer_thread, "MOST_ROWS", 3)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 60)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.MOST_ROWS", 3)
     thread = thread_of(BagWriter(tmp_path / "waiting"))
     assert [thread.put(ROW) for _ in range(5)] == [True, True, True, False, False]
     thread.stop()
-    monkeypatch.setattr(_writer_thread, "BATCH_S", 0)
+    monkeypatch.setattr("aionode.bag.recording.writer_thread.BATCH_S", 0)
     with BagWriter(tmp_path / "kept") as writer:
         thread = thread_of(writer, snapshot=True)
         for _ in range(5):

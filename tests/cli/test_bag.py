@@ -12,7 +12,7 @@ import pytest
 from aionode import bag
 from aionode.bag._writer import topic_info
 from aionode.cli._main import main
-from aionode.cli._nouns.bag_options import checked_selection, length_of, overrides
+from aionode.cli._nouns.bag.options import checked_selection, length_of, overrides
 from aionode.clock import Duration
 from aionode.engine.wire import cdr
 from aionode.interfaces.std_msgs.msg import String
@@ -128,7 +128,7 @@ def test_a_missing_extra_is_one_line_that_says_how_to_install_it(
     monkeypatch.delitem(vars(bag), "open")
     monkeypatch.delitem(sys.modules, "aionode.bag._bag")
     monkeypatch.setitem(sys.modules, "mcap", None)
-    monkeypatch.delitem(sys.modules, "aionode.bag._source")
+    monkeypatch.delitem(sys.modules, "aionode.bag.files.source")
     monkeypatch.delitem(sys.modules, "mcap.exceptions")
     assert main(["bag", "info", run]) == 1
     text = capsys.readouterr().err

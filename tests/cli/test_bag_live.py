@@ -16,9 +16,9 @@ from click.testing import CliRunner
 
 from aionode import bag
 from aionode.bag._writer import topic_info
-from aionode.bag._yaml_files import chunk_compression, outputs_in, static_topics_in
+from aionode.bag.yaml_files import chunk_compression, outputs_in, static_topics_in
 from aionode.cli._main import main, root
-from aionode.cli._nouns.bag_live import record_command, recorder_options
+from aionode.cli._nouns.bag.live import record_command, recorder_options
 from aionode.engine.wire import cdr
 from aionode.interfaces.std_msgs.msg import String
 

@@ -14,7 +14,7 @@ import zenoh  # noqa: TID251  # plays the robot, without aionode
 
 from aionode.cli._nouns import node as node_verbs
 from aionode.cli._nouns import topic as topic_verbs
-from aionode.cli._nouns.topic_measure import hz
+from aionode.cli._nouns.topic.measure import hz
 from aionode.cli._support.session import make_node, wait_until_known
 from aionode.engine.context import Context
 from aionode.engine.wire import _attachment as attachment

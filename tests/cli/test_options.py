@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import DurabilityPolicy, HistoryPolicy, Node, ReliabilityPolicy
-from aionode.cli._nouns.topic_echo import qos_from
+from aionode.cli._nouns.topic.echo import qos_from
 from aionode.cli._support.completion import names_of
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String

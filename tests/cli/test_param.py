@@ -23,7 +23,7 @@ from aionode.cli._nouns.param import (
     load,
     set_parameter,
 )
-from aionode.cli._nouns.param_text import file_form, file_text
+from aionode.cli._nouns.param.text import file_form, file_text
 from aionode.errors import CommandError, ParameterFileError
 from aionode.interfaces.rcl_interfaces.msg import (
     FloatingPointRange,

@@ -10,7 +10,7 @@ import pytest
 
 from aionode import DurabilityPolicy, Node, QoSProfile
 from aionode.cli._nouns.doctor import doctor
-from aionode.cli._nouns.doctor_routes import link_findings, pairs_of
+from aionode.cli._nouns.doctor.routes import link_findings, pairs_of
 from aionode.engine.transport.base import LinkStatus
 from aionode.graph import EndpointInfo, EndpointKind, NodeInfo
 from aionode.interfaces.std_msgs.msg import Int8, String

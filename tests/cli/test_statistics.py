@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from aionode.cli._nouns.topic_measure import Bandwidth, Intervals, size_texts, spread_of
+from aionode.cli._nouns.topic.measure import Bandwidth, Intervals, size_texts, spread_of
 
 
 @given(st.lists(st.integers(0, 10**12), min_size=1, max_size=50))

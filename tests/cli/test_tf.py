@@ -12,7 +12,7 @@ import pytest
 
 from aionode import Context, Node
 from aionode.cli._nouns.doctor import doctor
-from aionode.cli._nouns.doctor_transforms import LISTEN_S
+from aionode.cli._nouns.doctor.transforms import LISTEN_S
 from aionode.cli._nouns.tf import (
     echo,
     echo_text,
@@ -22,7 +22,7 @@ from aionode.cli._nouns.tf import (
     static_transform,
     tree,
 )
-from aionode.cli._nouns.tf_tree import FrameEdge, as_svg, as_text
+from aionode.cli._nouns.tf.tree import FrameEdge, as_svg, as_text
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
 from aionode.testing import ManualClock, settle
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from aionode import Context, Node, QoSProfile, ReliabilityPolicy
-from aionode.cli._nouns.topic_echo import echo
+from aionode.cli._nouns.topic.echo import echo
 from aionode.cli._support.session import make_node
 from aionode.engine.transport.local import LocalTransport
 from aionode.errors import CommandError

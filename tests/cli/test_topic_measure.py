@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from aionode import Context, Node, QoSProfile
-from aionode.cli._nouns import topic_measure
-from aionode.cli._nouns.topic_measure import bw, delay, hz
+from aionode.cli._nouns.topic import measure
+from aionode.cli._nouns.topic.measure import bw, delay, hz
 from aionode.cli._support.session import make_node
 from aionode.engine.transport.local import LocalTransport
 from aionode.errors import CommandError
@@ -172,12 +172,12 @@ async def test_hz_shows_that_a_topic_fell_silent(
 )
 def test_a_narrow_terminal_drops_columns(width: int, columns: list[str]) -> None:
     """The names of topics and the rates stay whole."""
-    rows = [("/chatter", "5.000", "0.200", "0.200", "0.00000", "4"), ("/b", *topic_measure.SILENT)]
+    rows = [("/chatter", "5.000", "0.200", "0.200", "0.00000", "4"), ("/b", *measure.SILENT)]
 
-    text = topic_measure.hz_table(rows, width)
+    text = measure.hz_table(rows, width)
 
     assert max(map(len, text.splitlines())) < width
-    assert [word for word in topic_measure.HZ_HEADER if word in text] == columns
+    assert [word for word in measure.HZ_HEADER if word in text] == columns
     assert re.search(r"/chatter +5\.000", text)
 
 
@@ -311,7 +311,7 @@ async def test_hz_says_when_messages_came_too_fast(
     screen: Any,
 ) -> None:
     """A rate that is too low has to be marked as such."""
-    monkeypatch.setattr(topic_measure, "QOS", QoSProfile(depth=2))
+    monkeypatch.setattr(measure, "QOS", QoSProfile(depth=2))
     publisher = node_factory("burst").create_publisher(String, "/burst", 10)
 
     async with running(hz(tool, ["/burst"], output=screen.output)):

@@ -12,7 +12,7 @@ from aionode import Node
 from aionode.cli._nouns.action import send_goal
 from aionode.cli._nouns.interface import proto
 from aionode.cli._nouns.service import call
-from aionode.cli._nouns.topic_echo import echo
+from aionode.cli._nouns.topic.echo import echo
 from aionode.cli._support.lookup import topic_type
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import CommandError

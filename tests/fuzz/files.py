@@ -14,8 +14,8 @@ from mcap.writer import CompressionType, IndexType
 from mcap.writer import Writer as McapWriter
 
 from aionode import bag
-from aionode.bag._qos import qos_overrides
-from aionode.bag._yaml_files import inputs_in, outputs_in, static_topics_in
+from aionode.bag.files.qos import qos_overrides
+from aionode.bag.yaml_files import inputs_in, outputs_in, static_topics_in
 from aionode.engine.wire import cdr
 from aionode.errors import (
     BagError,

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from aionode import Context, MessageInfo, Node, Time
-from aionode.cli._nouns.doctor_transforms import two_broadcasters
+from aionode.cli._nouns.doctor.transforms import two_broadcasters
 from aionode.clock import Duration
 from aionode.errors import (
     ConnectivityException,

@@ -1,4 +1,4 @@
 """The nouns: each command stands with its verb, the coroutine that does its work.
 
-The files of a noun begin with its name.
+A noun of several files is a folder, whose first file has the table of its commands.
 """

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable, Iterable
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from aionode.bag._types import definition_of
+from aionode.bag.files.types import definition_of
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway.foxglove import frames
 

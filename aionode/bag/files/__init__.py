@@ -1,0 +1,1 @@
+"""The files of a bag: their formats, and what all of them have."""

@@ -1,0 +1,100 @@
+"""The chunks of MCAP files, read one message after the other.
+
+The library `mcap` makes objects of all messages of a chunk before it yields the first. While it
+does, which takes many milliseconds, the event loop hardly runs.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+import zlib
+from io import BytesIO
+from operator import itemgetter
+from typing import IO, TYPE_CHECKING, Final
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Chunk
+
+from aionode.bag.files.compression import decompressed
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterator
+
+    from mcap.records import ChunkIndex
+
+__all__ = ["HEAD", "MESSAGE", "Row", "checked_content", "rows_of", "size_of"]
+
+HEAD: Final = struct.Struct("<BQ")
+"""The head of each record: its kind and its length."""
+
+MESSAGE: Final = struct.Struct("<HIQQ")
+"""The head of a message: channel, sequence, and the times of logging and publishing."""
+
+Row = tuple[int, int, int, int, int, int]
+"""A message: log time, channel, sequence, publish time, and where its bytes begin and end."""
+
+
+def checked_content(chunk: Chunk) -> bytes:
+    """Return the records of a chunk.
+
+    Raises:
+        McapError: it is damaged; so are errors of the compression's library.
+    """
+    content = decompressed(chunk.compression, chunk.data, chunk.uncompressed_size)
+    if len(content) != chunk.uncompressed_size or (
+        chunk.uncompressed_crc and zlib.crc32(content) != chunk.uncompressed_crc
+    ):
+        raise McapError("its checksum does not fit")
+    return content
+
+
+def size_of(file: IO[bytes]) -> int:
+    """Return the size of an open file in bytes."""
+    return os.fstat(file.fileno()).st_size
+
+
+def rows_of(
+    file: IO[bytes], index: ChunkIndex, channels: Container[int] | None, start_ns: int, end_ns: int
+) -> tuple[bytes, Iterator[Row]]:
+    """Return the content of a chunk, and its messages of some channels in order of time.
+
+    Args:
+        file: The file.
+        index: Where the chunk is.
+        channels: Which channels are wanted; all if not given.
+        start_ns: The time of the first message that is wanted.
+        end_ns: The time before which they end.
+    """
+    size = size_of(file)
+    if not 0 <= index.chunk_start_offset <= size - HEAD.size:
+        raise McapError(f"it would begin beyond the {size} bytes of the file")
+    file.seek(index.chunk_start_offset)
+    opcode, length = HEAD.unpack(file.read(HEAD.size))
+    if opcode != Opcode.CHUNK or length > size - index.chunk_start_offset - HEAD.size:
+        raise McapError("there is no whole chunk")
+    content = checked_content(Chunk.read(ReadDataStream(BytesIO(file.read(length)))))
+    rows = list(wanted_rows(content, channels, start_ns, end_ns))
+    rows.sort(key=itemgetter(0))
+    return content, iter(rows)
+
+
+def wanted_rows(
+    content: bytes, channels: Container[int] | None, start_ns: int, end_ns: int
+) -> Iterator[Row]:
+    """Yield the messages of a chunk in the order in which they are there."""
+    at, size = 0, len(content)
+    head, message = HEAD.unpack_from, MESSAGE.unpack_from
+    while at < size:
+        opcode, length = head(content, at)
+        body = at + HEAD.size
+        at = body + length
+        if opcode != Opcode.MESSAGE:
+            continue
+        if at > size or length < MESSAGE.size:
+            raise McapError("a message goes beyond its chunk, or is none")
+        channel, sequence, log_ns, publish_ns = message(content, body)
+        if start_ns <= log_ns < end_ns and (channels is None or channel in channels):
+            yield log_ns, channel, sequence, publish_ns, body + MESSAGE.size, at

@@ -1,0 +1,182 @@
+"""``metadata.yaml``: what rosbag2 writes beside the files of a bag."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Final
+
+import yaml
+
+from aionode._process.bounded_files import read_file
+from aionode._process.bounded_yaml import loaded_yaml
+from aionode.bag.files.compression import expect_no_pointer
+from aionode.bag.files.qos import readable_profiles, to_builtins, yaml_text
+from aionode.bag.files.record import TopicInfo
+from aionode.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+    from pathlib import Path
+
+__all__ = [
+    "FILE_NAME",
+    "FilePart",
+    "metadata_of",
+    "metadata_text",
+    "read_metadata",
+    "sync_folder",
+    "topics_in",
+    "write_metadata",
+]
+
+FILE_NAME: Final = "metadata.yaml"
+ROOT: Final = "rosbag2_bagfile_information"
+VERSION: Final = 9
+NEVER_NS: Final = 2**63 - 1
+"""The start of a bag without messages, as rosbag2 writes it."""
+
+FilePart = tuple[str, int, int, int]
+"""One file of a bag: its name, the times of its first and last message in nanoseconds, and how many
+messages it has."""
+
+
+def metadata_of(
+    topics: Iterable[TopicInfo],
+    files: Sequence[FilePart],
+    *,
+    custom_data: Mapping[str, str],
+    ros_distro: str,
+    storage: str = "mcap",
+) -> dict[str, Any]:
+    """Return the metadata of a bag, version 9."""
+    filled = [part for part in files if part[3]]
+    start = min((part[1] for part in filled), default=NEVER_NS)
+    end = max((part[2] for part in filled), default=NEVER_NS)
+    return {
+        "version": VERSION,
+        "storage_identifier": storage,
+        "duration": {"nanoseconds": end - start},
+        "starting_time": {"nanoseconds_since_epoch": start},
+        "message_count": sum(part[3] for part in files),
+        "topics_with_message_count": [
+            {"topic_metadata": topic_metadata(topic), "message_count": topic.message_count}
+            for topic in topics
+        ],
+        "compression_format": "",
+        "compression_mode": "",
+        "relative_file_paths": [part[0] for part in files],
+        "files": [
+            {
+                "path": name,
+                "starting_time": {"nanoseconds_since_epoch": first if count else NEVER_NS},
+                "duration": {"nanoseconds": last - first if count else 0},
+                "message_count": count,
+            }
+            for name, first, last, count in files
+        ],
+        "custom_data": dict(custom_data),
+        "ros_distro": ros_distro,
+    }
+
+
+def topic_metadata(topic: TopicInfo) -> dict[str, Any]:
+    """Return what the metadata say of one topic."""
+    return {
+        "name": topic.name,
+        "type": topic.type,
+        "serialization_format": topic.serialization_format,
+        "offered_qos_profiles": [to_builtins(qos) for qos in topic.qos],
+        "type_description_hash": topic.type_hash,
+    }
+
+
+def metadata_text(metadata: Mapping[str, Any]) -> str:
+    """Return metadata as the text of ``metadata.yaml``."""
+    return yaml_text({ROOT: dict(metadata)})
+
+
+def write_metadata(folder: Path, metadata: Mapping[str, Any]) -> None:
+    """Write ``metadata.yaml``; the one before stays until the new one is whole.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    waiting = folder / f".{FILE_NAME}"
+    with waiting.open("w", encoding="utf-8") as file:
+        file.write(metadata_text(metadata))
+        file.flush()
+        os.fsync(file.fileno())
+    waiting.replace(folder / FILE_NAME)
+    sync_folder(folder)
+
+
+def sync_folder(folder: Path) -> None:
+    """Wait until the disk has the names of the files in a folder, so that a power cut keeps them.
+
+    A folder that cannot be read is left to the system.
+
+    Raises:
+        OSError: the disk fails.
+    """
+    try:
+        fd = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    except PermissionError:
+        return
+    try:
+        os.fsync(fd)
+    finally:
+        os.close(fd)
+
+
+def read_metadata(folder: Path) -> dict[str, Any]:
+    """Return the metadata of a bag, whatever its version.
+
+    Raises:
+        BagError: the file is missing, or is none.
+    """
+    path = folder / FILE_NAME
+    try:
+        text = read_file(path)
+        expect_no_pointer(path, text)
+        content = loaded_yaml(text)
+        metadata: dict[str, Any] = dict(content[ROOT])
+        metadata["relative_file_paths"] = [str(name) for name in metadata["relative_file_paths"]]
+        metadata["storage_identifier"] = str(metadata["storage_identifier"])
+        if any("\0" in name for name in metadata["relative_file_paths"]):
+            raise ValueError("NUL in the name of a file")  # noqa: TRY301  # as the others
+    except FileNotFoundError as error:
+        raise BagError(
+            str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` writes one"
+        ) from error
+    except BagError:
+        raise
+    except (OSError, yaml.YAMLError, LookupError, TypeError, ValueError) as error:
+        what = " ".join(str(error).split())
+        problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {what})"
+        raise BagError(str(folder), problem, "`aionode bag reindex` writes a new one") from error
+    return metadata
+
+
+def topics_in(metadata: Mapping[str, Any]) -> list[TopicInfo]:
+    """Return the topics that the metadata of a bag list; what rosbag2 does not write is left out.
+
+    How many messages they have only the files tell.
+    """
+    listed = metadata.get("topics_with_message_count")
+    topics = []
+    for entry in listed if isinstance(listed, list) else ():
+        told = entry.get("topic_metadata") if isinstance(entry, dict) else None
+        if not isinstance(told, dict) or not isinstance(told.get("name"), str):
+            continue
+        qos, problem = readable_profiles(told.get("offered_qos_profiles") or [])
+        topics.append(
+            TopicInfo(
+                name=told["name"],
+                type=str(told.get("type", "")),
+                type_hash=str(told.get("type_description_hash") or ""),
+                qos=qos,
+                serialization_format=str(told.get("serialization_format", "cdr")),
+                problem=problem,
+            )
+        )
+    return topics

@@ -1,0 +1,45 @@
+"""Puts the records of several files, or of several chunks, in order of time."""
+
+from __future__ import annotations
+
+import heapq
+from itertools import count
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from aionode.bag.files.record import Record
+
+__all__ = ["in_order"]
+
+
+def in_order(streams: list[tuple[int, Iterator[Record]]]) -> Iterator[Record]:
+    """Yield the records of several streams in order of time.
+
+    A stream is read only once its start has come, so that few files are in work at a time.
+
+    Args:
+        streams: Each stream, in order by itself, and a time before which it has no record.
+    """
+    if len(streams) == 1:
+        yield from streams[0][1]
+        return
+    waiting = sorted(streams, key=lambda stream: stream[0], reverse=True)
+    numbers = count()
+    heads: list[tuple[int, int, Record, Iterator[Record]]] = []
+    while waiting or heads:
+        while waiting and (not heads or waiting[-1][0] <= heads[0][0]):
+            _, stream = waiting.pop()
+            first = next(stream, None)
+            if first is not None:
+                heapq.heappush(heads, (first.time_ns, next(numbers), first, stream))
+        if not heads:
+            continue
+        _, number, record, stream = heads[0]
+        yield record
+        following = next(stream, None)
+        if following is None:
+            heapq.heappop(heads)
+        else:
+            heapq.heapreplace(heads, (following.time_ns, number, following, stream))

@@ -1,0 +1,289 @@
+"""Reads the MCAP files of bags, and what all files of bags have in common."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections import Counter
+from contextlib import ExitStack
+from io import BytesIO
+from typing import TYPE_CHECKING, Final, Protocol
+
+import zstandard
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Message
+
+from aionode.bag.files.chunks import HEAD, MESSAGE, rows_of, size_of
+from aionode.bag.files.compression import LIMIT_VARIABLE, TooLargeError, plain_file, plain_message
+from aionode.bag.files.order import in_order
+from aionode.bag.files.qos import readable_profiles
+from aionode.bag.files.record import MOST_NS, Record, TopicInfo
+from aionode.bag.files.summary import MAGIC, read_summary
+from aionode.errors import BagError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from collections.abc import Set as AbstractSet
+    from pathlib import Path
+
+    from mcap.records import Channel, ChunkIndex, Schema
+
+__all__ = ["CHECK", "DAMAGE", "McapSource", "Source", "damaged", "topic_of"]
+
+CHECK: Final = "`aionode bag check` repairs what a power cut left"
+DAMAGE: Final = (
+    McapError,
+    struct.error,
+    zlib.error,
+    zstandard.ZstdError,
+    EOFError,
+    RuntimeError,  # of lz4
+    MemoryError,
+    OverflowError,
+    ValueError,
+    TypeError,
+    LookupError,
+    AssertionError,
+)
+"""Exceptions of the libraries for a damaged file."""
+
+
+class Source(Protocol):
+    """One file of a bag.
+
+    Attributes:
+        path: Where it is.
+        topics: Its topics, with counts.
+        start_ns: The time of its first message; `MOST_NS` without one.
+        end_ns: The time of its last message; 0 without one.
+    """
+
+    path: Path
+    topics: list[TopicInfo]
+    start_ns: int
+    end_ns: int
+
+    def records(
+        self,
+        topics: AbstractSet[str] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
+    ) -> Iterator[Record]:
+        """Yield the records of some topics from one time on until before another, in order.
+
+        What is damaged is left out, and added to `problems`.
+        """
+
+    def close(self) -> None:
+        """Close its files."""
+
+
+def topic_of(schema: Schema | None, channel: Channel, messages: int) -> TopicInfo:
+    """Return the topic that a channel of an MCAP file is."""
+    definition = "" if schema is None else schema.data.decode(errors="replace")
+    qos, problem = readable_profiles(channel.metadata.get("offered_qos_profiles", ""))
+    return TopicInfo(
+        name=channel.topic,
+        type="" if schema is None else schema.name,
+        type_hash=channel.metadata.get("topic_type_hash", ""),
+        qos=qos,
+        message_count=messages,
+        serialization_format=channel.message_encoding,
+        encoding=schema.encoding if definition and schema is not None else "",
+        definition=definition,
+        problem=problem,
+    )
+
+
+class McapSource:
+    """An MCAP file.
+
+    Args:
+        path: The file; one that ends in ``.zstd`` is decompressed into a temporary folder.
+        compressed_messages: Whether each message is compressed by itself.
+
+    Raises:
+        BagError: it is no MCAP file, or was not closed.
+        OSError: it cannot be read.
+    """
+
+    def __init__(self, path: Path, *, compressed_messages: bool = False) -> None:
+        self.path = path
+        self._compressed_messages = compressed_messages
+        with ExitStack() as stack:
+            _, self._file = plain_file(path, stack)
+            try:
+                summary = read_summary(self._file)
+                statistics = summary.statistics
+                if statistics is None:
+                    raise BagError(str(path), "the file has no summary", CHECK)  # noqa: TRY301  # more that it may lack
+                self._chunks = summary.chunks
+                counts = statistics.channel_message_counts
+                if statistics.message_count and not counts:  # a writer may leave them out
+                    counts = self._counted()
+                self._channels = {
+                    number: topic_of(
+                        summary.schemas.get(channel.schema_id), channel, counts.get(number, 0)
+                    )
+                    for number, channel in summary.channels.items()
+                }
+            except BagError:
+                raise
+            except DAMAGE as error:
+                raise damaged(path, error) from error
+            self._open = stack.pop_all()
+        self.topics = list(self._channels.values())
+        has_messages = statistics.message_count > 0
+        self.start_ns = statistics.message_start_time if has_messages else MOST_NS
+        self.end_ns = statistics.message_end_time if has_messages else 0
+
+    def records(
+        self,
+        topics: AbstractSet[str] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
+    ) -> Iterator[Record]:
+        """Yield the records of some topics from one time on until before another, in order."""
+        wanted = None
+        if topics is not None:
+            wanted = {
+                number for number, channel in self._channels.items() if channel.name in topics
+            }
+        chunks = [
+            chunk
+            for chunk in self._chunks
+            if chunk.message_start_time < end_ns
+            and chunk.message_end_time >= start_ns
+            and has_any(chunk, wanted)
+        ]
+        records = (
+            in_order(
+                [
+                    (
+                        chunk.message_start_time,
+                        self._in_chunk(chunk, wanted, start_ns, end_ns, problems),
+                    )
+                    for chunk in chunks
+                ]
+            )
+            if self._chunks
+            else self._without_chunks(wanted, start_ns, end_ns, problems)
+        )
+        return self._plain(records, problems) if self._compressed_messages else records
+
+    def _in_chunk(
+        self,
+        chunk: ChunkIndex,
+        wanted: AbstractSet[int] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
+    ) -> Iterator[Record]:
+        channels = self._channels
+        where = f"the chunk at byte {chunk.chunk_start_offset}"
+        try:
+            content, rows = rows_of(self._file, chunk, wanted, start_ns, end_ns)
+        except DAMAGE as error:
+            problems.append(damaged(self.path, error, where))
+            return
+        unknown: set[int] = set()
+        for time_ns, channel, sequence, publish_ns, begin, end in rows:
+            info = channels.get(channel)
+            if info is None:
+                unknown.add(channel)
+                continue
+            yield Record(info, time_ns, publish_ns, sequence, content[begin:end])
+        if unknown:
+            wrong = LookupError(f"channel {min(unknown)} of a message is not in the summary")
+            problems.append(damaged(self.path, wrong, where))
+
+    def _without_chunks(
+        self,
+        wanted: AbstractSet[int] | None,
+        start_ns: int,
+        end_ns: int,
+        problems: list[BagError],
+    ) -> Iterator[Record]:
+        """Yield messages that stand in the file by themselves."""
+        rows: list[tuple[int, int, int]] = []  # time, and where it is
+        try:
+            for at, length, channel, time_ns in self._lone_messages():
+                if start_ns <= time_ns < end_ns and (wanted is None or channel in wanted):
+                    rows.append((time_ns, at, length))
+        except DAMAGE as error:
+            problems.append(damaged(self.path, error))
+        rows.sort()
+        for time_ns, at, length in rows:
+            self._file.seek(at)
+            message = Message.read(ReadDataStream(BytesIO(self._file.read(length))), length)
+            info = self._channels.get(message.channel_id)
+            if info is None:
+                unknown = LookupError(f"channel {message.channel_id} is not in the summary")
+                problems.append(damaged(self.path, unknown, f"the message at byte {at}"))
+                continue
+            yield Record(info, time_ns, message.publish_time, message.sequence, message.data)
+
+    def _lone_messages(self) -> Iterator[tuple[int, int, int, int]]:
+        """Yield where each message stands, how long it is, its channel and its time.
+
+        Raises:
+            McapError: the file is damaged.
+        """
+        at, size = len(MAGIC), size_of(self._file)
+        while at < size:
+            self._file.seek(at)
+            opcode, length = HEAD.unpack(self._file.read(HEAD.size))
+            at += HEAD.size
+            if opcode == Opcode.DATA_END:
+                return
+            if length > size - at or (opcode == Opcode.MESSAGE and length < MESSAGE.size):
+                raise McapError(f"the record at byte {at - HEAD.size} goes beyond the end")
+            if opcode == Opcode.MESSAGE:
+                channel, _, time_ns, _ = MESSAGE.unpack(self._file.read(MESSAGE.size))
+                yield at, length, channel, time_ns
+            at += length
+
+    def _counted(self) -> dict[int, int]:
+        """Return how many messages each channel has, counted in the file."""
+        counts: Counter[int] = Counter()
+        if not self._chunks:
+            counts.update(channel for _, _, channel, _ in self._lone_messages())
+        for chunk in self._chunks:
+            _, rows = rows_of(self._file, chunk, None, 0, 1 << 64)
+            counts.update(row[1] for row in rows)
+        return counts
+
+    def _plain(self, records: Iterator[Record], problems: list[BagError]) -> Iterator[Record]:
+        """Yield records whose messages are compressed by themselves."""
+        for record in records:
+            try:
+                record.raw = plain_message(record.raw)
+            except DAMAGE as error:
+                where = f"the message of {record.topic!r} at {record.time_ns} ns"
+                problems.append(damaged(self.path, error, where))
+            else:
+                yield record
+
+    def close(self) -> None:
+        """Close the file."""
+        self._open.close()
+
+
+def has_any(chunk: ChunkIndex, wanted: AbstractSet[int] | None) -> bool:
+    """Return whether a chunk may have messages of some channels, as far as its index tells."""
+    offsets = chunk.message_index_offsets
+    return wanted is None or not offsets or not wanted.isdisjoint(offsets)
+
+
+def damaged(path: Path, error: Exception, where: str = "the file") -> BagError:
+    """Return the error for a file that is not complete, or for a part of one."""
+    what = str(error) or type(error).__name__
+    if isinstance(error, TooLargeError):
+        remedy = f"{LIMIT_VARIABLE} raises the limit"
+        return BagError(str(path), f"{where} is not read: {what}", remedy)
+    or_open = ", or was not closed" if where == "the file" else ""
+    return BagError(str(path), f"{where} is damaged{or_open} ({what})", CHECK)

@@ -1,0 +1,1 @@
+"""Plays bags as their messages came."""

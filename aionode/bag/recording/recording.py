@@ -1,0 +1,175 @@
+"""One bag that a recorder writes: its topics, what became of their messages, and its thread."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from aionode._process.concurrency import run_in_thread, to_the_end
+from aionode.bag.files.losses import LOSSES, Lost, losses_text
+from aionode.bag.recording.writer_thread import Row, WriterThread
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Collection, Mapping
+
+    from aionode.bag._writer import BagWriter
+    from aionode.bag.files.record import TopicInfo
+    from aionode.endpoints.subscription import Subscription
+
+__all__ = ["Key", "Recording", "TopicStats", "summary_of"]
+
+Key = tuple[str, str, str]
+
+
+class TopicStats(NamedTuple):
+    """The outcomes of the messages of one topic.
+
+    Attributes:
+        recorded: How many are in the bag, or on their way to it.
+        lost_in_transport: How many were published and did not arrive, by their numbers.
+        lost_in_recorder: How many arrived and were not written.
+    """
+
+    recorded: int
+    lost_in_transport: int
+    lost_in_recorder: int
+
+
+class Recording:
+    """A bag that is being written, by a thread.
+
+    Args:
+        writer: The bag.
+        cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
+        cache_ns: How long messages are kept in snapshot mode, in nanoseconds; 0 for no limit.
+        snapshot: Whether messages are only kept until somebody asks for a snapshot.
+        on_failure: Called in the loop, once, when nothing can be written any more.
+
+    Attributes:
+        numbers: The numbers of its topics, by name, type and hash.
+        subscriptions: Where the messages come from, by number; some topics have none.
+        thread: What writes.
+    """
+
+    def __init__(
+        self,
+        writer: BagWriter,
+        *,
+        cache_bytes: int,
+        cache_ns: int,
+        snapshot: bool,
+        on_failure: Callable[[], None],
+    ) -> None:
+        self.numbers: dict[Key, int] = {}
+        self.subscriptions: dict[int, Subscription[bytes]] = {}
+        self._writer = writer
+        self._topics: list[tuple[TopicInfo, int]] = []
+        self._taken: list[int] = []
+        self._refused: list[int] = []
+        loop = asyncio.get_running_loop()
+        self.thread = WriterThread(
+            writer,
+            self._topics,
+            cache_bytes,
+            cache_ns=cache_ns,
+            snapshot=snapshot,
+            on_failure=lambda: void(loop.call_soon_threadsafe(on_failure)),
+            before_close=self._note_losses,
+        )
+
+    def number_of(self, info: TopicInfo, latched_depth: int) -> int:
+        """Return the number of a topic, which is added if it is new."""
+        number = self.numbers.get(info.key)
+        if number is None:
+            number = self.numbers[info.key] = len(self._topics)
+            self._topics.append((info, latched_depth))
+            self._taken.append(0)
+            self._refused.append(0)
+        return number
+
+    def types_of(self, name: str) -> list[str]:
+        """Return the types that a topic has in the bag."""
+        return [info.type for info, _ in self._topics if info.name == name]
+
+    def put(self, row: Row) -> None:
+        """Hand a message over to the thread; it is counted as lost if there is no room."""
+        if self.thread.put(row):
+            self._taken[row.topic] += 1
+        else:
+            self._refused[row.topic] += 1
+
+    @property
+    def stats(self) -> dict[str, TopicStats]:
+        """The messages recorded and lost, by topic."""
+        found: dict[str, TopicStats] = {}
+        for number, (info, _) in enumerate(self._topics):
+            subscription = self.subscriptions.get(number)
+            transport = 0 if subscription is None else subscription.stats.lost
+            not_written = self.thread.lost.get(number, 0)
+            before = found.get(info.name, TopicStats(0, 0, 0))
+            found[info.name] = TopicStats(
+                before.recorded + self._taken[number] - not_written,
+                before.lost_in_transport + transport,
+                before.lost_in_recorder + self._refused[number] + not_written,
+            )
+        return found
+
+    async def do(self, work: Callable[[], Any]) -> None:
+        """Have the thread do something after what it was given before, and wait for it.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        loop = asyncio.get_running_loop()
+        done: asyncio.Future[None] = loop.create_future()
+
+        def finish() -> None:
+            if not done.done():
+                done.set_result(None)
+
+        def run() -> None:
+            try:
+                work()
+            finally:
+                loop.call_soon_threadsafe(finish)
+
+        self.thread.call(run)
+        await done
+        self.raise_failure()
+
+    def raise_failure(self) -> None:
+        """Raise what keeps the thread from writing, if anything does.
+
+        Raises:
+            BagWriteError: the disk is full, or fails.
+        """
+        if self.thread.failure is not None:
+            raise self.thread.failure
+
+    async def close(self) -> None:
+        """Write the rest, and close the bag; cancelling does not end that early."""
+        await to_the_end(run_in_thread(self.thread.stop))
+
+    def _note_losses(self) -> None:
+        losses = {
+            name: Lost(each.lost_in_transport, each.lost_in_recorder)
+            for name, each in self.stats.items()
+        }
+        self._writer.custom_data[LOSSES] = losses_text(losses)
+
+
+def summary_of(stats: Mapping[str, TopicStats], path: str, unrecorded: Collection[str]) -> str:
+    """Return in one line what was recorded, what was lost, and which topics were not recorded."""
+    recorded = sum(each.recorded for each in stats.values())
+    lost = [
+        f"{name}: {each.lost_in_transport} in transport, {each.lost_in_recorder} in recorder"
+        for name, each in sorted(stats.items())
+        if each.lost_in_transport or each.lost_in_recorder
+    ]
+    lost += [f"{name}: all, nobody describes its type" for name in sorted(unrecorded)]
+    end = f"lost: {'; '.join(lost)}" if lost else "lost: nothing"
+    return f"recorded {recorded} messages of {len(stats)} topics to {path}; {end}"
+
+
+def void(_: object) -> None:
+    """Return nothing, where that is wanted."""

@@ -1,0 +1,269 @@
+"""The thread that writes a recording, so that the event loop never waits for the disk.
+
+The loop appends rows to a deque, and the thread takes them every 20 ms: one wake-up for many
+messages. Each counter has one writer, so there is no lock.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import threading
+from collections import deque
+from time import sleep  # noqa: TID251  # of no time: it only lets go of the interpreter
+from typing import TYPE_CHECKING, Final, NamedTuple
+
+from aionode.bag._writer import BagWriter
+from aionode.bag.files.mcap_writer import write_error
+from aionode.clock import perf_ns
+from aionode.errors import BagWriteError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.bag.files.mcap_writer import Parts
+    from aionode.bag.files.record import TopicInfo
+
+__all__ = ["Row", "WriterThread"]
+
+BATCH_S: Final = 0.02
+"""Time for which the thread sleeps between two looks for new rows, in seconds."""
+
+SYNC_NS: Final = 250_000_000
+"""How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
+the last second, and writing takes time as well, on a busy machine most of it."""
+
+TURN: Final = 32
+"""Rows that are taken before other threads get their turn."""
+
+TURN_BYTES: Final = 32 << 10
+"""A row counts as one more for each so many bytes: large ones take long."""
+
+MOST_ROWS: Final = 1_000_000
+"""Rows that may wait, or are kept for a snapshot: small messages take more than their bytes."""
+
+LEAST_WAITING: Final = 16 << 20
+"""Bytes that may wait for the thread in snapshot mode, however few are kept."""
+
+
+class Row(NamedTuple):
+    """One message on its way to the file.
+
+    Attributes:
+        topic: The number of its topic, as the recorder counts them.
+        time_ns: When it was received, in nanoseconds since 1970.
+        publish_time_ns: When it was published.
+        sequence: Its number, given by its publisher.
+        size: How many bytes it has.
+        raw: Its bytes, or a list of their parts.
+    """
+
+    topic: int
+    time_ns: int
+    publish_time_ns: int
+    sequence: int
+    size: int
+    raw: Parts
+
+
+class WriterThread:
+    """Writes rows to a bag.
+
+    Args:
+        writer: The bag.
+        topics: The topics by number, each with the number of messages that further files begin
+            with; the recorder adds to it.
+        cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
+        cache_ns: How long messages are kept in snapshot mode, in nanoseconds; 0 for no limit.
+        snapshot: Whether messages are only kept until somebody asks for a snapshot.
+        on_failure: Called in the thread, once, when nothing can be written any more.
+        before_close: Called in the thread before the bag is closed, and again when losses are
+            counted after that.
+
+    Attributes:
+        failure: Why nothing is written any more; None while all is well.
+        lost: How many rows of each topic were not written, because the disk was full or failed.
+    """
+
+    def __init__(
+        self,
+        writer: BagWriter,
+        topics: list[tuple[TopicInfo, int]],
+        cache_bytes: int,
+        *,
+        cache_ns: int = 0,
+        snapshot: bool,
+        on_failure: Callable[[], None],
+        before_close: Callable[[], None],
+    ) -> None:
+        self.failure: BagWriteError | None = None
+        self.lost: dict[int, int] = {}
+        self._writer = writer
+        self._topics = topics
+        self._cache_bytes = cache_bytes
+        self._cache_ns = cache_ns
+        self._waiting_bytes = max(cache_bytes, LEAST_WAITING) if snapshot else cache_bytes
+        self._on_failure = on_failure
+        self._before_close = before_close
+        self._rows: deque[Row | Callable[[], None]] = deque()
+        self._put_bytes = 0
+        self._taken_bytes = 0
+        self._numbers: dict[int, int] = {}  # of the topics in the bag
+        self._written: dict[int, int] = {}
+        self._is_dirty = False
+        self._synced_ns = perf_ns()
+        self._kept: deque[Row] | None = deque() if snapshot else None
+        self._kept_bytes = 0
+        self._latched: dict[int, deque[Row]] = {}
+        self._stopping = threading.Event()
+        self._thread = threading.Thread(target=self._run, name="aionode-bag-writer", daemon=True)
+        self._thread.start()
+
+    # In the loop
+
+    def put(self, row: Row) -> bool:
+        """Hand a row over, and return whether there was room for it."""
+        size = row.size
+        waiting = len(self._rows)
+        if waiting and (
+            self._put_bytes - self._taken_bytes + size > self._waiting_bytes or waiting >= MOST_ROWS
+        ):
+            return False
+        self._put_bytes += size
+        self._rows.append(row)
+        return True
+
+    def call(self, work: Callable[[], None]) -> None:
+        """Have the thread call `work` after it has written the rows that came before."""
+        self._rows.append(work)
+
+    def stop(self) -> None:
+        """Write all rows, close the bag, and wait for both; not in the event loop's thread."""
+        self._stopping.set()
+        self._thread.join()
+
+    # In the thread
+
+    def _run(self) -> None:
+        while not self._stopping.wait(BATCH_S):
+            self._guarded(self._step)
+        while self._rows:  # an error leaves the rest, which is counted then
+            self._guarded(self._take_all)
+        self._before_close()
+        try:
+            self._writer.close()
+        except BagWriteError as error:
+            self._fail(error)
+        if self.failure is not None:
+            self._count_lost()
+            self._before_close()
+            with contextlib.suppress(OSError):
+                self._writer.write_metadata()
+
+    def _guarded(self, step: Callable[[], None]) -> None:
+        try:
+            step()
+        except BagWriteError as error:
+            self._fail(error)
+        except OSError as error:  # of a file that is removed, or a sync that fails
+            self._fail(write_error(self._writer.path, error))
+
+    def _fail(self, error: BagWriteError) -> None:
+        if self.failure is None:
+            self.failure = error
+            self._on_failure()
+
+    def _step(self) -> None:
+        """Take what has come, and see that it is on the disk in time."""
+        if not self._is_dirty:
+            self._synced_ns = perf_ns()
+        self._take_all()
+        self._sync_in_time()
+
+    def _sync_in_time(self) -> None:
+        """Have the disk confirm what was written, if that is due."""
+        if self._is_dirty and perf_ns() - self._synced_ns >= SYNC_NS:
+            self._is_dirty = False
+            self._synced_ns = perf_ns()
+            self._writer.sync()
+
+    def _take_all(self) -> None:
+        rows = self._rows
+        taken = 0
+        while rows:
+            if taken >= TURN:
+                taken = 0
+                sleep(0)  # the event loop may wait for its turn
+                self._sync_in_time()  # where more comes all the time, nothing else does
+            row = rows.popleft()
+            if not isinstance(row, Row):
+                row()
+                continue
+            taken += 1 + row.size // TURN_BYTES
+            self._taken_bytes += row.size
+            if self.failure is not None:
+                self.lost[row.topic] = self.lost.get(row.topic, 0) + 1
+            elif self._kept is None:
+                self._write(row)
+            else:
+                self._keep(row, self._kept)
+
+    def _write(self, row: Row) -> None:
+        number = self._numbers.get(row.topic)
+        if number is None:
+            topic, latched_depth = self._topics[row.topic]
+            number = self._writer.add_topic(topic, latched_depth=latched_depth)
+            self._numbers[row.topic] = number
+            self._written[row.topic] = 0
+        self._written[row.topic] += 1
+        self._is_dirty = True
+        self._writer.write(
+            number,
+            row.time_ns,
+            row.raw,
+            publish_time_ns=row.publish_time_ns,
+            sequence=row.sequence,
+        )
+
+    def _count_lost(self) -> None:
+        """Count what a full disk has taken back, once the bag is closed."""
+        in_bag = {topic.key: topic.message_count for topic in self._writer.topics}
+        for number, written in self._written.items():
+            missing = written - in_bag.get(self._topics[number][0].key, 0)
+            if missing > 0:
+                self.lost[number] = self.lost.get(number, 0) + missing
+
+    # Snapshots
+
+    def _keep(self, row: Row, kept: deque[Row]) -> None:
+        """Keep a row for a snapshot, and let go of the oldest."""
+        kept.append(row)
+        self._kept_bytes += row.size
+        while len(kept) > 1 and self._is_too_much(kept):
+            oldest = kept.popleft()
+            self._kept_bytes -= oldest.size
+            depth = self._topics[oldest.topic][1]
+            if depth:
+                self._latched.setdefault(oldest.topic, deque(maxlen=depth)).append(oldest)
+
+    def _is_too_much(self, kept: deque[Row]) -> bool:
+        """Return whether the oldest row has to go."""
+        if self._kept_bytes > self._cache_bytes or len(kept) > MOST_ROWS:
+            return True
+        return 0 < self._cache_ns < kept[-1].time_ns - kept[0].time_ns
+
+    def write_snapshot(self) -> None:
+        """Write what is kept, after the latched messages before it; only by `call`."""
+        kept, self._kept = self._kept or deque(), deque()
+        self._kept_bytes = 0
+        first_ns = kept[0].time_ns if kept else 0
+        with contextlib.suppress(IndexError):
+            for rows in self._latched.values():
+                for row in rows:
+                    self._write(row._replace(time_ns=first_ns or row.time_ns))
+        for row in kept:
+            self._write(row)
+        self._writer.sync()
+
+    def split(self, time_ns: int) -> None:
+        """Begin a new file; only by `call`."""
+        self._writer.split(time_ns)

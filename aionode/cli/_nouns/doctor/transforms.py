@@ -1,0 +1,122 @@
+"""Why a transform is missing, as far as a look at /tf shows it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from aionode.cli._nouns.doctor.diagnosis import Finding
+from aionode.cli._nouns.tf.tree import edges_of, roots
+from aionode.cli._support import lookup
+from aionode.clock import Time
+from aionode.graph import EndpointKind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from aionode.cli._nouns.tf.tree import FrameEdge
+    from aionode.node import Node
+    from aionode.tf import Buffer
+
+__all__ = ["transform_findings"]
+
+LISTEN_S = 1.5
+"""Time to listen to /tf, in seconds."""
+
+OLD_S = 5.0
+"""From which age on a transform counts as no longer sent, in seconds."""
+
+AHEAD_S = 0.5
+"""Seconds by which a stamp may be ahead of this machine's clock."""
+
+
+ZERO = Time()
+"""The latest common time."""
+
+
+async def transform_findings(node: Node, wanted: tuple[str, str] | None) -> list[Finding]:
+    """Return what is wrong with the transforms on the network.
+
+    Without publishers of /tf and /tf_static, and without a wanted transform, it does not listen.
+
+    Args:
+        node: The command's node.
+        wanted: The target and source frame of a transform that is missing.
+    """
+    topics = {endpoint.name for endpoint in lookup.endpoints(node, EndpointKind.PUBLISHER)}
+    if not topics & {"/tf", "/tf_static"} and wanted is None:
+        return []
+    from aionode.tf import Buffer as TfBuffer  # only where transforms are used
+
+    buffer = TfBuffer(node)
+    await node.get_clock().sleep(LISTEN_S)
+    edges = edges_of(buffer, node.get_clock().now_ns())
+    return [
+        *missing(buffer, wanted),
+        *unconnected(edges),
+        # Stamps of simulated time say nothing on this machine's clock.
+        *(() if "/clock" in topics else wrong_stamps(edges)),
+        *two_broadcasters(buffer),
+    ]
+
+
+def missing(buffer: Buffer, wanted: tuple[str, str] | None) -> Iterator[Finding]:
+    """Yield a finding if the wanted transform is missing, with tf2's reason."""
+    if wanted is None:
+        return
+    target, source = wanted
+    possible, reason = buffer.can_transform_core(target, source, ZERO)
+    if possible:
+        return
+    known = buffer._getFrameStrings()
+    remedy = "see `aionode tf tree`: one of the frames between them is not sent, or has no parent"
+    for name in wanted:
+        if name not in known:
+            close = lookup.close_to(name, known)
+            remedy = f"nothing that was heard on /tf or /tf_static names '{name}'{close}"
+    yield Finding("problem", f"transform from [{source}] to [{target}]", reason, remedy)
+
+
+def unconnected(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
+    """Yield a finding if there is more than one tree."""
+    trees = roots(edges)
+    if len(trees) > 1:
+        yield Finding(
+            "hint",
+            "/tf",
+            f"the frames form {len(trees)} unconnected trees, below {', '.join(trees[:10])}",
+            "publish the transform that connects them, such as with `aionode tf static`",
+        )
+
+
+def wrong_stamps(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
+    """Yield a finding for each frame whose newest transform is old, or from the future."""
+    for edge in edges:
+        if edge.static:
+            continue
+        if edge.age_sec > OLD_S:
+            yield Finding(
+                "hint",
+                edge.child,
+                f"its transform in {edge.parent} is {edge.age_sec:.1f} s old, from "
+                f"{edge.broadcaster}",
+                "see whether that node still publishes, and whether the clocks of both agree",
+            )
+        elif edge.age_sec < -AHEAD_S:
+            yield Finding(
+                "hint",
+                edge.child,
+                f"its transform in {edge.parent} is {-edge.age_sec:.1f} s ahead of this clock, "
+                f"from {edge.broadcaster}",
+                "synchronize the clocks of both machines, or set use_sim_time in both nodes",
+            )
+
+
+def two_broadcasters(buffer: Buffer) -> Iterator[Finding]:
+    """Yield a finding for each frame that two nodes send."""
+    for frame, rival in buffer._BufferCore__rivals.items():
+        yield Finding(
+            "hint",
+            frame,
+            f"{rival} and {buffer._BufferCore__authorities[frame]} both send its transform",
+            "stop one of them, or rename its frame",
+        )
