@@ -19,6 +19,7 @@ from aionode.cli._main import root
 from aionode.engine.context import Context
 from docs.contents import with_contents, without_contents
 from docs.quotes import QUOTE, ROOT, fragment, pages, refreshed
+from tests.lab import experiments
 
 if TYPE_CHECKING:
     from types import CodeType
@@ -146,6 +147,18 @@ def test_a_command_of_the_documentation_exists() -> None:
     assert unknown == []
 
 
+def test_experiments_run_programs_that_exist() -> None:
+    """They run seldom: a module that has moved would be noticed at the next release only."""
+    unknown = [
+        line
+        for experiment in experiments().values()
+        for line in experiment.run.splitlines()
+        if line.startswith("python ") and not command_line_exists(line)
+    ]
+
+    assert unknown == []
+
+
 def command_line_exists(command: str) -> bool:
     """Return whether what a command line names exists: a command, a module, a file or a target."""
     words = shlex.split(command, comments=True)
@@ -154,12 +167,13 @@ def command_line_exists(command: str) -> bool:
             return command_exists(arguments)
         case ["python", "-m", "build" | "twine", *_]:
             return True  # a release needs them, and nothing else
-        case ["python", "-m", module, *_]:
+        case ["python" | "python3", "-m", module, *_]:
             return importlib.util.find_spec(module) is not None
         case ["python", path, *_] if path.endswith(".py"):
             return (ROOT / path).exists()
         case ["make", target, *_]:
-            return f"\n{target}:" in (ROOT / "Makefile").read_text(encoding="utf-8")
+            makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+            return f"\n{target}:" in makefile or target in experiments()
         case _:
             others = {
                 ".",
