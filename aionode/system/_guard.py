@@ -44,14 +44,12 @@ class ProgramDescription:
         env: The whole environment.
         ladder: The signals that end the program, each with the time before the next, in seconds.
         cwd: The working folder; that of the supervisor if None.
-        cgroup: The folder of the cgroup that it enters; none if None.
     """
 
     argv: Sequence[str]
     env: Mapping[str, str]
     ladder: Sequence[tuple[str, float]]
     cwd: str | None = None
-    cgroup: str | None = None
 
     def encoded(self) -> bytes:
         """Return it as JSON, for the guardian."""
@@ -61,7 +59,6 @@ class ProgramDescription:
                 "env": dict(self.env),
                 "ladder": list(self.ladder),
                 "cwd": self.cwd,
-                "cgroup": self.cgroup,
             }
         ).encode()
 
@@ -131,8 +128,7 @@ class Orphans:
         for running, description in programs:
             # One whose start was under way is stopped; its session is not known, but its token is.
             pid = running.pid or -1
-            ladder, cgroup = list(description.ladder), description.cgroup
-            program = Program(running.number, pid, [], ladder, cgroup, guardian)
+            program = Program(running.number, pid, [], list(description.ladder), guardian)
             if not running.started.done():
                 running.refuse(description.argv, LOST)
                 program.note_end()

@@ -7,8 +7,7 @@ guardian stops every program, the last one first, and ends after the last proces
 Each program is started in a session of its own. The guardian is the subreaper of all of them
 (``PR_SET_CHILD_SUBREAPER``): a process that loses its parent, such as one that forked twice, is
 the guardian's child from then on, so every process of the system is found below the guardian.
-Which program such a process belongs to, its session tells, its parent, the token in its
-environment, or its cgroup, if the program has one of its own.
+A process is assigned to its program by its session, its parent, or the token in its environment.
 
 Commands and events are packets of JSON. Commands: ``start`` (with five or six descriptors: the
 description of the program, its three standard streams, and the ends of its output that are read),
@@ -60,7 +59,6 @@ class Program:
         gone: Whether no process is left.
         outputs: The ends of its output that are read when the supervisor is gone.
         ladder: The signals that end it, and how long each is waited for, in seconds.
-        cgroup: The folder of the cgroup with its processes; None if it has none of its own.
         token: What is in the environment of its processes.
     """
 
@@ -70,11 +68,9 @@ class Program:
         pid: int,
         outputs: list[int],
         ladder: list[tuple[str, float]],
-        cgroup: str | None,
         guardian: int,
     ) -> None:
         self.number, self.pid, self.outputs, self.ladder = number, pid, outputs, ladder
-        self.cgroup = cgroup
         self.token = token_of(guardian, number)
         self.ended = self.gone = False
         self.stopping = False
@@ -135,33 +131,6 @@ class Program:
         else:
             for pid in rest:
                 send(os.kill, pid, number)
-            if number == signal.SIGKILL:
-                kill_cgroup(self.cgroup)
-
-
-def kill_cgroup(cgroup: str | None) -> None:
-    """Kill all processes of a cgroup, also those that run as another user."""
-    if cgroup is not None:
-        with suppress(OSError), open(f"{cgroup}/cgroup.kill", "w") as file:  # noqa: PTH123
-            file.write("1")  # since Linux 5.14
-
-
-def remove_cgroup(cgroup: str | None) -> None:
-    """Remove a cgroup without processes; the supervisor may be gone, which has created it."""
-    if cgroup is not None:
-        with suppress(OSError):
-            os.rmdir(cgroup)  # noqa: PTH106  # every import here takes time at each start
-
-
-def processes_in(cgroup: str | None) -> list[int]:
-    """Return the processes of a cgroup."""
-    if cgroup is None:
-        return []
-    try:
-        with open(f"{cgroup}/cgroup.procs", encoding="ascii") as file:  # noqa: PTH123
-            return list(map(int, file.read().split()))
-    except OSError:
-        return []
 
 
 def send(function: Any, pid: int, number: signal.Signals) -> None:
@@ -281,16 +250,15 @@ class Guardian:
                 stdout=stdout,
                 stderr=stderr,
                 start_new_session=True,
-                preexec_fn=joining(program["cgroup"]),  # noqa: PLW1509  # it has no threads
             )
-        except (OSError, subprocess.SubprocessError) as error:
+        except OSError as error:
             for output in outputs:
                 os.close(output)
             self._tell(event="refused", number=number, text=str(error))
         else:
             process.returncode = 0  # it is reaped here, not by subprocess
             self._programs[number] = Program(
-                number, process.pid, [*outputs], program["ladder"], program["cgroup"], os.getpid()
+                number, process.pid, [*outputs], program["ladder"], os.getpid()
             )
             self._tell(event="started", number=number, pid=process.pid)
         finally:
@@ -338,7 +306,6 @@ class Guardian:
                 if program.is_left(strangers=strangers):
                     continue
                 program.gone = True
-                remove_cgroup(program.cgroup)
                 self._forget(program)
                 self._tell(event="gone", number=program.number)
             else:
@@ -362,9 +329,9 @@ def owned_by(
     """
     sessions = {program.pid: program.number for program in programs}
     tokens = {program.token: program.number for program in programs}
-    owners = {pid: program.number for program in programs for pid in processes_in(program.cgroup)}
+    owners: dict[int, int] = {}
     for pid, parent, session in processes:
-        number = owners.get(pid, sessions.get(session, owners.get(parent)))
+        number = sessions.get(session, owners.get(parent))
         if number is None:
             number = next((tokens[token] for token in tokens_in(pid) if token in tokens), None)
         if number is not None:
@@ -373,18 +340,6 @@ def owned_by(
     for pid, number in owners.items():
         owned.setdefault(number, []).append(pid)
     return owned
-
-
-def joining(cgroup: str | None) -> Any:
-    """Return what a new process does before it becomes the program: it enters its cgroup."""
-    if cgroup is None:
-        return None
-
-    def join() -> None:
-        with open(f"{cgroup}/cgroup.procs", "w") as file:  # noqa: PTH123
-            file.write("0")
-
-    return join
 
 
 def descendants(ancestor: int) -> list[tuple[int, int, int]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypedDict
+from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypedDict
 
 from aionode._process.restart import Backoff, wants_another
 from aionode.clock import S_TO_NS, SteadyClock
@@ -73,6 +73,10 @@ class MemberOptions(TypedDict, total=False):
     managed: str | Sequence[str]
 
 
+FORMER_LIMITS: Final = {"memory_bytes": "MemoryMax=", "cpu_cores": "CPUQuota="}
+"""Options that there were once, and what systemd has in place of each."""
+
+
 def options_of(
     restart: Restart, ready: tuple[Fact, ...], shared: MemberOptions, subject: str
 ) -> Options:
@@ -93,8 +97,11 @@ def options_of(
     try:
         return Options(restart=restart, ready=ready, **given)
     except TypeError as error:
-        known = ", ".join(MemberOptions.__annotations__)
-        raise TypeError(f"{subject}: {error}; the options are {known}") from None
+        known = f"the options are {', '.join(MemberOptions.__annotations__)}"
+        if former := FORMER_LIMITS.keys() & shared.keys():
+            settings = " and ".join(sorted(FORMER_LIMITS[name] for name in former))
+            known = f"limit the whole system by {settings} in its systemd unit"
+        raise TypeError(f"{subject}: {error}; {known}") from None
 
 
 class Host(Protocol):

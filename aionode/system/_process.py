@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from aionode.system._guard import Guard, RunningProgram
-    from aionode.system._limits import Limits
     from aionode.system._member import Host, Options
     from aionode.system._output import OutputReader
 
@@ -38,7 +37,6 @@ class ProcessOptions:
         stdin: Whether it reads the keyboard: it gets the terminal.
         term_after_sec: How long after SIGINT it gets SIGTERM, in seconds.
         kill_after_sec: How long after SIGTERM it gets SIGKILL, in seconds.
-        limits: Of memory and processors.
         terminal: Whether it prints to a terminal of its own.
         on_output: Called with what it prints, and with 1 for standard output and 2 for error.
     """
@@ -49,7 +47,6 @@ class ProcessOptions:
     stdin: bool
     term_after_sec: float
     kill_after_sec: float
-    limits: Limits
     terminal: bool = False
     on_output: Callable[[bytes, int], object] | None = None
 
@@ -98,14 +95,12 @@ class ProcessMember(Member):
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
         """Start it, and wait until no process of it is left."""
-        cgroup = self.process.limits.enter(self.name, self.host.log)
         pipes: list[int] = []
         try:
-            pipes, program = self._start(cgroup)
+            pipes, program = self._start()
             await program.started
         except OSError as error:  # a ProgramStartError, or no descriptor is left
             self._stop_reading(pipes)
-            self.process.limits.leave(cgroup)
             self.host.log.note(f"{self.name}: {error}{hint_at_limit(error)}")
             return MemberEnd(self.name, failed=True, text="could not be started", status=127)
         self.note_running(program.pid)
@@ -116,7 +111,6 @@ class ProcessMember(Member):
         finally:
             stopper.cancel()
             self._stop_reading(pipes)
-            self.process.limits.leave(cgroup)
         if stop.is_set() and code == -signal.SIGKILL:
             self.host.log.note(f"{self.name} did not end by itself, and {end_text(code)}")
         return MemberEnd(
@@ -136,22 +130,20 @@ class ProcessMember(Member):
         for pipe in pipes:
             self._processes.reader.remove(pipe)
 
-    def _start(self, cgroup: str | None) -> tuple[list[int], RunningProgram]:
+    def _start(self) -> tuple[list[int], RunningProgram]:
         """Have it started; return the pipes that it prints to, and the program.
 
         Both streams share one pipe, which keeps the order of their lines, unless somebody wants to
         know them apart.
         """
         with ExitStack() as given, ExitStack() as kept:
-            program, outputs = self._hand_over(cgroup, given, kept)
+            program, outputs = self._hand_over(given, kept)
             kept.pop_all()
         for stream, output in enumerate(outputs, start=1):
             self._processes.reader.add(output, self.name, stream, self.process.on_output)
         return outputs, program
 
-    def _hand_over(
-        self, cgroup: str | None, given: ExitStack, kept: ExitStack
-    ) -> tuple[RunningProgram, list[int]]:
+    def _hand_over(self, given: ExitStack, kept: ExitStack) -> tuple[RunningProgram, list[int]]:
         """Have it started; what closes the descriptors that it gets, and those of its output."""
         outputs: list[int] = []
         streams = [os.open(os.devnull, os.O_RDONLY)]
@@ -175,7 +167,6 @@ class ProcessMember(Member):
             {name: value for name, value in env.items() if value is not None},
             self.process.ladder(),
             self.process.cwd,
-            cgroup,
         )
         return self._processes.guard.start(description, streams, outputs), outputs
 

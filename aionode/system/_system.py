@@ -15,7 +15,6 @@ from aionode.errors import ConfigurationError, MemberNotFoundError
 from aionode.node import Node
 from aionode.system._control import Control
 from aionode.system._guard import Guard
-from aionode.system._limits import Limits
 from aionode.system._log import SystemLog
 from aionode.system._member import Member, MemberOptions, Restart, options_of
 from aionode.system._node_member import (
@@ -134,8 +133,6 @@ class System:
         on_output: Callable[[bytes, int], object] | None = None,
         term_after_sec: float = 7.0,
         kill_after_sec: float = 5.0,
-        memory_bytes: int | None = None,
-        cpu_cores: float | None = None,
         **options: Unpack[MemberOptions],
     ) -> Member:
         """Add a program.
@@ -168,9 +165,6 @@ class System:
                 the log.
             term_after_sec: Time from SIGINT to SIGTERM, in seconds.
             kill_after_sec: Time from SIGTERM to SIGKILL, in seconds.
-            memory_bytes: Memory limit in bytes, set by cgroup v2. Where limits are not allowed, the
-                program runs without, and the log says so.
-            cpu_cores: Maximum number of cores, such as 0.5, set in the same way.
             options: The rest; see `MemberOptions`.
 
         Returns:
@@ -191,7 +185,6 @@ class System:
             stdin,
             term_after_sec,
             kill_after_sec,
-            Limits(memory_bytes, cpu_cores),
             terminal,
             on_output,
         )
@@ -211,8 +204,6 @@ class System:
         ready: Fact | Sequence[Fact] | None = None,
         env: Mapping[str, str | None] | None = None,
         cwd: str | os.PathLike[str] | None = None,
-        memory_bytes: int | None = None,
-        cpu_cores: float | None = None,
         **options: Unpack[MemberOptions],
     ) -> Member:
         """Add a node, as tasks of this process or as a process of its own.
@@ -235,8 +226,6 @@ class System:
             env: Variables to add to the environment of a process of its own, or to remove if the
                 value is None.
             cwd: Working folder of a process of its own.
-            memory_bytes: Memory limit of a process of its own, in bytes; as for `process`.
-            cpu_cores: Maximum number of cores of a process of its own; as for `process`.
             options: The rest; see `MemberOptions`.
 
         Returns:
@@ -256,20 +245,10 @@ class System:
         if processes:
             argv = [*program_of(node, name), *arguments]
             return self.process(
-                name,
-                argv,
-                env=env,
-                cwd=cwd,
-                restart=restart,
-                ready=facts,
-                memory_bytes=memory_bytes,
-                cpu_cores=cpu_cores,
-                **options,
+                name, argv, env=env, cwd=cwd, restart=restart, ready=facts, **options
             )
-        if any(option is not None for option in (env, cwd, memory_bytes, cpu_cores)):
-            raise ValueError(
-                f"{name}: env, cwd, memory_bytes and cpu_cores are for nodes with processes=True"
-            )
+        if env is not None or cwd is not None:
+            raise ValueError(f"{name}: env and cwd are for nodes with processes=True")
         shared = options_of(restart, facts, options, name)
         make_node = maker_of(node)
         return self._add(NodeMember(name, self, shared, make_node, self.context, arguments))

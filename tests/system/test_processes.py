@@ -488,9 +488,9 @@ async def test_a_node_is_named_by_its_module_and_its_topics_are_remapped(system:
     """As tasks of this process, and as the command line of one of its own."""
     shared: dict[str, Any] = {"remappings": {"/cmd_vel": "/left/speed"}, "namespace": "robot"}
     wheels = "tests.system.robot:Wheels"
-    apart = system.node("apart", wheels, processes=True, cpu_cores=0.5, **shared)
+    apart = system.node("apart", wheels, processes=True, cwd="/", **shared)
     assert isinstance(apart, ProcessMember)
-    assert apart.process.limits.cpu_cores == 0.5
+    assert apart.process.cwd == "/"
     words = " ".join(apart.process.argv[1:])
     assert words == (
         "-m aionode run tests.system.robot:Wheels --ros-args "
@@ -650,7 +650,13 @@ async def test_mistakes_in_a_description_are_refused_with_what_fits(system: Syst
     with pytest.raises(ValueError, match="cannot be imported by a process of its own"):
         system.node("a", lambda: Beacon(), processes=True)  # noqa: PLW0108  # has no name
     with pytest.raises(ValueError, match="are for nodes with processes=True"):
-        system.node("a", Beacon, cpu_cores=0.5)
+        system.node("a", Beacon, cwd="/")
+    limits: dict[str, Any] = {"memory_bytes": 10**9, "cpu_cores": 0.5}
+    for processes in (False, True):
+        with pytest.raises(TypeError, match="by CPUQuota= and MemoryMax= in its systemd unit"):
+            system.node("a", Beacon, processes=processes, **limits)
+    with pytest.raises(TypeError, match="limit the whole system by MemoryMax= in its systemd"):
+        system.process("a", FOREVER, memory_bytes=10**9)  # type: ignore[call-arg]
     system.process("a", FOREVER)
     with pytest.raises(ValueError, match="this name is taken"):
         system.process("a", FOREVER)
