@@ -6,7 +6,7 @@ import asyncio
 import logging
 import socket
 from collections.abc import Awaitable, Callable
-from contextlib import AsyncExitStack, ExitStack, suppress
+from contextlib import AsyncExitStack, suppress
 
 import httpx
 import pytest
@@ -14,7 +14,14 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from aionode.gateway import Gateway, Policy
-from tests.support.gateway_server import UPGRADE, address, get, http_client, serving, sessions_of
+from tests.support.gateway_server import (
+    address,
+    get,
+    http_client,
+    serving,
+    sessions_of,
+    upgraded,
+)
 from tests.support.waiting import until
 
 POLICY = """
@@ -139,20 +146,26 @@ async def test_who_keeps_unread_what_is_public_keeps_nobody_out() -> None:
         assert (await get(gateway, "/topics", ADMIN)).status_code == 200
 
 
-async def test_websockets_that_make_room_end_as_others_do(
+async def test_a_websocket_that_makes_room_ends_as_others_do(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """Those that are refused stay for a moment, and are what is closed then."""
-    upgrade = UPGRADE.format(path="/", more="Authorization: Bearer viewer\r\n").encode()
-    async with serving(Policy.parse(POLICY)) as gateway:
-        with ExitStack() as stack:
-            for _ in range(60):
-                client = stack.enter_context(
-                    socket.create_connection(("127.0.0.1", gateway.port), 5.0)
-                )
-                client.sendall(upgrade)
-            await until(lambda: count(gateway, "viewer") == 4)
-            assert (await get(gateway, "/topics", ADMIN)).status_code == 200
+    """One whose session has ended stays until its client says goodbye, too, which this one won't.
+
+    It is the oldest without a session then, and so the first that is closed.
+    """
+    viewer = "Authorization: Bearer viewer\r\n"
+    async with serving(Policy.parse(POLICY)) as gateway, AsyncExitStack() as stack:
+        clients = [await upgraded(gateway, viewer) for _ in range(4)]
+        await until(lambda: count(gateway, "viewer") == 4)
+        assert (await get(gateway, "/topics", ADMIN)).status_code == 200
+        await until(lambda: len(sessions_of(gateway)) == 3)
+        for _ in range(30):
+            idle = stack.enter_context(socket.socket())
+            idle.setblocking(False)
+            await asyncio.get_running_loop().sock_connect(idle, ("127.0.0.1", gateway.port))
+        await clients[-1][0].read()  # to its end
+        for _, writer, _ in clients:
+            writer.close()
         await until(lambda: not gateway.stats.sessions)
 
     assert [each for each in caplog.records if each.levelno >= logging.ERROR] == []
