@@ -46,6 +46,15 @@ def add(request: AddTwoInts.Request) -> AddTwoInts.Response:
 # Services that a client calls
 
 
+async def test_a_call_may_have_no_arguments(client: RosbridgeClient, node: Node) -> None:
+    """Null is what rosbridge calls none, where a null for a message is refused."""
+    node.create_service(AddTwoInts, "/add", add)
+
+    client.send("call_service", service="/add", args=None)
+
+    assert (await client.receive())["values"] == {"sum": 0}
+
+
 @pytest.mark.parametrize("args", [{"a": 1, "b": 2}, [1, 2]])
 @pytest.mark.parametrize("service", ["/add", "add"])
 async def test_a_call_is_answered(
@@ -168,6 +177,7 @@ async def test_a_client_serves_the_robot(client: RosbridgeClient, node: Node) ->
         ({"result": False}, "failed"),
         ({"result": True, "values": {"summ": 1}}, "did you mean 'sum'"),
         ({"result": True, "values": "text"}, "needs an object"),
+        ({"result": True, "values": None}, "needs an object"),
     ],
 )
 async def test_a_client_that_fails_to_serve_tells_the_caller(

@@ -257,6 +257,7 @@ async def test_a_page_that_publishes_at_once_reaches_the_subscriptions(
         ({"msg": {}}, "publish.topic: missing"),
         ({"topic": "a b", "type": "std_msgs/String"}, "a b"),
         ({"topic": "/t", "type": "std_msgs/String", "msg": "text"}, "publish.msg"),
+        ({"topic": "/t", "type": "std_msgs/String", "msg": None}, "publish.msg: None (NoneType)"),
     ],
 )
 async def test_a_mistake_is_told(

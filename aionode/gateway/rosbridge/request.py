@@ -150,11 +150,14 @@ def number(op: Op, name: str, default: float = 0) -> float:
 def values(op: Op, name: str) -> dict[str, Any] | list[Any]:
     """Return a field with the values of a message: a dict, or a list by position.
 
+    Without the field all values are defaults, as in rosbridge. That holds for ``args`` of null,
+    too, but null as a message is what a page sends that has none: nothing may move by it.
+
     Raises:
         MessageError: the field is something else.
     """
     value = op.get(name)
-    if value is None:
+    if name not in op or (value is None and name == "args"):
         return {}
     if not isinstance(value, dict | list):
         raise MessageError(f"{op['op']}.{name}", f"{given(op, name)}, needs an object or a list")
