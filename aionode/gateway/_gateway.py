@@ -155,13 +155,16 @@ class Gateway(Clients):
         await serving
         await self.robot.commands.close()  # those of requests, which have no session any more
 
-    def _doubt_all(self) -> None:
+    def _doubt_all(self, is_long: bool) -> None:
         """Doubt all clients after a standstill: what they have sent in it was not read meanwhile.
 
         One that has nothing to do with commands answers a ping for nothing.
+
+        Args:
+            is_long: Whether calls and goals are too old after it as well.
         """
         for session in list(self._sessions):
-            session.doubt()
+            session.doubt(stood_still=is_long)
 
     # Routes
 

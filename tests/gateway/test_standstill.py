@@ -5,18 +5,34 @@ from __future__ import annotations
 import asyncio
 import json
 import time  # noqa: TID251  # the loop itself is to stand still
+from collections.abc import AsyncIterator, Awaitable
+from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
+from websockets.asyncio.client import ClientConnection
 
+from aionode import Node, Parameter
+from aionode.errors import RefusedError
 from aionode.gateway import Gateway, Policy
 from aionode.gateway._gateway import REFUSALS_PER_SEC, paced
 from aionode.gateway.session.standstill import Standstills
+from aionode.interfaces.example_interfaces.action import Fibonacci
+from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist
+from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.testing import ManualClock
 from tests.gateway.test_broken_connections import PONG, frame, ping_of
 from tests.support.gateway_bench import Bench
-from tests.support.gateway_server import drive, serving, session_of, upgraded
+from tests.support.gateway_server import (
+    address,
+    drive,
+    http_client,
+    raw_connect,
+    serving,
+    session_of,
+    upgraded,
+)
 from tests.support.waiting import until
 
 POLICY = """
@@ -120,7 +136,7 @@ async def test_a_late_look_is_a_standstill() -> None:
     clock = ManualClock()
     found: list[int] = []
     watch = Standstills(clock)
-    watch.watch(lambda: found.append(clock.steady_ns()))
+    watch.watch(lambda _: found.append(clock.steady_ns()))
     for _ in range(100):
         await clock.advance(0.03)
     assert found == []
@@ -199,3 +215,164 @@ async def test_the_answer_to_an_earlier_ping_leaves_a_later_doubt(bench: Bench) 
         assert session.is_doubtful
         second()
         assert not session.is_doubtful
+
+
+# Calls, goals and parameters
+
+FREE = """
+[[who]]
+name = "local"
+loopback = true
+[[allow]]
+see = "/**"
+call = "/**"
+goal = "/**"
+parameter = "/**"
+"""
+
+ADD = {"a": 1, "b": 2}
+ADD_TYPE = "example_interfaces/AddTwoInts"
+SET_PARAM = {"name": "/robot:speed", "value": "2.0"}
+
+OPS: dict[str, dict[str, Any]] = {
+    "call": {"op": "call_service", "service": "/add", "args": ADD, "id": "1"},
+    "goal": {"op": "send_action_goal", "action": "/arm", "args": {"order": 1}, "id": "1"},
+    "parameter": {
+        "op": "call_service", "service": "/rosapi/set_param", "args": SET_PARAM, "id": "1",
+    },
+}  # fmt: skip
+REQUESTS: dict[str, tuple[str, str, Any]] = {
+    "call": ("POST", "/services/add", ADD),
+    "goal": ("POST", "/actions/arm", {"order": 1}),
+    "parameter": ("PUT", "/parameters/robot/speed", 2.0),
+}
+
+
+class Deeds:
+    """A robot that does what clients ask for."""
+
+    def __init__(self) -> None:
+        self.done: list[str] = []
+
+    def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
+        """Note a call."""
+        self.done.append("call")
+        return AddTwoInts.Response(sum=request.a + request.b)
+
+    async def move(self, goal: Any) -> Fibonacci.Result:
+        """Note a goal."""
+        self.done.append("goal")
+        goal.succeed()
+        return Fibonacci.Result()
+
+    def set_speed(self, _: list[Parameter]) -> SetParametersResult:
+        """Note a parameter."""
+        self.done.append("parameter")
+        return SetParametersResult(successful=True)
+
+
+@asynccontextmanager
+async def serving_deeds() -> AsyncIterator[tuple[Gateway, Deeds]]:
+    """Serve such a robot."""
+    deeds = Deeds()
+    async with (
+        serving(Policy.parse(FREE)) as gateway,
+        Node("robot", context=gateway.node.context) as robot,
+    ):
+        robot.declare_parameter("speed", 1.0)
+        robot.add_on_set_parameters_callback(deeds.set_speed)
+        robot.create_service(AddTwoInts, "/add", deeds.add)
+        robot.create_action_server(Fibonacci, "/arm", deeds.move)
+        yield gateway, deeds
+
+
+async def answer_of(client: ClientConnection) -> dict[str, Any]:
+    """Return the answer to an op, without what else there is to tell."""
+    while True:
+        told: dict[str, Any] = json.loads(await client.recv())
+        if told.get("op") in {"service_response", "action_result"}:
+            return told
+
+
+@pytest.mark.parametrize("what", OPS)
+async def test_what_a_page_asked_for_in_a_standstill_is_not_done(what: str) -> None:
+    """An arm that moves seconds after the click, when nobody expects it any more, is dangerous."""
+    async with serving_deeds() as (gateway, deeds), raw_connect(gateway, "/", {}, []) as client:
+        op = json.dumps(OPS[what])
+        await client.send(op)
+        await answer_of(client)
+        assert deeds.done.pop() == what
+        await client.send(op)
+        stand_still(1.5)
+        told = str(await answer_of(client))
+        assert "it may have waited while the gateway stood still; send it again" in told
+        await until(lambda: not session_of(gateway).is_doubtful)
+        assert deeds.done == []
+        await client.send(op)
+        await answer_of(client)
+
+    assert deeds.done == [what]
+
+
+@pytest.mark.parametrize("what", REQUESTS)
+async def test_what_a_request_asked_for_in_a_standstill_is_not_done(what: str) -> None:
+    """Its program is told to send it again, and a later one is done."""
+    method, path, values = REQUESTS[what]
+    body = json.dumps(values).encode()
+    asked = (
+        f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+        f"Accept: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+    )
+    async with serving_deeds() as (gateway, deeds), http_client() as client:
+        reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)
+        writer.write(b"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n")
+        await reader.readuntil(b"true}")
+        writer.write(asked.encode() + body)
+        stand_still(1.5)
+        answer = await reader.readuntil(b"}")
+        assert json.loads(answer.partition(b"\r\n\r\n")[2])["code"] == "too_old"
+        assert deeds.done == []
+        while not deeds.done:
+            await client.request(method, address(gateway, path), json=values)
+            await asyncio.sleep(0.02)  # noqa: TID251  # as often as a program sends them
+        writer.close()
+
+    assert deeds.done == [what]
+
+
+async def test_a_call_that_waited_for_a_moment_is_made() -> None:
+    """A busy machine holds up a loop for that long, and a call is not repeated as commands are."""
+    async with serving_deeds() as (gateway, deeds), raw_connect(gateway, "/", {}, []) as client:
+        await client.send(json.dumps(OPS["call"]))
+        stand_still()
+        assert (await answer_of(client))["result"]
+
+    assert deeds.done == ["call"]
+
+
+async def test_a_call_that_waits_when_the_gateway_stands_still_is_not_made(bench: Bench) -> None:
+    """It arrived in time, but its service was not there yet."""
+    async with bench.session() as session, asyncio.TaskGroup() as tasks:
+        session.connection = connection = Connection()
+        calling = tasks.create_task(refusal_of(session.call("/add", ADD, type_name=ADD_TYPE)))
+        await bench.advance(0.1)
+        session.doubt(stood_still=True)
+        connection.asked[-1]()
+        bench.node.create_service(AddTwoInts, "/add", Deeds().add)
+        assert (await calling).code == "too_old"
+
+
+async def test_a_call_after_a_silence_of_its_client_is_made(bench: Bench) -> None:
+    """Who lets go of a stick and clicks is silent for the time to live of a lease, and no more."""
+    bench.node.create_service(AddTwoInts, "/add", Deeds().add)
+    async with bench.session() as session:
+        session.connection = Connection()
+        session.doubt()
+        assert (await session.call("/add", ADD)).sum == 3
+
+
+async def refusal_of(asking: Awaitable[Any]) -> RefusedError:
+    """Return how something is refused."""
+    with pytest.raises(RefusedError) as refused:
+        await asking
+    return refused.value

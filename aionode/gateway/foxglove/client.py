@@ -162,7 +162,7 @@ class Client:
                 arrived_ns = self._session.arrival_ns()  # it may wait, and be too old then
                 await self._put(("publish", asked.channel_id), self._publish, asked, arrived_ns)
             case frames.ServiceCall():
-                self._start(self._call, asked)
+                self._start(self._call, asked, self._session.arrival_ns())
             case frames.PlaybackRequest():
                 await self._put("playback", self.playback.control, self._start, asked)
             case frames.Subscribe() | frames.Unsubscribe():
@@ -246,7 +246,7 @@ class Client:
             channel.topic, values, channel.schema_name, arrived_ns=arrived_ns
         )
 
-    async def _call(self, call: frames.ServiceCall) -> None:
+    async def _call(self, call: frames.ServiceCall, arrived_ns: int) -> None:
         try:
             if call.encoding not in ENCODINGS:
                 raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
@@ -254,7 +254,11 @@ class Client:
             values = values_of(call.encoding, call.data, self._session._limits.frame_parts)
             # The protocol has no time limit.
             response = await self._session.call(
-                name, values, type_name=type_name, timeout_sec=self._session.wait_sec(None)
+                name,
+                values,
+                type_name=type_name,
+                timeout_sec=self._session.wait_sec(None),
+                arrived_ns=arrived_ns,
             )
         except (AionodeError, TimeoutError) as error:
             self._session.note_failure(error, "call")

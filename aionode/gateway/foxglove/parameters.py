@@ -72,6 +72,7 @@ class Parameters:
             MessageError: a name is not that of a node, a dot, and a parameter; or some parameters
                 cannot be set, and the others are.
         """
+        arrived_ns = self._session.arrival_ns()
         given = {parameter.name: parameter for parameter in parameters}
         failures = Failures()
         told: list[str] = []
@@ -88,7 +89,8 @@ class Parameters:
                 told += [f"{node}.{name}" for name in allowed]
                 for name in allowed:
                     with failures.of(f"{node}.{name}"):
-                        await self._set_one(node, given[f"{node}.{name}"], name, now.get(name))
+                        wish = given[f"{node}.{name}"]
+                        await self._set_one(node, wish, name, now.get(name), arrived_ns)
         if request_id is not None:
             if told:
                 with failures.of("getParameters"):
@@ -98,11 +100,16 @@ class Parameters:
         failures.tell("setParameters")
 
     async def _set_one(
-        self, node: str, given: frames.FoxgloveParameter, name: str, now: object
+        self,
+        node: str,
+        given: frames.FoxgloveParameter,
+        name: str,
+        now: object,
+        arrived_ns: int,
     ) -> None:
         type_ = Parameter(name, value=now).type_
         value = frames.parameter_of(name, given, type_).value
-        (result,) = await self._session.set_parameters(node, {name: value})
+        (result,) = await self._session.set_parameters(node, {name: value}, arrived_ns=arrived_ns)
         if not result.successful:
             raise MessageError(name, result.reason)
 

@@ -54,24 +54,25 @@ class Calls:
 
     # Services
 
-    async def call_service(self, op: Op) -> None:
+    async def call_service(self, op: Op, arrived_ns: int) -> None:
         """Begin a call; the client goes on meanwhile."""
         name, _, old_id = text(op, "service").partition("#")  # as in the first rosbridge
         if old_id and op.get("id") is None:
             op["id"] = old_id
         answer = {"op": "service_response", "service": name, "id": raw_id(op)}
-        self._lanes.start(partial(self._call, op, name, answer))
+        self._lanes.start(partial(self._call, op, name, answer, arrived_ns))
 
-    async def _call(self, op: Op, service: str, answer: Op) -> None:
+    async def _call(self, op: Op, service: str, answer: Op, arrived_ns: int) -> None:
         try:
             size = number(op, "fragment_size")
-            result = {"values": await self._values(op, service), "result": True}
+            values_ = await self._values(op, service, arrived_ns)
+            result = {"values": values_, "result": True}
         except (AionodeError, TimeoutError) as error:
             self._link.fail(error, op)
         else:
             self._link.send(answer | result, size)
 
-    async def _values(self, op: Op, service: str) -> Any:
+    async def _values(self, op: Op, service: str, arrived_ns: int) -> Any:
         args = values(op, "args")
         of_rosapi = service.removeprefix("/").removeprefix("rosapi/")
         if service.removeprefix("/") != of_rosapi:
@@ -83,13 +84,13 @@ class Calls:
         if not is_negative(timeout):
             wanted = number(op, "timeout") or wanted
         response = await self._session.call(
-            service, args, timeout_sec=self._session.wait_sec(wanted)
+            service, args, timeout_sec=self._session.wait_sec(wanted), arrived_ns=arrived_ns
         )
         return msgspec.Raw(json_of(response))
 
     # Actions
 
-    async def send_action_goal(self, op: Op) -> None:
+    async def send_action_goal(self, op: Op, arrived_ns: int) -> None:
         """Begin a goal; its feedback and its result follow.
 
         Raises:
@@ -104,15 +105,16 @@ class Calls:
             raise MessageError("send_action_goal.id", problem)
         self._goals[key] = goal
         try:
-            goal.task = self._lanes.start(partial(self._pursue, op, goal, answer, key))
+            work = partial(self._pursue, op, goal, answer, key, arrived_ns)
+            goal.task = self._lanes.start(work)
         except MessageError:
             del self._goals[key]
             raise
 
-    async def _pursue(self, op: Op, goal: Goal, answer: Op, key: object) -> None:
+    async def _pursue(self, op: Op, goal: Goal, answer: Op, key: object, arrived_ns: int) -> None:
         """Send a goal, pass on its feedback, and answer with its result."""
         try:
-            await self._pursued(op, goal, answer)
+            await self._pursued(op, goal, answer, arrived_ns)
         except (AionodeError, TimeoutError) as error:
             self._link.fail(error, op)
         except asyncio.CancelledError:
@@ -123,11 +125,11 @@ class Calls:
         finally:
             self._goals.pop(key, None)
 
-    async def _pursued(self, op: Op, goal: Goal, answer: Op) -> None:
+    async def _pursued(self, op: Op, goal: Goal, answer: Op, arrived_ns: int) -> None:
         type_name = type_text(text(op, "action_type", ""), "action") or None
         size = number(op, "fragment_size")
         async with self._session.goal(
-            goal.action, values(op, "args"), type_name=type_name
+            goal.action, values(op, "args"), type_name=type_name, arrived_ns=arrived_ns
         ) as handle:
             goal.handle = handle
             if op.get("feedback"):

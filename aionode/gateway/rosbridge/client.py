@@ -28,6 +28,9 @@ __all__ = ["serve_frames"]
 Op = dict[str, Any]
 Handler = Callable[..., Awaitable[None]]
 
+AGING: Final = ("publish", "call_service", "send_action_goal")
+"""Ops that may be too old: others of the same name, or a standstill, may be before them."""
+
 MOST_MALFORMED: Final = 100
 """Frames that are no ops that a client may send before it is disconnected."""
 
@@ -144,7 +147,7 @@ class Client:
 
     async def _put(self, op: Op) -> None:
         kind, field, handler = self._in_order[op["op"]]
-        if op["op"] == "publish":  # it may wait for an earlier one, and be too old then
+        if op["op"] in AGING:
             handler = partial(handler, arrived_ns=self._link.session.arrival_ns())
         name = full_name(text(op, field).partition("#")[0])  # what follows is an id
         await self._lanes.put((kind, name), partial(self._attempt, op, handler))

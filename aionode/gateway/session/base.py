@@ -28,9 +28,11 @@ if TYPE_CHECKING:
     from aionode.gateway.session.command import Owner
     from aionode.gateway.session.robot import Robot
 
-__all__ = ["SessionBase", "as_message"]
+__all__ = ["HAS_WAITED", "SessionBase", "as_message"]
 
 CDR_HEADER: Final = 4
+
+HAS_WAITED: Final = "it may have waited while the gateway stood still; send it again"
 
 MOST_QUESTIONS: Final = 256
 """Questions about the graph that may wait, for each client."""
@@ -79,9 +81,10 @@ class SessionBase:
         self.refused_cheaply = 0  # of these, commands that came too late, or on a topic in use
         self.connection: Connection | None = None
         self._frame_ns: int | None = None  # when the frame arrived that is handled
-        self.is_doubtful = False
-        self._doubts = 0
+        self._doubts = self._trusted = 0  # how many there were, and how many are over
         self._doubted_ns = -1
+        self._stood_still = 0  # which doubt the last standstill of the gateway was a reason for
+        self._stood_still_ns = -1
 
     @property
     def way(self) -> str:
@@ -280,16 +283,26 @@ class SessionBase:
             if (hidden or not is_hidden(name)) and self._sees(name, types)
         }
 
-    def doubt(self) -> None:
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether commands may be from before a silence, as a ping is not answered yet."""
+        return self._trusted < self._doubts
+
+    def doubt(self, *, stood_still: bool = False) -> None:
         """Have commands refused until the client has answered a ping that is sent now.
 
         It was silent for too long, or the gateway has not read what it has sent. What was on its
         way meanwhile was sent before that answer.
+
+        Args:
+            stood_still: Whether the gateway stood still for long. Then calls, goals and parameters
+                are refused as well: nobody expects them any more.
         """
         if self.connection is not None:
-            self.is_doubtful = True
             self._doubts += 1
             self._doubted_ns = self._robot.time_base.steady_ns() - 1
+            if stood_still:
+                self._stood_still, self._stood_still_ns = self._doubts, self._doubted_ns
             self.ask_for_sign()
 
     def ask_for_sign(self) -> None:
@@ -303,8 +316,11 @@ class SessionBase:
         if self.connection is not None:
             self._robot.standstills.look()
             self.note_arrival(self.connection.silent_sec())
-            if self.is_doubtful:  # what waits in a lane is handled when the doubt is over, perhaps
+            # What waits in a lane is handled when the doubt is over, perhaps.
+            if self.is_doubtful:
                 self._doubted_ns = max(self._doubted_ns, self.arrival_ns())
+            if self._trusted < self._stood_still:
+                self._stood_still_ns = max(self._stood_still_ns, self.arrival_ns())
 
     def note_arrival(self, age_sec: float) -> None:
         """Take that what is handled now arrived some seconds ago."""
@@ -315,9 +331,28 @@ class SessionBase:
         return self.steady_ns() if self._frame_ns is None else self._frame_ns
 
     def _trust(self, doubt: int) -> None:
-        """End a doubt, unless there is a later one: the ping for that is not answered yet."""
-        if doubt == self._doubts:
-            self.is_doubtful = False
+        """End a doubt and those before it; the ping for a later one is not answered yet."""
+        self._trusted = max(self._trusted, doubt)
+
+    def _check_waited(self, verb: Verb, name: str, arrived_ns: int) -> None:
+        """Refuse a call, a goal or a parameter that may have waited while the gateway stood still.
+
+        Args:
+            verb: What the client does.
+            name: With what.
+            arrived_ns: When its frame or request arrived, in nanoseconds of the steady clock.
+
+        Raises:
+            RefusedError: it may have waited; its code is ``too_old``.
+        """
+        standstills = self._robot.standstills
+        standstills.look()  # this may be the first that happens after one
+        if self.connection is None:
+            has_waited = arrived_ns <= standstills.long_until_ns
+        else:
+            has_waited = self._trusted < self._stood_still or arrived_ns <= self._stood_still_ns
+        if has_waited:
+            raise self._refused(verb, name, HAS_WAITED, "too_old")
 
     # Types and names
 

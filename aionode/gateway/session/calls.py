@@ -47,6 +47,7 @@ class SessionCalls(SessionBase):
         *,
         type_name: str | None = None,
         timeout_sec: float | None = 5.0,
+        arrived_ns: int | None = None,
     ) -> Any:
         """Call a service, and return the response message.
 
@@ -57,14 +58,17 @@ class SessionCalls(SessionBase):
             values: The request, its values by name or in order, or its CDR bytes.
             type_name: The type; by default that which the graph shows.
             timeout_sec: The longest wait for the response, in seconds; None waits for ever.
+            arrived_ns: As for `publish`.
 
         Raises:
-            RefusedError: the policy does not allow it, or there are too many calls at once.
+            RefusedError: the policy does not allow it; there are too many calls at once; it may
+                have waited while the gateway stood still.
             ServiceError: there is no server, or its handler failed.
             RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
             MessageError: a value does not fit its field (a ValueError).
             InterfaceNotFoundError: nobody knows the service or its type.
         """
+        arrived_ns = self.arrival_ns() if arrived_ns is None else arrived_ns
         service = self.service_name(service)
         with self._one_call("call", service):
             self._decide_call(service, "")
@@ -78,6 +82,8 @@ class SessionCalls(SessionBase):
                 attempt.asked = (verb, name, cls.__ros_type__)
                 if not await attempt.client.wait_for_service(SERVER_SEC):
                     raise ServiceError(service, "there is no server")
+                if verb == "call":  # a goal may be cancelled at any time
+                    self._check_waited(verb, name, arrived_ns)
                 response = await attempt.client.call(decision.message, timeout_sec)
                 attempt.result = "ok"
         if cls.__ros_type__ == f"{PARAMETERS}{LISTER}":
@@ -166,6 +172,7 @@ class SessionCalls(SessionBase):
         values: Message | Mapping[str, Any] | list[Any],
         *,
         type_name: str | None = None,
+        arrived_ns: int | None = None,
     ) -> AsyncIterator[Any]:
         """Send a goal; leaving the block cancels the goal if it has not ended.
 
@@ -176,14 +183,17 @@ class SessionCalls(SessionBase):
             action: The name of the action.
             values: The goal, or its values by name or in order.
             type_name: The type; by default that which the graph shows.
+            arrived_ns: As for `publish`.
 
         Raises:
-            RefusedError: the policy does not allow it, or there are too many goals at once.
+            RefusedError: the policy does not allow it; there are too many goals at once; it may
+                have waited while the gateway stood still.
             ServiceError: there is no server.
             GoalRejectedError: the server rejected it.
             MessageError: a value does not fit its field (a ValueError).
             InterfaceNotFoundError: nobody knows the action or its type.
         """
+        arrived_ns = self.arrival_ns() if arrived_ns is None else arrived_ns
         action = self.topic_name(action)
         with self._one_call("goal", action):
             self.decide("goal", action, "")
@@ -195,6 +205,7 @@ class SessionCalls(SessionBase):
             with self._attempt("goal", action, cls, decision.message, make) as attempt:
                 if not await attempt.client.wait_for_server(SERVER_SEC):
                     raise ServiceError(action, "there is no action server")
+                self._check_waited("goal", action, arrived_ns)
                 goal_id = self._robot.owners.new_goal(self.identity, self.kind)
                 handle = await attempt.client.send_goal(decision.message, goal_uuid=goal_id)
                 self._goals.add(handle)

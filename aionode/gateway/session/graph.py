@@ -203,29 +203,33 @@ class SessionGraph(SessionBase):
             TimeoutError: the node has not answered within 5 s.
             MessageError: the value is none that parameters have (a ValueError).
         """
+        arrived_ns = self.arrival_ns()
         check_items(value, name)
         self.decide("parameter", f"{node}:{name}", "")  # before anything is read
         if holds_whole(value):
             present = (await self.get_parameters(node, [name])).get(name)
             value = as_real(value, Parameter(name, value=present).type_)
-        (result,) = await self.set_parameters(node, {name: value})
+        (result,) = await self.set_parameters(node, {name: value}, arrived_ns=arrived_ns)
         return result
 
     async def set_parameters(
-        self, node: str, values: Mapping[str, Any]
+        self, node: str, values: Mapping[str, Any], *, arrived_ns: int | None = None
     ) -> list[SetParametersResult]:
         """Set parameters one by one, and return a result for each.
 
         Args:
             node: The full name of the node.
             values: The values by name; None undeclares a parameter.
+            arrived_ns: As for `publish`.
 
         Raises:
-            RefusedError: the policy does not allow one of them; none was set.
+            RefusedError: the policy does not allow one of them, or they may have waited while the
+                gateway stood still; none was set.
             ServiceError: the node offers no parameters.
             TimeoutError: the node has not answered within 5 s.
             MessageError: a value is none that parameters have (a ValueError).
         """
+        arrived_ns = self.arrival_ns() if arrived_ns is None else arrived_ns
         node, began_ns = self.node_name(node), self.steady_ns()
         changed = []
         for name, value in values.items():
@@ -233,6 +237,7 @@ class SessionGraph(SessionBase):
             await self._allow("parameter", f"{node}:{name}", "", {"value": parameter.value})
             changed.append(parameter)
         async with self._parameters(node) as client:
+            self._check_waited("parameter", node, arrived_ns)
             results = await client.set_parameters(changed)
         reasons = "; ".join(result.reason for result in results if not result.successful)
         self._robot.audit.note(

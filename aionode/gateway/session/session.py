@@ -39,7 +39,6 @@ class Session(SessionTopics, SessionCalls, SessionGraph):
         ended: Set when the client has to leave: the gateway ends, the policy does not know the
             client any more, or another one takes its place.
         end_reason: Why, as the client is told; empty if it is not.
-        is_doubtful: Whether it was silent for too long, so that commands may be from before that.
         owner: Who holds the topics that the client commands: the session, which ends the leases
             when it ends, or something that outlives it.
     """

@@ -19,6 +19,10 @@ LOOK_NS: Final = S_TO_NS // 10
 LATE_NS: Final = 3 * S_TO_NS // 20
 """A look that is later than this shows that the loop stood still, in nanoseconds."""
 
+LONG_NS: Final = S_TO_NS
+"""A standstill from this length on makes old what comes once, as calls and goals do: commands come
+again, and so may be refused after any."""
+
 READ_NS: Final = S_TO_NS // 5
 """Time after a standstill in which everything that was sent meanwhile has been read: connections
 that were made in it are accepted first, which takes some turns of the loop."""
@@ -35,19 +39,20 @@ class Standstills:
 
     Attributes:
         until_ns: What was read until then may be old, in nanoseconds of the steady clock.
+        long_until_ns: The same for the last standstill that was long.
     """
 
     def __init__(self, time_base: TimeBase) -> None:
-        self.until_ns = -1
+        self.until_ns = self.long_until_ns = -1
         self._time_base = time_base
         self._clock = time_base.through_suspend()
-        self._on_standstill: Callable[[], None] | None = None
+        self._on_standstill: Callable[[bool], None] | None = None
         self._looked_ns = 0
         self._ended_ns: int | None = None
         self._alarm: Alarm | None = None
 
-    def watch(self, on_standstill: Callable[[], None]) -> None:
-        """Look from now on, and call a function after each standstill."""
+    def watch(self, on_standstill: Callable[[bool], None]) -> None:
+        """Look from now on, and call a function after each standstill, with whether it was long."""
         self._on_standstill = on_standstill
         self._looked_ns = self._clock.steady_ns()
         self._ring()
@@ -68,7 +73,10 @@ class Standstills:
         if late_ns > LATE_NS:
             self._ended_ns = now_ns
             self.until_ns = self._time_base.steady_ns() + READ_NS
-            self._on_standstill()
+            is_long = late_ns >= LONG_NS
+            if is_long:
+                self.long_until_ns = self.until_ns
+            self._on_standstill(is_long)
 
     def since_sec(self) -> float:
         """Return how long the last standstill has been over, in seconds."""

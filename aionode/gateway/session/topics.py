@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.clock import S_TO_NS, Duration
 from aionode.engine.wire import cdr
 from aionode.errors import AionodeError, RefusedError
-from aionode.gateway.session.base import SessionBase
+from aionode.gateway.session.base import HAS_WAITED, SessionBase
 from aionode.gateway.session.command import check_age
 from aionode.gateway.session.feed import Received
 from aionode.gateway.session.large_json import prepare_json
@@ -276,8 +276,7 @@ class SessionTopics(SessionBase):
             publisher.publish(decision.message)
             return
         if self.connection is None and arrived_ns <= self._robot.standstills.until_ns:
-            reason = "it may have waited while the gateway stood still; send it again"
-            raise RefusedError(f"publish {topic}", reason, "too_old")
+            raise RefusedError(f"publish {topic}", HAS_WAITED, "too_old")
         if self.is_doubtful or arrived_ns <= self._doubted_ns:
             reason = "it may be from before a silence of the client, which has to answer a ping"
             raise RefusedError(f"publish {topic}", reason, "too_old")
