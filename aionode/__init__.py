@@ -23,7 +23,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from aionode._node.end_record import NodeEnd
     from aionode.action import (
         ActionClient,
         ActionResult,
@@ -36,8 +35,9 @@ if TYPE_CHECKING:
     )
     from aionode.clock import Clock, ClockType, Duration, Time
     from aionode.content_filter import ContentFilterOptions
-    from aionode.endpoints._core.callback_runner import CallbackContext
     from aionode.endpoints.client import Client
+    from aionode.endpoints.core.callback_runner import CallbackContext
+    from aionode.endpoints.core.end_record import NodeEnd
     from aionode.endpoints.events import (
         IncompatibleTypeInfo,
         MatchedInfo,
@@ -125,7 +125,7 @@ _EXPORTS = {
     "ActionClient": "aionode.action",
     "ActionResult": "aionode.action",
     "ActionServer": "aionode.action",
-    "CallbackContext": "aionode.endpoints._core.callback_runner",
+    "CallbackContext": "aionode.endpoints.core.callback_runner",
     "CancelResponse": "aionode.action",
     "Client": "aionode.endpoints.client",
     "ClientGoalHandle": "aionode.action",
@@ -145,7 +145,7 @@ _EXPORTS = {
     "MatchedInfo": "aionode.endpoints.events",
     "MessageInfo": "aionode.endpoints.subscription",
     "Node": "aionode.node",
-    "NodeEnd": "aionode._node.end_record",
+    "NodeEnd": "aionode.endpoints.core.end_record",
     "Parameter": "aionode.parameter",
     "Publisher": "aionode.endpoints.publisher",
     "PublisherEventCallbacks": "aionode.endpoints.events",

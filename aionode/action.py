@@ -25,10 +25,10 @@ The errors of goals are here too: `GoalRejectedError`, `GoalAbortedError`, `Goal
 
 from __future__ import annotations
 
-from aionode.endpoints.actions._client import ActionClient
-from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.actions._server import ActionServer
-from aionode.endpoints.actions._server_goal import ServerGoalHandle
+from aionode.endpoints.actions.client import ActionClient
+from aionode.endpoints.actions.client_goal import ActionResult, ClientGoalHandle
+from aionode.endpoints.actions.server import ActionServer
+from aionode.endpoints.actions.server_goal import ServerGoalHandle
 from aionode.engine.rules.goal import CancelResponse, GoalResponse, GoalStatus
 from aionode.errors import (
     GoalAbortedError,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints._core.future import asks
+from aionode.endpoints.core.future import asks
 from aionode.interfaces.rcl_interfaces.srv import (
     DescribeParameters,
     GetParameters,

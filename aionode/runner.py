@@ -18,6 +18,7 @@ from typing import Any, Final, Self
 from aionode._process.signals import signals_to
 from aionode._process.tracebacks import TRACEBACK_VARIABLE, is_of_user, is_whole, traceback_text
 from aionode.arguments import Arguments, parse_arguments
+from aionode.endpoints.core.node_core import core_of, is_named
 from aionode.engine.context import Context
 from aionode.errors import AionodeError, ConfigurationError, InvalidROSArgsError
 from aionode.logging import configure, get_logger, release_root
@@ -145,7 +146,7 @@ def refuse_created_before(
     if not any(node_rules) and arguments.rosout_logs:
         return
     for node in nodes:
-        if isinstance(node, Node) and node._Node__uses_global_arguments:
+        if isinstance(node, Node) and core_of(node).uses_global_arguments:
             given = args[args.index("--ros-args") + 1 :]
             raise InvalidROSArgsError(
                 " ".join(given),
@@ -303,8 +304,7 @@ def circumstances(error: AionodeError) -> list[str]:
         if is_of_user(frame):
             place = (frame, line)
         owner = frame.f_locals.get("self")
-        # A node whose name was rejected has no `_Node__info`.
-        if isinstance(owner, Node) and not lines and hasattr(owner, "_Node__info"):
+        if isinstance(owner, Node) and not lines and is_named(owner):
             lines.append(f"in node {owner.get_fully_qualified_name()}")
     if place is not None:
         (summary,) = traceback.StackSummary.extract(iter([place]))

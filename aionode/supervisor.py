@@ -11,10 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Generic, Literal, Self, TypeVar
 
-from aionode._node.end_record import NodeEnd, short_text
 from aionode._process.restart import Backoff, wants_another
 from aionode._process.tracebacks import traceback_text
 from aionode.clock import S_TO_NS, SteadyClock
+from aionode.endpoints.core.end_record import NodeEnd, short_text
 from aionode.errors import NodeNotRunningError
 from aionode.logging import get_logger
 from aionode.node import Node

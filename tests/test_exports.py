@@ -62,6 +62,8 @@ PRESETS = [
 WITHIN = {
     "aionode.rclpy": {"provide"},  # for the distribution aionode-rclpy
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
+    "aionode.endpoints.timer": {"to_period_ns"},  # for nodes
+    "aionode.node": {"direct_subscription"},  # for recorders
     "aionode.transport.link": {"Advertisement", "available", "can_link"},  # for Zenoh and contexts
 }
 """Names that only aionode itself uses, although their module is public."""
@@ -105,11 +107,14 @@ ELSEWHERE = (
     "aionode.bag.",
     "aionode.cli",
     "aionode.clock.",
+    "aionode.endpoints.actions.",
+    "aionode.endpoints.core",
     "aionode.engine",
     "aionode.examples",
     "aionode.gateway.",
     "aionode.idl.",
     "aionode.message.",
+    "aionode.parameter.",
     "aionode.rclpy",
     "aionode.system.",
     "aionode.tf.",

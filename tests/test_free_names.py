@@ -112,6 +112,16 @@ async def test_a_native_node_works_whatever_methods_of_its_own_it_has() -> None:
         assert (await heard.get()).data == "hello"
 
 
+async def test_a_native_node_works_whatever_a_class_named_node_has_of_its_own() -> None:
+    """Python gives `__clock` in a robot's class `Node` the name that it has in any class `Node`."""
+    members = {name for base in Node.__mro__[:-1] for name in (*vars(base), *written_names(base))}
+    private = {f"_Node__{name.rpartition('__')[2]}" for name in members} | {"_Node__core"}
+    cls = type("Node", (Node,), dict.fromkeys(private - {"_Node__"}, mine))
+
+    async with cls("robot", context=Context(transport="local")) as node:
+        assert node.is_running
+
+
 async def test_a_native_buffer_works_whatever_methods_of_its_own_it_has() -> None:
     """The same for buffers, and what waits for their transforms."""
     async with Node("robot", context=Context(transport="local")) as node:

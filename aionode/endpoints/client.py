@@ -6,8 +6,8 @@ import asyncio
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
-from aionode.endpoints._core.entity import EndStage
-from aionode.endpoints._core.future import Futures, asks
+from aionode.endpoints.core.entity import EndStage
+from aionode.endpoints.core.future import Futures, asks
 from aionode.endpoints.service_introspection import (
     REQUEST_SENT,
     RESPONSE_RECEIVED,
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.endpoint import EndpointSetup
+    from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.engine.transport.base import Call, Requester
     from aionode.errors import ServiceError

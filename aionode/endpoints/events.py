@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Generic, TypeVar
 
-from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.rules.event_records import (
     IncompatibleTypeInfo,

@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Generic, Protocol, Self, TypeVar
 
 from aionode.clock import S_TO_NS, Clock, MachineTime, SilenceAlarm
-from aionode.endpoints._core.lease_watch import REPEAT_S, watch
+from aionode.endpoints.core.lease_watch import REPEAT_S, watch
 from aionode.engine.loop_affinity import LoopAffinity
 from aionode.errors import ForkedProcessError, LeaseExpiredError, brief
 from aionode.logging import get_logger

@@ -11,10 +11,10 @@ from collections.abc import Callable
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from aionode.endpoints._core.endpoint import Endpoint
-from aionode.endpoints._core.entity import EndStage
 from aionode.endpoints._qos.event_hub import is_limited
 from aionode.endpoints._qos.publisher_monitor import PublisherMonitor, SignOfLife
+from aionode.endpoints.core.endpoint import Endpoint
+from aionode.endpoints.core.entity import EndStage
 from aionode.endpoints.lease import CommandLease
 from aionode.endpoints.stats import PublisherStats
 from aionode.engine.transport.base import Writer
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from aionode.clock import Clock, TimeBase
-    from aionode.endpoints._core.endpoint import EndpointSetup
+    from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.events import EventStream, PublisherEvent, PublisherEventCallbacks
     from aionode.engine.transport.base import StopSender
 

@@ -8,14 +8,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from aionode.clock import perf_ns
-from aionode.endpoints._core.callback_runner import (
+from aionode.endpoints.core.callback_runner import (
     accepts,
     checked_concurrency,
     consume,
     is_unfinished,
 )
-from aionode.endpoints._core.endpoint import report_heavy
-from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.core.endpoint import report_heavy
+from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.service_introspection import (
     REQUEST_RECEIVED,
     RESPONSE_SENT,
@@ -28,8 +28,8 @@ from aionode.message.memory_size import memory_size
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from aionode.endpoints._core.callback_runner import OnError
-    from aionode.endpoints._core.endpoint import EndpointSetup
+    from aionode.endpoints.core.callback_runner import OnError
+    from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.engine.transport.base import Registration, Request
 

@@ -11,15 +11,15 @@ import contextlib
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any, Final
 
-from aionode.endpoints._core.endpoint import Endpoint
-from aionode.endpoints._core.entity import EndStage
+from aionode.endpoints.core.endpoint import Endpoint
+from aionode.endpoints.core.entity import EndStage
 from aionode.errors import QueueFullError, brief
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import Clock
-    from aionode.endpoints._core.endpoint import EndpointSetup
+    from aionode.endpoints.core.endpoint import EndpointSetup
     from aionode.endpoints.publisher import Publisher
     from aionode.engine.transport.base import SampleInfo
     from aionode.qos import QoSProfile

@@ -13,21 +13,21 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
 from aionode.content_filter import ContentFilterOptions, compile_filter
-from aionode.endpoints._core.callback_runner import (
+from aionode.endpoints._qos.event_hub import is_limited
+from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
+from aionode.endpoints.core.callback_runner import (
     CallbackRunner,
     accepts,
     checked_concurrency,
     consume,
 )
-from aionode.endpoints._core.endpoint import Endpoint, report_heavy
-from aionode.endpoints._core.silence_watch import Silence, SilenceWatch
-from aionode.endpoints._core.subscription_reader import (
+from aionode.endpoints.core.endpoint import Endpoint, report_heavy
+from aionode.endpoints.core.silence_watch import Silence, SilenceWatch
+from aionode.endpoints.core.subscription_reader import (
     DirectReader,
     MessageInfo,
     SubscriptionReader,
 )
-from aionode.endpoints._qos.event_hub import is_limited
-from aionode.endpoints._qos.subscription_monitor import SubscriptionMonitor
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.transport.base import ReaderRegistration
 from aionode.errors import DecodeError, EntityDestroyedError
@@ -38,9 +38,9 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Sequence
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.callback_runner import OnError
-    from aionode.endpoints._core.endpoint import EndpointSetup
-    from aionode.endpoints._core.subscription_reader import Take
+    from aionode.endpoints.core.callback_runner import OnError
+    from aionode.endpoints.core.endpoint import EndpointSetup
+    from aionode.endpoints.core.subscription_reader import Take
     from aionode.endpoints.events import (
         EventStream,
         SubscriptionEvent,

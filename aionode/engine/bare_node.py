@@ -274,7 +274,7 @@ class BareNode:
         self.info = context._describe_node(name, namespace, enclave)
         self._endpoints: dict[BareEndpoint, None] = {}
         self._destroyed = False
-        context._add_node(self)
+        context._add_node(self, self._abandon)
         self._registrations = self.context._register(
             lambda transport: transport.create_node(self.info)
         )
@@ -348,7 +348,7 @@ class BareNode:
         self.context.graph.remove_node(self.info)
         self.context._remove_node(self)
 
-    def _Node__abandon(self) -> None:
+    def _abandon(self) -> None:
         """Mark the node destroyed without closing anything; in a forked child."""
         self._destroyed = True
         self._endpoints.clear()

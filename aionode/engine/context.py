@@ -89,13 +89,10 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
 
 
 class ContextNode(Protocol):
-    """The methods of a node that its context calls. A protocol, as `Node` imports the context."""
+    """The method of a node that its context calls. A protocol, as `Node` imports the context."""
 
     def destroy_node(self) -> None:
         """End the node."""
-
-    def _Node__abandon(self) -> None:
-        """Mark the node destroyed without closing anything; in a forked child."""
 
 
 class Context:
@@ -219,7 +216,8 @@ class Context:
                 'does not allow; use transport="local", or leave out the seed'
             )
         self._usage: Usage | None = None  # of arguments that were set for this context alone
-        self._nodes: dict[ContextNode, None] = {}  # from construction until destroyed
+        # From construction until destroyed, with what is called in a forked child.
+        self._nodes: dict[ContextNode, Callable[[], None]] = {}
         self._next_id = 0  # of a node or endpoint
         self._users = 0  # running nodes and `async with` blocks; the transports close at 0
         self._shut_down = False  # set by `shutdown`, and never reset
@@ -499,8 +497,8 @@ class Context:
         """
         self._inherited = True
         self._affinity.detach()
-        for node in self._nodes:
-            node._Node__abandon()
+        for abandon in self._nodes.values():
+            abandon()
         for transport in self._transports:
             transport.abandon()
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))  # never collected, not even at exit
@@ -514,8 +512,12 @@ class Context:
 
     # For nodes
 
-    def _add_node(self, node: ContextNode) -> None:
+    def _add_node(self, node: ContextNode, abandon: Callable[[], None]) -> None:
         """Add `node`, which `shutdown` destroys.
+
+        Args:
+            node: The node.
+            abandon: Called in a forked child; marks the node destroyed without closing anything.
 
         Raises:
             EntityDestroyedError: the context was shut down.
@@ -523,7 +525,7 @@ class Context:
         """
         self._refuse_if_shut_down()
         self._refuse_if_inherited()
-        self._nodes[node] = None
+        self._nodes[node] = abandon
 
     def _remove_node(self, node: ContextNode) -> None:
         """Forget `node`."""

@@ -5,17 +5,15 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from concurrent.futures import Future
-from functools import partial, wraps
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["LoopAffinity", "in_loop_thread", "in_thread_of_node"]
+__all__ = ["LoopAffinity"]
 
 ResultT = TypeVar("ResultT")
-MethodT = TypeVar("MethodT", bound="Callable[..., Any]")
 
 PATIENCE_S = 1.0
 """Time between two checks by a waiting thread whether the event loop has been closed."""
@@ -92,33 +90,3 @@ class LoopAffinity:
                     raise  # it is what `action` raised
                 if loop.is_closed():
                     raise RuntimeError("the event loop of the node was closed") from None
-
-
-def in_loop_thread(method: MethodT) -> MethodT:
-    """Have a method of a node run in the thread of the node's loop, and its caller wait for it.
-
-    Entities are created there, as the graph, the transports and Zenoh's session know no locks.
-    """
-
-    @wraps(method)
-    def call(self: Any, *args: Any, **options: Any) -> Any:
-        affinity: LoopAffinity = self._Node__affinity
-        if affinity.is_other_thread():
-            return affinity.wait_for(partial(method, self, *args, **options))
-        return method(self, *args, **options)
-
-    return call  # type: ignore[return-value]  # it has the same signature
-
-
-def in_thread_of_node(constructor: MethodT) -> MethodT:
-    """Have a constructor, whose first argument is a node, run in the thread of the node's loop."""
-
-    @wraps(constructor)
-    def construct(self: Any, node: Any, *args: Any, **options: Any) -> None:
-        affinity: LoopAffinity = node._Node__affinity
-        if affinity.is_other_thread():
-            affinity.wait_for(partial(constructor, self, node, *args, **options))
-        else:
-            constructor(self, node, *args, **options)
-
-    return construct  # type: ignore[return-value]  # it has the same signature

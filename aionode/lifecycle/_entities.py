@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from aionode.clock import Clock
-    from aionode.endpoints._core.silence_watch import SilenceWatch
+    from aionode.endpoints.core.silence_watch import SilenceWatch
     from aionode.endpoints.events import EventStream, PublisherEvent
     from aionode.endpoints.lease import CommandLease
     from aionode.endpoints.publisher import Publisher

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from aionode.endpoints._core.callback_runner import accepts
+from aionode.endpoints.core.callback_runner import accepts
+from aionode.endpoints.core.node_core import core_of
 from aionode.engine.rules.lifecycle_answers import StateAnswers, fill_event
 from aionode.engine.rules.lifecycle_states import (
     ERROR_PROCESSING,
@@ -79,33 +80,34 @@ class LifecycleNode(Node):
     def __init__(
         self, node_name: str, *, enable_communication_interface: bool = True, **options: Any
     ) -> None:
-        self._LifecycleNode__events: EventSource[LifecycleEvent] = EventSource()
+        self.__events: EventSource[LifecycleEvent] = EventSource()
         super().__init__(node_name, **options)
+        core_of(self).at_end.append(self.__events.end)
         for verb in ("configure", "cleanup", "activate", "deactivate", "shutdown"):
-            self._LifecycleNode__accepts(f"on_{verb}", 1, wanted="(state)")
-        self._LifecycleNode__error_callback_takes = self._LifecycleNode__accepts(
+            self.__accepts(f"on_{verb}", 1, wanted="(state)")
+        self.__error_callback_takes = self.__accepts(
             "on_error", 2, 1, wanted="(state) or (state, error)"
         )
-        self._LifecycleNode__transition_events = self.create_publisher(
+        self.__transition_events = self.create_publisher(
             msg.TransitionEvent, "~/transition_event", EVENT_QOS
         )
-        self._LifecycleNode__transitions = TransitionRunner(
+        self.__transitions = TransitionRunner(
             self.get_fully_qualified_name(),
             self.get_logger(),
-            self._LifecycleNode__callback_of,
-            self._LifecycleNode__publish_event,
-            self._LifecycleNode__events,
+            self.__callback_of,
+            self.__publish_event,
+            self.__events,
         )
         if enable_communication_interface:
-            self._LifecycleNode__serve()
+            self.__serve()
 
-    def _LifecycleNode__accepts(self, name: str, *counts: int, wanted: str) -> int:
+    def __accepts(self, name: str, *counts: int, wanted: str) -> int:
         subject = f"{self.get_fully_qualified_name()}: {name}"
         return accepts(getattr(self, name), *counts, subject=subject, wanted=wanted)
 
-    def _LifecycleNode__callback_of(self, name: str) -> Callable[[State, Exception | None], Any]:
+    def __callback_of(self, name: str) -> Callable[[State, Exception | None], Any]:
         callback = getattr(self, f"on_{name}")
-        if name == "error" and self._LifecycleNode__error_callback_takes == 2:  # (state, error)
+        if name == "error" and self.__error_callback_takes == 2:  # (state, error)
             return callback  # type: ignore[no-any-return]  # found by name
         return lambda state, _: callback(state)
 
@@ -113,36 +115,26 @@ class LifecycleNode(Node):
 
     def on_configure(self, state: State) -> Result:
         """Read parameters and allocate resources; by default, configure all entities."""
-        return self._LifecycleNode__all(
-            "on_configure", self._LifecycleNode__transitions.entities, state
-        )
+        return self.__all("on_configure", self.__transitions.entities, state)
 
     def on_cleanup(self, state: State) -> Result:
         """Undo `on_configure`; by default, clean up all entities, the last one first."""
-        return self._LifecycleNode__all(
-            "on_cleanup", reversed(self._LifecycleNode__transitions.entities), state
-        )
+        return self.__all("on_cleanup", reversed(self.__transitions.entities), state)
 
     def on_activate(self, state: State) -> Result:
         """Start working; by default, enable all entities.
 
         An override also calls this: ``return super().on_activate(state)``.
         """
-        return self._LifecycleNode__all(
-            "on_activate", self._LifecycleNode__transitions.entities, state
-        )
+        return self.__all("on_activate", self.__transitions.entities, state)
 
     def on_deactivate(self, state: State) -> Result:
         """Stop working; by default, disable all entities, the last one first."""
-        return self._LifecycleNode__all(
-            "on_deactivate", reversed(self._LifecycleNode__transitions.entities), state
-        )
+        return self.__all("on_deactivate", reversed(self.__transitions.entities), state)
 
     def on_shutdown(self, state: State) -> Result:
         """End permanently; by default, shut down all entities, the last one first."""
-        return self._LifecycleNode__all(
-            "on_shutdown", reversed(self._LifecycleNode__transitions.entities), state
-        )
+        return self.__all("on_shutdown", reversed(self.__transitions.entities), state)
 
     def on_error(self, state: State, error: Exception | None = None) -> Result:  # noqa: ARG002  # for overrides
         """Recover from an error; SUCCESS leads to unconfigured, other results to finalized.
@@ -154,11 +146,9 @@ class LifecycleNode(Node):
             state: The state in which the failed transition started.
             error: The exception, or None if the callback returned ERROR.
         """
-        return self._LifecycleNode__all(
-            "on_error", reversed(self._LifecycleNode__transitions.entities), state
-        )
+        return self.__all("on_error", reversed(self.__transitions.entities), state)
 
-    def _LifecycleNode__all(
+    def __all(
         self, name: str, entities: Iterable[ManagedEntity], state: State
     ) -> TransitionCallbackReturn:
         for entity in entities:
@@ -176,26 +166,21 @@ class LifecycleNode(Node):
         """
         share = "" if fraction is None else f" ({fraction:.0%})"
         self.get_logger().info(f"{self.lifecycle_state.label}: {text}{share}")
-        self._LifecycleNode__transitions.report(text, fraction)
+        self.__transitions.report(text, fraction)
 
     # From within this process
 
     @property
     def lifecycle_state(self) -> State:
         """The current state."""
-        return self._LifecycleNode__transitions.machine.state
+        return self.__transitions.machine.state
 
     def lifecycle_events(self) -> AsyncIterator[LifecycleEvent]:
         """Iterate over state changes and progress reports; a slow reader gets the newest 100.
 
         Events are collected from the first step of the iteration, which ends with the node.
         """
-        return self._LifecycleNode__events.iterate()
-
-    def _Node__leave(self) -> None:
-        """End the iterations over events as well."""
-        super()._Node__leave()
-        self._LifecycleNode__events.end()
+        return self.__events.iterate()
 
     async def trigger_configure(self) -> TransitionCallbackReturn:
         """Configure the node, and return the result of `on_configure`.
@@ -207,24 +192,24 @@ class LifecycleNode(Node):
             TransitionError: the node is in another state, or the callback raised an exception,
                 which is the cause.
         """
-        return await self._LifecycleNode__transitions.trigger("configure")
+        return await self.__transitions.trigger("configure")
 
     async def trigger_cleanup(self) -> TransitionCallbackReturn:
         """Clean the node up; see `trigger_configure`."""
-        return await self._LifecycleNode__transitions.trigger("cleanup")
+        return await self.__transitions.trigger("cleanup")
 
     async def trigger_activate(self) -> TransitionCallbackReturn:
         """Activate the node; see `trigger_configure`."""
-        return await self._LifecycleNode__transitions.trigger("activate")
+        return await self.__transitions.trigger("activate")
 
     async def trigger_deactivate(self) -> TransitionCallbackReturn:
         """Deactivate the node; see `trigger_configure`."""
-        return await self._LifecycleNode__transitions.trigger("deactivate")
+        return await self.__transitions.trigger("deactivate")
 
     async def trigger_shutdown(self) -> TransitionCallbackReturn:
         """Shut the node down, cancelling a transition in progress; see `trigger_configure`."""
-        await self._LifecycleNode__transitions.make_way_for_shutdown()
-        return await self._LifecycleNode__transitions.trigger("shutdown")
+        await self.__transitions.make_way_for_shutdown()
+        return await self.__transitions.trigger("shutdown")
 
     # Entities
 
@@ -239,7 +224,7 @@ class LifecycleNode(Node):
                 f"{self.get_fully_qualified_name()}: {brief(entity)} is not a managed entity; "
                 "derive its class from aionode.lifecycle.ManagedEntity"
             )
-        self._LifecycleNode__transitions.entities.append(entity)
+        self.__transitions.entities.append(entity)
 
     def create_lifecycle_publisher(
         self, msg_type: type[MsgT], topic: str, qos_profile: QoSProfile | int, **options: Any
@@ -253,9 +238,9 @@ class LifecycleNode(Node):
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher[Any]) -> bool:
         """Destroy a publisher; False if it is not one of this node's."""
-        if publisher not in self._LifecycleNode__transitions.entities:
+        if publisher not in self.__transitions.entities:
             return False
-        self._LifecycleNode__transitions.entities.remove(publisher)
+        self.__transitions.entities.remove(publisher)
         publisher.destroy()
         return True
 
@@ -313,13 +298,9 @@ class LifecycleNode(Node):
 
     # Services for other processes
 
-    def _LifecycleNode__serve(self) -> None:
-        self.create_service(
-            ChangeState, "~/change_state", self._LifecycleNode__change_state, concurrent=True
-        )
-        answers = StateAnswers(
-            self._LifecycleNode__transitions.machine, msg.State, msg.TransitionDescription
-        )
+    def __serve(self) -> None:
+        self.create_service(ChangeState, "~/change_state", self.__change_state, concurrent=True)
+        answers = StateAnswers(self.__transitions.machine, msg.State, msg.TransitionDescription)
         for srv_type, answer in (
             (GetState, answers.get_state),
             (GetAvailableStates, answers.get_available_states),
@@ -328,41 +309,37 @@ class LifecycleNode(Node):
         ):
             self.create_service(srv_type, f"~/{answer.__name__}", answer)
 
-    async def _LifecycleNode__change_state(
+    async def __change_state(
         self, request: ChangeState.Request, response: ChangeState.Response
     ) -> ChangeState.Response:
-        response.success = await self._LifecycleNode__change(
-            request.transition.label, request.transition.id
-        )
+        response.success = await self.__change(request.transition.label, request.transition.id)
         return response
 
-    async def _LifecycleNode__change(self, label: str, transition_id: int) -> bool:
+    async def __change(self, label: str, transition_id: int) -> bool:
         """Carry out a request; return whether it succeeded."""
-        machine = self._LifecycleNode__transitions.machine
+        machine = self.__transitions.machine
         if machine.in_transition and is_shutdown(label, transition_id):
-            await self._LifecycleNode__transitions.make_way_for_shutdown()
-            transition = self._LifecycleNode__transitions.find("shutdown")
+            await self.__transitions.make_way_for_shutdown()
+            transition = self.__transitions.find("shutdown")
         else:
-            transition = self._LifecycleNode__transitions.find(label, transition_id)
+            transition = self.__transitions.find(label, transition_id)
         if transition is None:
             return False
         if not machine.in_transition:
-            return await self._LifecycleNode__transitions.run(transition) is SUCCESS
+            return await self.__transitions.run(transition) is SUCCESS
         # The requester ends the running callback with a result of its choice.
         if transition.label == SUCCESS.to_label() or transition.start == ERROR_PROCESSING:
             return False
         wanted = next(
             result for result in TransitionCallbackReturn if result.to_label() == transition.label
         )
-        self._LifecycleNode__transitions.cancel(wanted)
-        await self._LifecycleNode__transitions.wait_idle()
+        self.__transitions.cancel(wanted)
+        await self.__transitions.wait_idle()
         return True
 
-    def _LifecycleNode__publish_event(self, start: State, goal: State) -> None:
-        if not self._LifecycleNode__transition_events.destroyed:
-            self._LifecycleNode__transition_events.publish(
-                fill_event(msg.TransitionEvent(), start, goal)
-            )
+    def __publish_event(self, start: State, goal: State) -> None:
+        if not self.__transition_events.destroyed:
+            self.__transition_events.publish(fill_event(msg.TransitionEvent(), start, goal))
 
 
 def is_shutdown(label: str, transition_id: int) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from aionode._node.graph import GraphQueries
+from aionode.engine.graph_queries import GraphQueries
 from aionode.graph import EndpointKind
 from aionode.rclpy._entities import in_use_by_node, wait_until
 from aionode.rclpy._impl.node import NodeHandle
@@ -29,10 +29,6 @@ class NodeGraph(GraphQueries):
 
     _Node__handle: NodeHandle
     _context: Context
-
-    @property
-    def _Node__graph_answers(self) -> NodeHandle:  # type: ignore[override] # it may be destroyed
-        return self._Node__handle
 
     @property
     def handle(self) -> NodeHandle:

@@ -8,8 +8,8 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
-from aionode._node.parameters import ParameterMethods
 from aionode.parameter import ParameterStore
+from aionode.parameter.methods import ParameterMethods
 from aionode.rclpy._impl import messages as msg
 from aionode.rclpy._impl.typesupport import type_of
 from aionode.rclpy._rosidl import decode, encode
@@ -86,6 +86,7 @@ class NodeParameters(ParameterMethods):
     ) -> None:
         """Begin without parameters; programs of rclpy look at the attributes besides the store."""
         store = Store(full_name, overrides=overrides, allow_undeclared=allow_undeclared)
+        ParameterMethods.__init__(self, store)
         self._Node__parameter_store = store
         self._allow_undeclared_parameters = allow_undeclared
         self._parameters = store._parameters

@@ -130,6 +130,7 @@ class Node(NodeParameters, NodeGraph):
                 enable_rosout,
                 as_profile(rosout_qos_profile),
             )
+        NodeGraph.__init__(self, self._Node__handle)
         self._logger = get_logger(self._Node__handle.logger_name())
         self._clock = self._Node__make_clock()
         self._Node__init_parameters(

@@ -13,18 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 import yaml
 
-from aionode._node.base import NodeBase
-from aionode._node.end_record import failure_text
 from aionode._process.tracebacks import traceback_text
 from aionode.arguments import Usage, parse_arguments
+from aionode.endpoints.core.end_record import failure_text
 from aionode.engine.context import Context
+from aionode.node import Node
 from aionode.system._member import Member
 from aionode.system._status import MemberEnd
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from aionode.node import Node
     from aionode.system._member import Host, Options
 
 __all__ = ["NodeMember", "Parameters", "program_of", "ros_arguments"]
@@ -100,7 +99,7 @@ class NodeMember(Member):
                 node = self._make_node()
         finally:
             context._usage = before
-        if not isinstance(node, NodeBase):
+        if not isinstance(node, Node):
             raise TypeError(f"{self.name}: {self._make_node!r} returned {node!r}, which is no node")
         return node
 

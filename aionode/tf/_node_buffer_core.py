@@ -6,7 +6,8 @@ import asyncio
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import S_TO_NS, ClockChange, Duration, JumpThreshold, Time
-from aionode.endpoints._core.entity import Entity
+from aionode.endpoints.core.entity import Entity
+from aionode.endpoints.core.node_core import core_of
 from aionode.errors import TimeoutException, TransformException
 from aionode.tf._arithmetic import unit
 from aionode.tf._listener import STATIC_TOPIC, TOPIC, TransformListener
@@ -70,7 +71,7 @@ class NodeBufferCore(BufferCore):
             tf_topic=tf_topic,
             tf_static_topic=tf_static_topic,
         )
-        self._BufferCore__entity = node._Node__add_entity(
+        self._BufferCore__entity = core_of(node).add(
             BufferEnd(
                 f"transform buffer of {node.get_fully_qualified_name()}",
                 self._BufferCore__end_waits,

@@ -11,7 +11,7 @@ from typing import Any
 
 from aionode.engine.transport.reliability import writer_proxy
 from aionode.engine.transport.reliability.limits import NEVER
-from aionode.engine.wire import _described_type as described_type
+from aionode.engine.wire import described_type
 from aionode.engine.wire.cdr import _layout as layout
 from aionode.message import fields
 from tests.faults import process

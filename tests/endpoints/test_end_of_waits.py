@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from aionode.clock import Duration
+from aionode.endpoints.core.node_core import core_of
 from aionode.engine.context import Context
 from aionode.errors import EntityDestroyedError, QueueFullError
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -213,7 +214,7 @@ async def test_a_cancellation_in_the_same_moment_counts(
 
         if cancelled_first:
             waiting.cancel()
-        for entity in list(planner._Node__entities):
+        for entity in list(core_of(planner).entities):
             entity.destroy()
         planner.get_clock().destroy()
         waiting.cancel()

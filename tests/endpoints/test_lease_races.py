@@ -13,7 +13,7 @@ import pytest
 
 from aionode import CommandLease, Context, Node
 from aionode.clock import perf_ns
-from aionode.endpoints._core import lease_watch
+from aionode.endpoints.core import lease_watch
 from aionode.endpoints.lease import send_stops
 from aionode.engine.transport.base import StopSender, Writer
 from aionode.engine.transport.local import LocalTransport

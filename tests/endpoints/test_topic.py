@@ -37,7 +37,7 @@ from tests.support.arrivals import direct_subscription, gid_of, reader_of
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode.endpoints._core.subscription_reader import Parts
+    from aionode.endpoints.core.subscription_reader import Parts
     from aionode.endpoints.subscription import MessageInfo
 
 KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL, depth=1)

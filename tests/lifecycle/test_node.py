@@ -35,6 +35,11 @@ FAILURE = TransitionCallbackReturn.FAILURE
 ERROR = TransitionCallbackReturn.ERROR
 
 
+def runner_of(node: Any) -> Any:
+    """Return the object that runs the transitions of a node."""
+    return node._LifecycleNode__transitions
+
+
 class Managed(LifecycleNode):
     """Returns, raises or awaits what a test wants, in any of its callbacks."""
 
@@ -644,10 +649,10 @@ def test_a_cancellation_at_any_await_leaves_a_primary_state(
                 elif how == "shutdown":
                     await asyncio.gather(node.trigger_shutdown(), return_exceptions=True)
                 else:
-                    node._LifecycleNode__transitions.cancel(FAILURE if how == "failure" else ERROR)
+                    runner_of(node).cancel(FAILURE if how == "failure" else ERROR)
                 await asyncio.gather(task, return_exceptions=True)
-                assert not node._LifecycleNode__transitions.machine.in_transition
-                assert node._LifecycleNode__transitions._idle.is_set()
+                assert not runner_of(node).machine.in_transition
+                assert runner_of(node)._idle.is_set()
 
     asyncio.run(run())
 

@@ -12,8 +12,8 @@ import pytest
 import aionode
 from aionode._process.concurrency import checkpoint, to_the_end
 from aionode.action import CancelResponse
-from aionode.endpoints._core import shutdown
-from aionode.endpoints._core.entity import Entity
+from aionode.endpoints.core import shutdown
+from aionode.endpoints.core.entity import Entity
 from aionode.engine.context import Context
 from aionode.engine.transport.base import Registration, Writer
 from aionode.engine.transport.local import LocalReader, LocalTransport, LocalWriter

@@ -16,7 +16,7 @@ import pytest
 
 from aionode import rclpy
 from aionode.clock import perf_ns
-from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
+from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.engine.transport.base import SampleInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from aionode.graph import EndpointKind
+from aionode.node import direct_subscription as subscribe_directly
 
 if TYPE_CHECKING:
-    from aionode.endpoints._core.subscription_reader import SubscriptionReader
+    from aionode.endpoints.core.subscription_reader import SubscriptionReader
     from aionode.endpoints.publisher import Publisher
     from aionode.endpoints.service import Service
     from aionode.endpoints.subscription import Subscription
@@ -30,7 +31,7 @@ def gid_of(node: Node, topic: str, kind: EndpointKind = EndpointKind.PUBLISHER) 
 
 def direct_subscription(node: Node, *args: Any) -> Subscription[Any]:
     """Return a subscription that hands messages on as they arrive, as recorders have them."""
-    return node._Node__create_direct_subscription(*args)
+    return subscribe_directly(node, *args)
 
 
 def reader_of(subscription: Subscription[Any]) -> SubscriptionReader:

@@ -36,7 +36,7 @@ from tests.support.waiting import until
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from aionode.endpoints._core.subscription_reader import Parts
+    from aionode.endpoints.core.subscription_reader import Parts
 
 Request = BasicTypes.Request
 Response = BasicTypes.Response

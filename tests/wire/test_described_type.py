@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode.engine.wire import cdr
-from aionode.engine.wire._described_type import action_from_descriptions, type_from_description
 from aionode.engine.wire._type_description import description_message
+from aionode.engine.wire.described_type import action_from_descriptions, type_from_description
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError, TypeDescriptionError
 from aionode.interfaces import get_action, get_interface

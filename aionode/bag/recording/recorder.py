@@ -18,7 +18,7 @@ from aionode.clock import Time
 from aionode.engine.wire import cdr
 from aionode.errors import BagError, InterfaceNotFoundError, TimeSourceChangedError
 from aionode.graph import TOPIC_KINDS, EndpointKind
-from aionode.node import Node
+from aionode.node import Node, direct_subscription
 from aionode.parameter import Parameter
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
@@ -522,8 +522,8 @@ class Recorder:
         info.type_hash = key[2] if key[2].startswith("RIHS") else info.type_hash
         number = recording.number_of(info, self._repeated_depth(name, profile, offered))
         recording.numbers[key] = number  # the graph may show no hash
-        recording.subscriptions[number] = self.node._Node__create_direct_subscription(
-            msg_type, name, partial(self._take, number), profile
+        recording.subscriptions[number] = direct_subscription(
+            self.node, msg_type, name, partial(self._take, number), profile
         )
 
     def _repeated_depth(self, name: str, profile: QoSProfile, offered: list[QoSProfile]) -> int:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.cli._support.output import Output
-    from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.core.callback_runner import CallbackContext
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.message import Message
     from aionode.node import Node

@@ -87,7 +87,7 @@ def actions_and_types(
         kinds: Publishers for the servers, which publish feedback; subscriptions for the clients.
         of: Only the actions of this node.
     """
-    from aionode._node.graph import actions_among
+    from aionode.engine.graph_queries import actions_among
 
     topics = names_and_types(node, *kinds, hidden=True, of=of)
     return dict(actions_among(list(topics.items())))

@@ -6,9 +6,9 @@ import dataclasses
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints._core.callback_runner import accepts, consume
-from aionode.endpoints._core.entity import Entity
-from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.core.callback_runner import accepts, consume
+from aionode.endpoints.core.entity import Entity
+from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.events import EVENTS_KEPT, EventStream
 from aionode.endpoints.stats import CallbackStats
 from aionode.errors import brief
@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Mapping
 
     from aionode.clock import Duration
-    from aionode.endpoints._core.callback_runner import Callbacks
-    from aionode.endpoints._core.endpoint import Endpoint
+    from aionode.endpoints.core.callback_runner import Callbacks
+    from aionode.endpoints.core.endpoint import Endpoint
     from aionode.endpoints.events import PublisherEventCallbacks, SubscriptionEventCallbacks
 
 __all__ = ["EventHandler", "EventHub", "is_limited"]

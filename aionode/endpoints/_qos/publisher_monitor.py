@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from aionode.clock import Alarm, TimeBase
-    from aionode.endpoints._core.endpoint import Endpoint
+    from aionode.endpoints.core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
 
 __all__ = ["PublisherMonitor", "SignOfLife"]

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import Alarm, Duration, TimeBase
-    from aionode.endpoints._core.endpoint import Endpoint
+    from aionode.endpoints.core.endpoint import Endpoint
     from aionode.endpoints.events import EventStream
     from aionode.endpoints.stats import CallbackStats
     from aionode.engine.transport.base import SampleInfo

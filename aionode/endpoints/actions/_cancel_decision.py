@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, Final
 
-from aionode.endpoints.actions._common import awaited
+from aionode.endpoints.actions.common import awaited
 from aionode.engine.rules.goal import CancelResponse
 from aionode.errors import brief
 

@@ -7,12 +7,12 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints.actions._common import uuid_message
+from aionode.endpoints.actions.common import uuid_message
 from aionode.engine.rules.goal import CancelCode, lost_id
 from aionode.errors import EntityDestroyedError, ServiceError, ServiceUnavailableError
 
 if TYPE_CHECKING:
-    from aionode.endpoints.actions._client_goal import ClientGoalHandle
+    from aionode.endpoints.actions.client_goal import ClientGoalHandle
     from aionode.endpoints.client import Client, Exchange
     from aionode.logging import RcutilsLogger
 

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.endpoints.actions._client_watch import SIGNS_IN_TIME
-from aionode.endpoints.actions._common import uuid_message
+from aionode.endpoints.actions.common import uuid_message
 from aionode.engine.rules.goal import alive_id, left_id
 from aionode.graph import EndpointKind
 from aionode.qos import is_unlimited

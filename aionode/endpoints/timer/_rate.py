@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import S_TO_NS
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints.core.entity import EndStage, Entity
 from aionode.engine.rules.schedule import Ticker
 from aionode.errors import brief
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import S_TO_NS, Time, perf_ns
-from aionode.endpoints._core.callback_runner import accepts
-from aionode.endpoints._core.entity import Entity
-from aionode.endpoints._core.inline_call import InlineCall
+from aionode.endpoints.core.callback_runner import accepts
+from aionode.endpoints.core.entity import Entity
+from aionode.endpoints.core.inline_call import InlineCall
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.rules.schedule import Ticker
 from aionode.errors import brief
 
 if TYPE_CHECKING:
     from aionode.clock import Clock, ClockType
-    from aionode.endpoints._core.callback_runner import CallbackRunner
+    from aionode.endpoints.core.callback_runner import CallbackRunner
 
 __all__ = ["RunnerFactory", "Timer", "TimerCallback", "TimerInfo", "to_period_ns"]
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 import msgspec
 
+from aionode.endpoints.core.node_core import core_of
 from aionode.endpoints.stats import CallbackStats, ClientStats, Distribution, PublisherStats
 from aionode.names import is_hidden
 
@@ -178,7 +179,7 @@ def entities_of(node: Node, sees: Callable[[str, str], bool]) -> dict[tuple[str,
     Entities of one kind and name are one for Prometheus, which refuses the same labels twice.
     """
     entities: dict[tuple[str, str], list[Stats]] = {}
-    for entity in list(node._Node__entities):
+    for entity in list(core_of(node).entities):
         kind = kind_of(entity)
         if kind is None:
             continue

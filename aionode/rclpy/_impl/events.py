@@ -12,7 +12,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import SilenceAlarm
-from aionode.endpoints._core.subscription_reader import missing_before
+from aionode.endpoints.core.subscription_reader import missing_before
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,

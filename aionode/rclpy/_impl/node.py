@@ -6,10 +6,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode import errors, names
-from aionode._node.graph import NamesAndTypes, names_and_types_of
 from aionode.arguments import Arguments
 from aionode.clock import MachineTime, Time
 from aionode.engine.bare_node import BareNode
+from aionode.engine.graph_queries import NamesAndTypes, names_and_types_of
 from aionode.engine.log_levels import log_message
 from aionode.errors import NameValidationException
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind

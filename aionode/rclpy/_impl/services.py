@@ -9,7 +9,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.clock import MachineTime
-from aionode.endpoints._core.endpoint import heavy_text
+from aionode.endpoints.core.endpoint import heavy_text
 from aionode.endpoints.service_introspection import (
     REQUEST_RECEIVED,
     REQUEST_SENT,

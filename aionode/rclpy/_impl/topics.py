@@ -9,8 +9,8 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from aionode.clock import MachineTime
-from aionode.endpoints._core.endpoint import heavy_text
-from aionode.endpoints._core.subscription_reader import REMEMBERED_PUBLISHERS
+from aionode.endpoints.core.endpoint import heavy_text
+from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.engine.bare_node import BareEndpoint, BarePublisher
 from aionode.engine.rules.lifespan import expires_ns
 from aionode.engine.transport.base import SampleInfo

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from aionode._node.graph import actions_among
+from aionode.engine.graph_queries import actions_among
 
 if TYPE_CHECKING:
     from aionode.rclpy.node import Node

@@ -1118,7 +1118,7 @@ async def test_goals_go_on_beside_a_reader_that_does_not_read(
 ) -> None:
     """A full KEEP_ALL subscription of a tool must not hold up or abort what a robot does."""
     monkeypatch.setattr("aionode.qos._profile.KEEP_ALL_DEPTH", 3)
-    monkeypatch.setattr("aionode.endpoints.actions._server.DRAIN_LIMIT_S", 0.01)
+    monkeypatch.setattr("aionode.endpoints.actions.server.DRAIN_LIMIT_S", 0.01)
     serve()
     node.create_subscription(
         Fibonacci.Impl.FeedbackMessage,

@@ -12,9 +12,9 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import perf_ns
-from aionode.endpoints._core import callback_runner
-from aionode.endpoints._core.callback_runner import CallbackContext
-from aionode.endpoints._core.thread_time import ThreadTime
+from aionode.endpoints.core import callback_runner
+from aionode.endpoints.core.callback_runner import CallbackContext
+from aionode.endpoints.core.thread_time import ThreadTime
 from aionode.endpoints.stats import Distribution
 from aionode.errors import CallbackCancelledError
 from aionode.interfaces.std_msgs.msg import Int32, String

@@ -22,7 +22,7 @@ from tests.support.arrivals import reader_of, serve_of
 if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable
 
-    from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.core.callback_runner import CallbackContext
     from aionode.endpoints.subscription import MessageInfo, Subscription
     from aionode.engine.context import Context
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from aionode.endpoints.core.node_core import core_of
 from aionode.errors import EntityDestroyedError
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
@@ -23,7 +24,7 @@ End = asyncio.CancelledError | EntityDestroyedError
 
 def end_in(node: Node) -> End:
     """Return how a wait of the current task ends."""
-    return node._Node__node_tasks.end_of_wait("client of /add")
+    return core_of(node).tasks.end_of_wait("client of /add")
 
 
 async def end_of(node: Node) -> End:

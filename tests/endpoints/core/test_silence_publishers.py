@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from aionode.clock import Duration, SteadyClock, Time, perf_ns
-from aionode.endpoints._core import silence_watch
+from aionode.endpoints.core import silence_watch
 from aionode.engine.context import Context
 from aionode.engine.transport.local import LocalTransport
 from aionode.engine.wire.typehash import type_hash

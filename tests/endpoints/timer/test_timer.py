@@ -13,7 +13,7 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import Clock, ClockType, ROSClock, Time
-from aionode.endpoints._core.callback_runner import CallbackRunner, Callbacks
+from aionode.endpoints.core.callback_runner import CallbackRunner, Callbacks
 from aionode.endpoints.stats import CallbackStats
 from aionode.endpoints.timer import Timer, TimerInfo
 from aionode.endpoints.timer._timer import to_period_ns

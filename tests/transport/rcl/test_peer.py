@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode._node.type_lookup import described
 from aionode.action import ActionServer, CancelResponse, GoalStatus, ServerGoalHandle
 from aionode.clock import Duration
 from aionode.endpoints.events import (
@@ -26,6 +25,7 @@ from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
 from aionode.interfaces.test_msgs.action import Fibonacci
 from aionode.interfaces.test_msgs.srv import BasicTypes
 from aionode.node import Node
+from aionode.node._type_lookup import described
 from aionode.parameter import Parameter
 from aionode.parameter_client import AsyncParameterClient
 from aionode.qos import (

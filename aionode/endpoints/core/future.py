@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 if TYPE_CHECKING:
     from types import TracebackType
 
-    from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints.core.entity import Entity
 
 __all__ = ["Futures", "Unasked", "asks"]
 

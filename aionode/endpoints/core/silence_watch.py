@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode._process.concurrency import checkpoint
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
-from aionode.endpoints._core.callback_runner import accepts
-from aionode.endpoints._core.node_tasks import create_own_task
+from aionode.endpoints.core.callback_runner import accepts
+from aionode.endpoints.core.node_tasks import create_own_task
 from aionode.engine.rules.publication_times import PublicationTimes
 from aionode.errors import brief
 from aionode.qos import DurabilityPolicy
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.callback_runner import CallbackRunner
-    from aionode.endpoints._core.endpoint import Endpoint
-    from aionode.endpoints._core.subscription_reader import SubscriptionReader
+    from aionode.endpoints.core.callback_runner import CallbackRunner
+    from aionode.endpoints.core.endpoint import Endpoint
+    from aionode.endpoints.core.subscription_reader import SubscriptionReader
     from aionode.engine.transport.base import SampleInfo
     from aionode.graph import EndpointInfo
 

@@ -8,16 +8,16 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from aionode._process.concurrency import checkpoint
-from aionode.endpoints._core.callback_runner import accepts, consume
-from aionode.endpoints._core.entity import EndStage
-from aionode.endpoints._core.future import Futures, asks
-from aionode.endpoints._core.message_queue import MessageQueue
 from aionode.endpoints.actions._cancel_request import CancelRequest, is_rejected, warner
-from aionode.endpoints.actions._client_goal import ActionResult, ClientGoalHandle
-from aionode.endpoints.actions._common import ActionEntity, expect_action_type, uuid_message
 from aionode.endpoints.actions._life_signs import LifeSigns
+from aionode.endpoints.actions.client_goal import ActionResult, ClientGoalHandle
+from aionode.endpoints.actions.common import ActionEntity, expect_action_type, uuid_message
+from aionode.endpoints.core.callback_runner import accepts, consume
+from aionode.endpoints.core.entity import EndStage
+from aionode.endpoints.core.future import Futures, asks
+from aionode.endpoints.core.message_queue import MessageQueue
+from aionode.endpoints.core.node_core import core_of, in_thread_of_node
 from aionode.endpoints.stats import CallbackStats
-from aionode.engine.loop_affinity import in_thread_of_node
 from aionode.engine.rules.goal import GoalStatus, reason_id
 from aionode.errors import (
     GoalAbortedError,
@@ -37,7 +37,7 @@ from aionode.qos import (
 )
 
 if TYPE_CHECKING:
-    from aionode.endpoints.actions._node import ActionNode
+    from aionode.endpoints.core.node_methods import NodeMethods
     from aionode.message import ActionClass
 
 __all__ = ["ActionClient"]
@@ -103,7 +103,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     @in_thread_of_node
     def __init__(
         self,
-        node: ActionNode,
+        node: NodeMethods,
         action_type: ActionClass[GoalT, ResultT, FeedbackT],
         action_name: str,
         *,
@@ -130,7 +130,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._waits: dict[asyncio.Future[None], None] = {}  # in order, to wake them in order
         self._futures = Futures(self)
         self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
-        self._expect_at_end = node._Node__expect_at_end
+        self._expect_at_end = core_of(node).shutdown.expect
         self._sends_for_others = False  # such as the clients of a gateway; see `lost_id`
         self._tell_goes_on = warner(node.get_logger(), self._subject)
 
@@ -180,7 +180,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             for part in self._parts:
                 part.destroy()
             raise
-        node._Node__add_entity(self)
+        core_of(node).add(self)
 
     def __repr__(self) -> str:
         return (

@@ -10,6 +10,7 @@ import contextlib
 from typing import TYPE_CHECKING
 
 from aionode import qos
+from aionode.endpoints.core.node_core import core_of
 from aionode.engine.log_levels import LevelAnswers, log_message
 from aionode.errors import QueueFullError
 from aionode.interfaces.rcl_interfaces.msg import Log, ParameterDescriptor, ParameterEvent
@@ -20,7 +21,7 @@ from aionode.parameter import parameter_services
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from aionode._node.endpoints import NodeEndpoints
+    from aionode.endpoints.core.node_methods import NodeMethods
     from aionode.logging import LogEvent
     from aionode.parameter import ParameterStore
     from aionode.qos import QoSProfile
@@ -36,7 +37,7 @@ __all__ = [
 # Log
 
 
-def publish_log(node: NodeEndpoints, profile: QoSProfile | int) -> Callable[[], None]:
+def publish_log(node: NodeMethods, profile: QoSProfile | int) -> Callable[[], None]:
     """Publish the node's log on ``/rosout``; return a function that stops it.
 
     Messages may be logged in any thread; they are published in the thread of the event loop.
@@ -50,12 +51,12 @@ def publish_log(node: NodeEndpoints, profile: QoSProfile | int) -> Callable[[], 
                 publisher.publish(log_message(event, node.get_clock().now()))
 
     def sink(event: LogEvent) -> None:
-        node._Node__call_in_loop(lambda: publish(event))
+        core_of(node).affinity.call(lambda: publish(event))
 
     return node.get_logger().add_sink(sink)
 
 
-def serve_logger_levels(node: NodeEndpoints) -> None:
+def serve_logger_levels(node: NodeMethods) -> None:
     """Serve the reading and setting of log levels in this process."""
     answers = LevelAnswers()
     node.create_service(GetLoggerLevels, "~/get_logger_levels", answers.get_levels)
@@ -65,7 +66,7 @@ def serve_logger_levels(node: NodeEndpoints) -> None:
 # Parameters
 
 
-def publish_parameter_events(node: NodeEndpoints) -> Callable[[ParameterEvent], None]:
+def publish_parameter_events(node: NodeMethods) -> Callable[[ParameterEvent], None]:
     """Return a function that publishes parameter changes on ``/parameter_events``."""
     publisher = node.create_publisher(
         ParameterEvent, "/parameter_events", qos.qos_profile_parameter_events
@@ -79,7 +80,7 @@ def publish_parameter_events(node: NodeEndpoints) -> Callable[[ParameterEvent], 
     return publish
 
 
-def serve_parameters(node: NodeEndpoints, store: ParameterStore) -> None:
+def serve_parameters(node: NodeMethods, store: ParameterStore) -> None:
     """Serve the reading and setting of the node's parameters."""
     for service in parameter_services(store):
         node.create_service(
@@ -93,7 +94,7 @@ def serve_parameters(node: NodeEndpoints, store: ParameterStore) -> None:
 # Types
 
 
-def serve_type_descriptions(node: NodeEndpoints) -> None:
+def serve_type_descriptions(node: NodeMethods) -> None:
     """Serve the descriptions of the types that the node uses."""
     if node.context.ros_distro == "humble":
         return  # Humble has neither the service nor its type

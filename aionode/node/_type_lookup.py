@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode._distribution import NO_TYPE_HASH
-from aionode.engine.wire._described_type import action_from_descriptions, type_from_description
+from aionode.engine.wire.described_type import action_from_descriptions, type_from_description
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import AionodeError, InterfaceNotFoundError, TypeDescriptionError
 from aionode.graph import EndpointKind
@@ -18,7 +18,7 @@ from aionode.interfaces import get_interface, part_of, whole_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from aionode._node.endpoints import NodeEndpoints
+    from aionode.endpoints.core.node_methods import NodeMethods
     from aionode.graph import EndpointInfo, Graph
 
 __all__ = ["find_type"]
@@ -33,9 +33,7 @@ ACTION_PARTS: Final = ("SendGoal", "GetResult", "FeedbackMessage")
 """The types by which an action is known in the graph, as suffixes of its name."""
 
 
-async def find_type(
-    node: NodeEndpoints, name: str, endpoints: Sequence[EndpointInfo] | None
-) -> Any:
+async def find_type(node: NodeMethods, name: str, endpoints: Sequence[EndpointInfo] | None) -> Any:
     """Return the class of a type; see `Node.find_type`."""
     users = users_of(node.graph, name) if endpoints is None else list(endpoints)
     try:
@@ -80,7 +78,7 @@ def problem_of(
 
 
 async def described(
-    node: NodeEndpoints, name: str, users: list[EndpointInfo], problems: list[str]
+    node: NodeMethods, name: str, users: list[EndpointInfo], problems: list[str]
 ) -> Any | None:
     """Return the class that one of the nodes describes; None if none does.
 
@@ -104,9 +102,7 @@ async def described(
     return None
 
 
-async def described_by(
-    node: NodeEndpoints, name: str, users: dict[str, EndpointInfo]
-) -> Any | None:
+async def described_by(node: NodeMethods, name: str, users: dict[str, EndpointInfo]) -> Any | None:
     """Return the class that one node describes, which has endpoints of these types.
 
     Raises:
@@ -144,7 +140,7 @@ def with_hash(message_type: Any, user: EndpointInfo) -> Any:
     return message_type
 
 
-async def description_of(node: NodeEndpoints, user: EndpointInfo) -> Any | None:
+async def description_of(node: NodeMethods, user: EndpointInfo) -> Any | None:
     """Return the description of an endpoint's type; None if its node does not describe it."""
     # Imported on demand: most programs know their types.
     from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription

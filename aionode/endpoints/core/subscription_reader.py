@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict
 
 from aionode.clock import perf_ns
-from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.stats import NOTED_CALLS, CallbackStats
 from aionode.engine.transport.base import SampleInfo
 from aionode.qos import HistoryPolicy, depth_of
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Coroutine
 
     from aionode.clock import TimeBase
-    from aionode.endpoints._core.callback_runner import CallbackRunner
+    from aionode.endpoints.core.callback_runner import CallbackRunner
     from aionode.engine.transport.base import Raw
     from aionode.errors import DecodeError
     from aionode.graph import EndpointInfo

@@ -5,13 +5,13 @@ from __future__ import annotations
 import asyncio
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints._core.entity import EndStage
+from aionode.endpoints.core.entity import EndStage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from aionode.endpoints._core.callback_runner import Callbacks
-    from aionode.endpoints._core.entity import Entity
+    from aionode.endpoints.core.callback_runner import Callbacks
+    from aionode.endpoints.core.entity import Entity
 
 __all__ = ["Shutdown"]
 

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, Any, Literal, TypeVar
 from aionode._process.concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
 from aionode._process.tracebacks import traceback_text
 from aionode.clock import perf_ns
-from aionode.endpoints._core.node_tasks import create_own_task
-from aionode.endpoints._core.thread_time import ThreadTime
+from aionode.endpoints.core.node_tasks import create_own_task
+from aionode.endpoints.core.thread_time import ThreadTime
 from aionode.errors import (
     CallbackCancelledError,
     CallbackSignatureError,
@@ -27,8 +27,8 @@ from aionode.errors import (
 )
 
 if TYPE_CHECKING:
-    from aionode.endpoints._core.entity import Entity
-    from aionode.endpoints._core.message_queue import MessageQueue
+    from aionode.endpoints.core.entity import Entity
+    from aionode.endpoints.core.message_queue import MessageQueue
     from aionode.endpoints.stats import CallbackStats
     from aionode.logging import RcutilsLogger
 

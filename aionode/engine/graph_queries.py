@@ -1,15 +1,12 @@
-"""The graph queries of a node: rclpy's methods, over the graph of its context."""
+"""Questions about the graph that nodes of both faces answer: rclpy's methods."""
 
 from __future__ import annotations
 
-import asyncio
 from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Protocol
 
 from aionode import names
-from aionode._node.base import NodeBase
-from aionode.endpoints._core.future import asks
 from aionode.errors import NodeNameNonExistentError
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
 
@@ -22,9 +19,12 @@ if TYPE_CHECKING:
 __all__ = [
     "GraphAnswers",
     "GraphQueries",
-    "NodeGraphQueries",
+    "NamesAndTypes",
     "TopicEndpointInfo",
     "TopicEndpointTypeEnum",
+    "actions_among",
+    "names_and_types_of",
+    "topic_endpoint_info",
 ]
 
 NamesAndTypes = list[tuple[str, list[str]]]
@@ -86,34 +86,33 @@ class GraphAnswers(Protocol):
 
 
 class GraphQueries:
-    """The questions about the graph that nodes of both APIs answer alike.
+    """The questions about the graph that nodes of both faces answer alike.
 
-    Attributes:
-        _graph_answers: Where the answers come from. It is no base class, since a program's
-            subclass may have any attributes: each name that a node has may be taken by one.
+    Args:
+        answers: Where the answers come from. It is no base class: a program's subclass may have
+            methods of any other name.
     """
 
-    _Node__graph_answers: GraphAnswers
+    def __init__(self, answers: GraphAnswers) -> None:
+        self.__answers = answers
 
     # Nodes
 
     def get_node_names(self) -> list[str]:
         """Return the names of all nodes, without namespaces."""
-        return [node.name for node in self._Node__graph_answers.nodes()]
+        return [node.name for node in self.__answers.nodes()]
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """Return the full names of all nodes."""
-        return [node.fully_qualified_name for node in self._Node__graph_answers.nodes()]
+        return [node.fully_qualified_name for node in self.__answers.nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Return the name and namespace of every node."""
-        return [(node.name, node.namespace) for node in self._Node__graph_answers.nodes()]
+        return [(node.name, node.namespace) for node in self.__answers.nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Return the name, namespace and security enclave of every node."""
-        return [
-            (node.name, node.namespace, node.enclave) for node in self._Node__graph_answers.nodes()
-        ]
+        return [(node.name, node.namespace, node.enclave) for node in self.__answers.nodes()]
 
     # Topics and services by name
 
@@ -128,30 +127,30 @@ class GraphQueries:
         Hidden topics, which have a name with a part that begins with ``_``, are those of actions
         and of tools; without `include_hidden` they are left out, as ``ros2 topic list`` does.
         """
-        return shown(self._Node__graph_answers.names_and_types(TOPIC_KINDS), include_hidden)
+        return shown(self.__answers.names_and_types(TOPIC_KINDS), include_hidden)
 
     def get_service_names_and_types(self, *, include_hidden: bool = True) -> NamesAndTypes:
         """Return every service that has a server or a client, with its types.
 
         Without `include_hidden`, hidden services are left out, such as those of actions.
         """
-        return shown(self._Node__graph_answers.names_and_types(SERVICE_KINDS), include_hidden)
+        return shown(self.__answers.names_and_types(SERVICE_KINDS), include_hidden)
 
     def count_publishers(self, topic_name: str) -> int:
         """Return how many publishers `topic_name` has; a relative name is this node's."""
-        return self._Node__graph_answers.count(EndpointKind.PUBLISHER, topic_name)
+        return self.__answers.count(EndpointKind.PUBLISHER, topic_name)
 
     def count_subscribers(self, topic_name: str) -> int:
         """Return how many subscriptions `topic_name` has; a relative name is this node's."""
-        return self._Node__graph_answers.count(EndpointKind.SUBSCRIPTION, topic_name)
+        return self.__answers.count(EndpointKind.SUBSCRIPTION, topic_name)
 
     def count_services(self, service_name: str) -> int:
         """Return how many servers `service_name` has; a relative name is this node's."""
-        return self._Node__graph_answers.count(EndpointKind.SERVER, service_name)
+        return self.__answers.count(EndpointKind.SERVER, service_name)
 
     def count_clients(self, service_name: str) -> int:
         """Return how many clients `service_name` has; a relative name is this node's."""
-        return self._Node__graph_answers.count(EndpointKind.CLIENT, service_name)
+        return self.__answers.count(EndpointKind.CLIENT, service_name)
 
     # By node
 
@@ -166,9 +165,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._Node__graph_answers.names_and_types_of(
-            EndpointKind.PUBLISHER, node_name, node_namespace
-        )
+        return self.__answers.names_and_types_of(EndpointKind.PUBLISHER, node_name, node_namespace)
 
     def get_subscriber_names_and_types_by_node(
         self,
@@ -181,7 +178,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._Node__graph_answers.names_and_types_of(
+        return self.__answers.names_and_types_of(
             EndpointKind.SUBSCRIPTION, node_name, node_namespace
         )
 
@@ -193,9 +190,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._Node__graph_answers.names_and_types_of(
-            EndpointKind.SERVER, node_name, node_namespace
-        )
+        return self.__answers.names_and_types_of(EndpointKind.SERVER, node_name, node_namespace)
 
     def get_client_names_and_types_by_node(
         self, node_name: str, node_namespace: str
@@ -205,136 +200,7 @@ class GraphQueries:
         Raises:
             NodeNameNonExistentError: there is no node of this name.
         """
-        return self._Node__graph_answers.names_and_types_of(
-            EndpointKind.CLIENT, node_name, node_namespace
-        )
-
-
-class NodeGraphQueries(GraphQueries, NodeBase):
-    """The part of `aionode.Node` that queries the graph.
-
-    Answers reflect the present state; ``await node.graph.changed()`` waits for the next change.
-    """
-
-    @property
-    def _Node__graph_answers(self) -> GraphAnswers:  # type: ignore[override] # made when it is asked
-        return OwnGraph(self)
-
-    @asks
-    async def wait_for_node(
-        self,
-        fully_qualified_node_name: str,
-        timeout: float | None = None,
-        *,
-        check_interval: float = 0.1,  # noqa: ARG002  # rclpy's signature
-    ) -> bool:
-        """Wait until a node of this name exists.
-
-        Args:
-            fully_qualified_node_name: Namespace and name; the leading slash is optional.
-            timeout: The longest wait, in seconds; None waits forever.
-            check_interval: Ignored: the wait ends as soon as the graph changes.
-
-        Returns:
-            True if the node exists, False if `timeout` has passed.
-
-        Raises:
-            EntityDestroyedError: this node has ended, before or during the wait (a RuntimeError);
-                its ``__cause__`` is the error that this node failed with, if it did.
-            CancelledError: this node has ended, and one of its own tasks waits: a callback, or the
-                body of ``async with node``.
-        """
-        wanted = "/" + fully_qualified_node_name.removeprefix("/")
-        own = self.get_fully_qualified_name()
-
-        def is_there() -> bool:
-            return bool(self.graph.nodes_named(wanted))
-
-        try:
-            async with asyncio.timeout(timeout):
-                while not is_there():
-                    if self._Node__info not in self.graph.nodes_named(own):
-                        raise self._Node__node_tasks.end_of_wait(f"node {own}")
-                    await self.graph.changed(wanted, own)
-        except TimeoutError:
-            return is_there()
-        return True
-
-    # Topics by name
-
-    def get_publishers_info_by_topic(
-        self,
-        topic_name: str,
-        no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
-    ) -> list[TopicEndpointInfo]:
-        """Return every publisher of a topic; `no_mangle` is ignored."""
-        return self._Node__topic_endpoints(EndpointKind.PUBLISHER, topic_name)
-
-    def get_subscriptions_info_by_topic(
-        self,
-        topic_name: str,
-        no_mangle: bool = False,  # noqa: ARG002  # rclpy's signature
-    ) -> list[TopicEndpointInfo]:
-        """Return every subscription of a topic; `no_mangle` is ignored."""
-        return self._Node__topic_endpoints(EndpointKind.SUBSCRIPTION, topic_name)
-
-    def _Node__topic_endpoints(
-        self, kind: EndpointKind, topic_name: str
-    ) -> list[TopicEndpointInfo]:
-        name = self.resolve_topic_name(topic_name)
-        return [topic_endpoint_info(found) for found in self.graph.endpoints(kind, name=name)]
-
-    # Actions
-
-    def get_action_names_and_types(self) -> NamesAndTypes:
-        """Return every action, with its types."""
-        return actions_among(self.get_topic_names_and_types())
-
-    def get_action_server_names_and_types_by_node(
-        self, node_name: str, node_namespace: str
-    ) -> NamesAndTypes:
-        """Return the actions that a node serves.
-
-        Raises:
-            NodeNameNonExistentError: there is no node of this name.
-        """
-        return actions_among(self.get_publisher_names_and_types_by_node(node_name, node_namespace))
-
-    def get_action_client_names_and_types_by_node(
-        self, node_name: str, node_namespace: str
-    ) -> NamesAndTypes:
-        """Return the actions that a node calls.
-
-        Raises:
-            NodeNameNonExistentError: there is no node of this name.
-        """
-        return actions_among(self.get_subscriber_names_and_types_by_node(node_name, node_namespace))
-
-
-class OwnGraph:
-    """Answers from the graph of a node's context, in the thread that asks."""
-
-    def __init__(self, node: NodeBase) -> None:
-        self._node = node
-        self.nodes = node.graph.nodes
-
-    def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
-        """Return the names that endpoints of these kinds have, with their types."""
-        return self._node.graph.names_and_types(*kinds)
-
-    def names_and_types_of(
-        self, kind: EndpointKind, node_name: str, node_namespace: str
-    ) -> NamesAndTypes:
-        """Return the names that the endpoints of a kind have in a node, with their types."""
-        full_name = names.fully_qualified_name(node_namespace, node_name)
-        return names_and_types_of(self._node.graph, kind, full_name)
-
-    def count(self, kind: EndpointKind, name: str) -> int:
-        """Return how many endpoints of a kind have a name."""
-        node = self._node
-        is_service = kind in SERVICE_KINDS
-        resolve = node.resolve_service_name if is_service else node.resolve_topic_name
-        return node.graph.count(kind, resolve(name))
+        return self.__answers.names_and_types_of(EndpointKind.CLIENT, node_name, node_namespace)
 
 
 def names_and_types_of(graph: Graph, kind: EndpointKind, full_name: str) -> NamesAndTypes:

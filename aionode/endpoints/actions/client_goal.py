@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Generic, Protocol, Self, TypeVar
 from weakref import WeakSet
 
-from aionode.endpoints._core.message_queue import MessageQueue
+from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.rules.goal import GoalStatus
 from aionode.message import Message

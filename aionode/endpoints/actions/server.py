@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, cast
 
 from aionode._process.concurrency import is_cancelled_task
 from aionode.clock import perf_ns
-from aionode.endpoints._core.callback_runner import accepts, checked_concurrency, consume
-from aionode.endpoints._core.message_queue import MessageQueue
-from aionode.endpoints._core.node_tasks import create_own_task
 from aionode.endpoints.actions._cancel_decision import OWNER_LOST, agrees, ends_for_lost_owner
 from aionode.endpoints.actions._client_watch import ClientWatch, announcing
-from aionode.endpoints.actions._common import (
+from aionode.endpoints.actions.common import (
     AbortReason,
     ActionEntity,
     awaited,
@@ -26,9 +23,12 @@ from aionode.endpoints.actions._common import (
     tell_full,
     tell_rejected,
 )
-from aionode.endpoints.actions._server_goal import ServerGoalHandle
+from aionode.endpoints.actions.server_goal import ServerGoalHandle
+from aionode.endpoints.core.callback_runner import accepts, checked_concurrency, consume
+from aionode.endpoints.core.message_queue import MessageQueue
+from aionode.endpoints.core.node_core import core_of, in_thread_of_node
+from aionode.endpoints.core.node_tasks import create_own_task
 from aionode.endpoints.stats import CallbackStats
-from aionode.engine.loop_affinity import in_thread_of_node
 from aionode.engine.rules.early_cancels import EarlyCancels
 from aionode.engine.rules.goal import (
     CancelCode,
@@ -55,8 +55,8 @@ from aionode.qos import (
 )
 
 if TYPE_CHECKING:
-    from aionode.endpoints._core.callback_runner import CallbackRunner, OnError
-    from aionode.endpoints.actions._node import ActionNode
+    from aionode.endpoints.core.callback_runner import CallbackRunner, OnError
+    from aionode.endpoints.core.node_methods import NodeMethods
     from aionode.message import ActionClass
     from aionode.qos import QoSProfile
 
@@ -153,7 +153,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     @in_thread_of_node
     def __init__(
         self,
-        node: ActionNode,
+        node: NodeMethods,
         action_type: ActionClass[GoalT, ResultT, FeedbackT],
         action_name: str,
         execute_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any],
@@ -185,7 +185,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self.stats = CallbackStats()
         self._clock = node.get_clock()
         self._time_base = node.context.time_base
-        self._callbacks = node._Node__callbacks
+        self._callbacks = core_of(node).callbacks
         self._logger = node.get_logger()
         self._when_lost = on_client_lost
         lost_ns = checked_client_lost(on_client_lost, client_lost_sec, self._subject)
@@ -260,7 +260,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._client_watch = ClientWatch(
             self._send_goal.srv_name, node.graph, self._time_base, lost_ns, self._on_client_lost
         )
-        node._Node__add_entity(self)
+        core_of(node).add(self)
 
     def __repr__(self) -> str:
         active = self._goals.active

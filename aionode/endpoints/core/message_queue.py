@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 from aionode._process.concurrency import SLICE_NS, checkpoint
 from aionode.clock import perf_ns
-from aionode.endpoints._core.inline_call import InlineCall
+from aionode.endpoints.core.inline_call import InlineCall
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine
     from typing import Any
 
-    from aionode.endpoints._core.node_tasks import NodeTasks
+    from aionode.endpoints.core.node_tasks import NodeTasks
     from aionode.engine.loop_affinity import LoopAffinity
 
 __all__ = ["EndStage", "Entity"]

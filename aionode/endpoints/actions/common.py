@@ -6,8 +6,8 @@ import math
 from collections.abc import Awaitable
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints._core.entity import EndStage, Entity
 from aionode.endpoints.client import Client
+from aionode.endpoints.core.entity import EndStage, Entity
 from aionode.endpoints.service import Service
 from aionode.engine.rules.goal import is_sign
 from aionode.errors import brief, shortened
@@ -16,7 +16,7 @@ from aionode.message import ActionType
 
 if TYPE_CHECKING:
     from aionode.clock import Clock
-    from aionode.endpoints._core.callback_runner import CallbackContext
+    from aionode.endpoints.core.callback_runner import CallbackContext
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
     from aionode.logging import RcutilsLogger
     from aionode.qos import QoSProfile

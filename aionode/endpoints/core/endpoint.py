@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints.core.entity import EndStage, Entity
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Set as AbstractSet
 
-    from aionode.endpoints._core.callback_runner import Callbacks
+    from aionode.endpoints.core.callback_runner import Callbacks
     from aionode.engine.loop_affinity import LoopAffinity
     from aionode.graph import EndpointInfo, Graph
 

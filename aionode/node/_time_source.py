@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.clock import Time
-from aionode.endpoints._core.entity import EndStage, Entity
+from aionode.endpoints.core.entity import EndStage, Entity
+from aionode.endpoints.core.node_core import core_of
 from aionode.engine.reports.simulated_time import ClockWatch, why_no_time
 from aionode.interfaces.rcl_interfaces.msg import SetParametersResult
 from aionode.interfaces.rosgraph_msgs.msg import Clock as ClockMsg
@@ -13,8 +14,8 @@ from aionode.parameter import Parameter
 from aionode.qos import QoSProfile, ReliabilityPolicy
 
 if TYPE_CHECKING:
-    from aionode._node.endpoints import NodeEndpoints
     from aionode.clock import Clock
+    from aionode.endpoints.core.node_methods import NodeMethods
     from aionode.endpoints.subscription import Subscription
 
 __all__ = ["TimeSource"]
@@ -39,7 +40,7 @@ class WatchedClock(Entity):
 class TimeSource:
     """Follows ``/clock`` while the parameter `use_sim_time` is true."""
 
-    def __init__(self, node: NodeEndpoints, clock: Clock) -> None:
+    def __init__(self, node: NodeMethods, clock: Clock) -> None:
         self._node = node
         self._clock = clock
         self._subscription: Subscription[ClockMsg] | None = None
@@ -73,13 +74,13 @@ class TimeSource:
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
             # The subscription outlives the callbacks: their cleanup may sleep.
-            self._node._Node__node_shutdown.postpone(self._subscription, EndStage.GOALS)
+            core_of(self._node).shutdown.postpone(self._subscription, EndStage.GOALS)
             context = self._node.context
             watch = ClockWatch(
                 *(self._subscription._endpoint, context.graph, context.time_base),
                 heard=lambda: self._heard,
             )
-            self._watch = self._node._Node__add_entity(WatchedClock(watch))
+            self._watch = core_of(self._node).add(WatchedClock(watch))
         elif not active and self._subscription is not None:
             self._subscription.destroy()
             self._subscription = None

@@ -1,1 +1,0 @@
-"""The classes and built-in services that make up `aionode.Node`."""
