@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections import Counter
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -26,6 +27,9 @@ MOST_CROSSINGS = 1
 
 MOST_PRIVATE_READS = 124
 """How often tests may read private names of aionode; the number only falls."""
+
+MOST_MODULES = 20
+"""How many modules may stand at one level."""
 
 LATE = {
     ("aionode.message._message", "aionode.message._schema"): "few programs use Pydantic",
@@ -75,6 +79,14 @@ def test_no_private_name_crosses_a_room() -> None:
     crossings = structure.crossings()
 
     assert len(crossings) <= MOST_CROSSINGS, crossings
+
+
+def test_no_folder_has_more_than_twenty_modules() -> None:
+    """A reader finds an idea by its folder; files that the names of ROS decide are free of it."""
+    folders = Counter(path.parent.relative_to(ROOT).as_posix() for path in MODULES)
+    del folders["rclpy"]
+
+    assert [folder for folder, modules in folders.items() if modules > MOST_MODULES] == []
 
 
 THREADS_AND_LOCKS = {

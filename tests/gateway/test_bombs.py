@@ -17,7 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from aionode.engine.wire import cdr
 from aionode.errors import MessageError
 from aionode.gateway import Gateway, Policy
-from aionode.gateway.session.client_json import decoded
+from aionode.gateway.session.encoding.client_json import decoded
 from aionode.interfaces.geometry_msgs.msg import PoseArray
 from aionode.interfaces.std_msgs.msg import String, UInt8MultiArray
 from tests.support.gateway_server import busiest_turn, http_client, raw_connect, serving, upgraded

@@ -12,12 +12,12 @@ import pytest
 
 from aionode._process.concurrency import checkpoint
 from aionode.engine.wire import cdr
+from aionode.gateway.session.encoding.frames import png_frame, png_frame_in_turns
+from aionode.gateway.session.encoding.large_json import SLICE_BYTES, SLICE_ITEMS, json_in_turns
+from aionode.gateway.session.encoding.values import json_of
 from aionode.gateway.session.feed import Received
-from aionode.gateway.session.frames import png_frame, png_frame_in_turns
-from aionode.gateway.session.large_json import SLICE_BYTES, SLICE_ITEMS, json_in_turns
 from aionode.gateway.session.preparing import LARGE_BYTES, MOST_BYTES, Preparing
 from aionode.gateway.session.robot import Robot
-from aionode.gateway.session.values import json_of
 from aionode.interfaces.geometry_msgs.msg import Point32, Polygon
 from aionode.interfaces.sensor_msgs.msg import Image, LaserScan
 from aionode.interfaces.std_msgs.msg import ByteMultiArray, String
@@ -159,7 +159,7 @@ async def test_a_large_message_is_written_once_for_all_clients(
         written.append(message)
         return await json_in_turns(message)
 
-    monkeypatch.setattr("aionode.gateway.session.large_json.json_in_turns", count)
+    monkeypatch.setattr("aionode.gateway.session.encoding.large_json.json_in_turns", count)
     publisher = node.create_publisher(Image, "/image", 10)
     async with rosbridge_client(robot) as other:
         for each in (client, other):

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from aionode.clock import Duration
 from aionode.errors import MessageError
 from aionode.gateway.rosbridge.request import FragmentStore, number, op_of, profile
-from aionode.gateway.session.client_json import type_text
+from aionode.gateway.session.encoding.client_json import type_text
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 

@@ -16,14 +16,14 @@ from PIL import Image as Picture
 
 from aionode.engine.wire import cdr
 from aionode.errors import MessageError
-from aionode.gateway.session.frames import (
+from aionode.gateway.session.encoding.frames import (
     cbor_frame,
     cbor_raw_frame,
     fragments,
     json_frame,
     png_frame,
 )
-from aionode.gateway.session.values import from_json, json_of
+from aionode.gateway.session.encoding.values import from_json, json_of
 from aionode.interfaces.builtin_interfaces.msg import Time
 from aionode.interfaces.geometry_msgs.msg import PointStamped, Twist
 from aionode.interfaces.nav_msgs.msg import Path

@@ -15,9 +15,9 @@ from aionode.gateway.foxglove import frames
 from aionode.gateway.foxglove.channels import Channels
 from aionode.gateway.foxglove.parameters import Parameters
 from aionode.gateway.foxglove.playback import Playback
-from aionode.gateway.session.client_json import decoded
+from aionode.gateway.session.encoding.client_json import decoded
+from aionode.gateway.session.encoding.values import json_of
 from aionode.gateway.session.lanes import Lanes
-from aionode.gateway.session.values import json_of
 from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:

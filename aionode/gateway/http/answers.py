@@ -17,7 +17,7 @@ from aionode import errors
 from aionode.errors import AionodeError, RefusedError
 from aionode.fastapi import watching
 from aionode.gateway.server.door import STATUS
-from aionode.gateway.session.client_json import decoded
+from aionode.gateway.session.encoding.client_json import decoded
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, AsyncIterator, Awaitable, Callable

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
-from aionode.gateway.session.image import IMAGE_TYPES
+from aionode.gateway.session.encoding.image import IMAGE_TYPES
 from aionode.message import FieldType, Message, fields, json_schema, type_name
 
 if TYPE_CHECKING:

@@ -42,7 +42,7 @@ from aionode.gateway.http.openapi import openapi
 from aionode.gateway.http.parameters import set_parameter, show_parameters
 from aionode.gateway.http.topics import answer_topic
 from aionode.gateway.policy.identity import Identity
-from aionode.gateway.session.values import json_of
+from aionode.gateway.session.encoding.values import json_of
 from aionode.node import Node
 
 if TYPE_CHECKING:

@@ -18,15 +18,15 @@ from aionode.gateway.http.answers import (
     event,
     json_response,
 )
-from aionode.gateway.session.image import BOUNDARY, IMAGE_TYPES, Form, part_of, picture_of
-from aionode.gateway.session.large_json import prepare_json
-from aionode.gateway.session.values import json_of
+from aionode.gateway.session.encoding.image import BOUNDARY, IMAGE_TYPES, Form, part_of, picture_of
+from aionode.gateway.session.encoding.large_json import prepare_json
+from aionode.gateway.session.encoding.values import json_of
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator
 
+    from aionode.gateway.session.encoding.image import Picture
     from aionode.gateway.session.feed import Received
-    from aionode.gateway.session.image import Picture
     from aionode.gateway.session.outbox import Frame, Outbox
 
 __all__ = ["answer_topic"]

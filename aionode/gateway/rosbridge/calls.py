@@ -15,8 +15,8 @@ from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway.rosbridge import rosapi as _rosapi
 from aionode.gateway.rosbridge.link import raw_id
 from aionode.gateway.rosbridge.request import id_of, number, text, values
-from aionode.gateway.session.client_json import type_text
-from aionode.gateway.session.values import json_of
+from aionode.gateway.session.encoding.client_json import type_text
+from aionode.gateway.session.encoding.values import json_of
 
 if TYPE_CHECKING:
     from aionode.action import ClientGoalHandle

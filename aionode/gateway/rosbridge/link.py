@@ -8,7 +8,7 @@ import msgspec
 
 from aionode.errors import MessageError
 from aionode.gateway.rosbridge.request import id_of
-from aionode.gateway.session.frames import Fragmented, op_frame
+from aionode.gateway.session.encoding.frames import Fragmented, op_frame
 
 if TYPE_CHECKING:
     from aionode.gateway.session.session import Session

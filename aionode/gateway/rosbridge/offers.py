@@ -12,8 +12,8 @@ import msgspec
 from aionode._process.concurrency import checkpoint
 from aionode.errors import AionodeError, MessageError, ServiceError
 from aionode.gateway.rosbridge.request import full_name, optional_text, text, values
-from aionode.gateway.session.client_json import type_text
-from aionode.gateway.session.values import json_of
+from aionode.gateway.session.encoding.client_json import type_text
+from aionode.gateway.session.encoding.values import json_of
 
 if TYPE_CHECKING:
     from aionode.action import ServerGoalHandle

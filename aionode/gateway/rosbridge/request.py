@@ -10,7 +10,7 @@ import msgspec
 
 from aionode.clock import Duration
 from aionode.errors import MessageError
-from aionode.gateway.session.client_json import decoded, shown
+from aionode.gateway.session.encoding.client_json import decoded, shown
 from aionode.qos import (
     DurabilityPolicy,
     HistoryPolicy,

@@ -16,8 +16,8 @@ from aionode._process.concurrency import checkpoint
 from aionode.errors import AionodeError, InterfaceNotFoundError, MessageError
 from aionode.gateway.rosbridge.request import full_name
 from aionode.gateway.rosbridge.rosapi_types import full_text, type_definitions
-from aionode.gateway.session.client_json import decoded, shown
-from aionode.gateway.session.values import stamp
+from aionode.gateway.session.encoding.client_json import decoded, shown
+from aionode.gateway.session.encoding.values import stamp
 from aionode.graph import EndpointKind
 from aionode.interfaces import interface_names
 

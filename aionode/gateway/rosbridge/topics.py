@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway.rosbridge.request import id_of, number, profile, text, values
-from aionode.gateway.session.client_json import type_text
-from aionode.gateway.session.frames import (
+from aionode.gateway.session.encoding.client_json import type_text
+from aionode.gateway.session.encoding.frames import (
     Fragmented,
     cbor_frame,
     cbor_raw_frame,
@@ -20,10 +20,10 @@ from aionode.gateway.session.frames import (
     png_frame,
     png_frame_in_turns,
 )
-from aionode.gateway.session.large_json import pieces_of
+from aionode.gateway.session.encoding.large_json import pieces_of
+from aionode.gateway.session.encoding.values import json_of
 from aionode.gateway.session.outbox import LongFrame
 from aionode.gateway.session.refusals import Refusal
-from aionode.gateway.session.values import json_of
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 if TYPE_CHECKING:

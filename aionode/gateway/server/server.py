@@ -24,7 +24,7 @@ from aionode._process.socket_queue import queued_bytes
 from aionode.clock import S_TO_NS
 from aionode.gateway.server.outgoing import Framing, Outgoing
 from aionode.gateway.server.portions import Portions
-from aionode.gateway.session.frames import Fragmented
+from aionode.gateway.session.encoding.frames import Fragmented
 from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.robot import Bucket
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from starlette.websockets import WebSocketDisconnect
 
-from aionode.gateway.session.frames import Fragmented
+from aionode.gateway.session.encoding.frames import Fragmented
 from aionode.gateway.session.refusals import Refusal
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ import msgspec
 
 from aionode._process.concurrency import run_in_thread
 from aionode.clock import S_TO_NS
-from aionode.gateway.session.client_json import shown
+from aionode.gateway.session.encoding.client_json import shown
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import Message, fields
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Final, Literal, Protocol, TypeAlias
 from aionode._process.concurrency import checkpoint, run_in_thread
 from aionode.clock import S_TO_NS
 from aionode.errors import InterfaceNotFoundError, MessageError, RefusedError
-from aionode.gateway.session.client_json import is_large
+from aionode.gateway.session.encoding.client_json import is_large
+from aionode.gateway.session.encoding.values import from_json
 from aionode.gateway.session.outbox import Outbox
 from aionode.gateway.session.refusals import Refusal
-from aionode.gateway.session.values import from_json
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS
 from aionode.message import Message, fields
 from aionode.names import is_hidden, validate_full_topic_name

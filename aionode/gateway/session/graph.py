@@ -12,7 +12,7 @@ import msgspec
 
 from aionode.errors import AionodeError, MessageError, NodeNameNonExistentError, ServiceError
 from aionode.gateway.session.base import SessionBase
-from aionode.gateway.session.client_json import check_items
+from aionode.gateway.session.encoding.client_json import check_items
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.parameter import Parameter, ParameterType
 from aionode.parameter_client import AsyncParameterClient

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import InterfaceNotFoundError
-from aionode.gateway.session.client_json import type_text
 from aionode.gateway.session.command import Commands
+from aionode.gateway.session.encoding.client_json import type_text
 from aionode.gateway.session.feed import Feeds
 from aionode.gateway.session.goal_owners import GoalOwners
 from aionode.gateway.session.refusals import Refusals

@@ -12,12 +12,12 @@ from aionode.engine.wire import cdr
 from aionode.errors import AionodeError, RefusedError
 from aionode.gateway.session.base import HAS_WAITED, SessionBase
 from aionode.gateway.session.command import check_age
+from aionode.gateway.session.encoding.large_json import prepare_json
+from aionode.gateway.session.encoding.values import json_of
 from aionode.gateway.session.feed import Received
-from aionode.gateway.session.large_json import prepare_json
 from aionode.gateway.session.pacing import Pacing
 from aionode.gateway.session.preparing import Preparing, prepared
 from aionode.gateway.session.refusals import Refusal
-from aionode.gateway.session.values import json_of
 from aionode.message import Message
 from aionode.qos import DurabilityPolicy, QoSProfile
 

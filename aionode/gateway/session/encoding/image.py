@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from aionode import image
 from aionode.errors import MessageError
-from aionode.gateway.session.eight_bits import eight_bits
+from aionode.gateway.session.encoding.eight_bits import eight_bits
 from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 import msgspec
 
 from aionode._process.concurrency import checkpoint
-from aionode.gateway.session.values import ENCODER, numbered_value
+from aionode.gateway.session.encoding.values import ENCODER, numbered_value
 from aionode.message import FieldType, Message, fields
 
 if TYPE_CHECKING:

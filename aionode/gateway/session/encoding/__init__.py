@@ -1,0 +1,1 @@
+"""Messages as clients send and get them: JSON, CBOR, and images as pictures."""
