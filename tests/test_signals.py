@@ -6,16 +6,13 @@ import asyncio
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time  # noqa: TID251  # how long a process takes to end is what is tested
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
 import aionode
-from aionode._process.sudden_end import is_sending
 from tests.support.program import Program
 
 pty = pytest.importorskip("pty", reason="pseudo-terminals are of Unix")
@@ -199,7 +196,8 @@ def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
     steps = []
     _sudden_end.STOPS.append(lambda: print(steps[-1], flush=True))
 
-    names = {"__name__": "aionode.engine.transport.made_up", "signal": signal, "steps": steps}
+    _sudden_end.mark_sending("made_up")
+    names = {"__name__": "made_up.socket", "signal": signal, "steps": steps}
     exec('''
     def send():
         steps.append("sending")
@@ -222,22 +220,6 @@ def test_a_second_signal_within_a_transport_lets_it_finish_its_step() -> None:
     with Program(SOON, body) as program:
         status, out, _ = program.end()
     assert (status, out) == (130, "sent\n")
-
-
-def called_in(module: str, call: object) -> object:
-    """Return what `call` returns when a function of a module calls it."""
-    made = ModuleType(module)
-    exec("def run(call):\n    return call()", vars(made))  # noqa: S102  # a frame of that module
-    return made.run(call)
-
-
-def test_a_callback_that_a_transport_has_called_is_not_sending() -> None:
-    """It may block for any time, and the connection is at rest."""
-    inside = lambda: is_sending(sys._getframe())  # noqa: E731
-
-    assert not is_sending(sys._getframe())
-    assert not called_in("aionode.engine.transport.link", inside)
-    assert called_in("aionode.engine.transport.link", lambda: called_in("json", inside)) is False
 
 
 def test_the_second_signal_does_not_wait_for_a_reader_of_stderr() -> None:

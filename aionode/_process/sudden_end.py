@@ -32,7 +32,15 @@ from aionode.clock import perf_ns
 if TYPE_CHECKING:
     from types import FrameType
 
-__all__ = ["SENDS", "STOPS", "LastMessages", "is_sending", "print_error", "start_thread"]
+__all__ = [
+    "SENDS",
+    "STOPS",
+    "LastMessages",
+    "is_sending",
+    "mark_sending",
+    "print_error",
+    "start_thread",
+]
 
 LIMIT_NS: Final = 200_000_000
 """Longest time that sending takes, in nanoseconds."""
@@ -58,8 +66,21 @@ They are called in the main thread, whose event loop stands still, and return wh
 such as Zenoh's, need the rest of the time.
 """
 
-LIBRARY: Final = sys.stdlib_module_names | {"aionode", "uvloop"}
-SENDING: Final = ("aionode.endpoints", "aionode.engine.transport")
+LIBRARY: Final = sys.stdlib_module_names | {"aionode", "rclpy", "uvloop"}
+"""The code between a callback and the transport that has called it."""
+
+SENDING: Final[list[str]] = []
+"""The packages of publishers and transports, which say so themselves: see `mark_sending`."""
+
+
+def mark_sending(package: str) -> None:
+    """Have no message sent from a signal handler that interrupts the modules of `package`.
+
+    Its own ``__init__`` says so, and keeps saying it wherever the package moves. It is for code
+    that a signal can leave in the middle of a message: between the number of a message and its
+    bytes, or with a part of a frame in a socket.
+    """
+    SENDING.append(f"{package}.")
 
 
 def is_sending(frame: FrameType | None) -> bool:
@@ -70,7 +91,7 @@ def is_sending(frame: FrameType | None) -> bool:
     """
     while frame is not None:
         module = frame.f_globals.get("__name__", "aionode")  # generated code has no name
-        if module.startswith(SENDING):
+        if f"{module}.".startswith(tuple(SENDING)):
             return True
         if module.partition(".")[0] not in LIBRARY:
             return False

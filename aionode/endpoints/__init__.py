@@ -2,3 +2,7 @@
 
 They handle typed messages, and reach transports only through `aionode.transport.base`.
 """
+
+from aionode._process.sudden_end import mark_sending
+
+mark_sending(__name__)
