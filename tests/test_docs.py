@@ -244,6 +244,21 @@ def exists(page: Path, target: str, anchor: str) -> bool:
     return file.exists() and (not anchor or anchor in anchors(file))
 
 
+def test_each_decision_has_a_line_in_the_index() -> None:
+    """Whoever asks for a reason searches one page, and not a dozen."""
+    folder = ROOT / "docs" / "decisions"
+    index = (folder / "index.md").read_text(encoding="utf-8")
+    missing = [
+        f"{page.name}: {match['text']}"
+        for page in sorted(folder.glob("*.md"))
+        for match in HEADING.finditer(FENCED.sub("", page.read_text(encoding="utf-8")))
+        if page.name != "index.md" and match[0].startswith("## ")
+        if f"[{match['text']}]({page.name}#" not in index
+    ]
+
+    assert missing == []
+
+
 def anchors(page: Path) -> set[str]:
     """Return the anchors of a page's headings, as GitHub and MyST make them."""
     text = FENCED.sub("", page.read_text(encoding="utf-8"))
