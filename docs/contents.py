@@ -14,6 +14,10 @@ from pathlib import Path
 from types import FunctionType, ModuleType
 from typing import Any, Final
 
+from aionode._distribution import DISTRIBUTIONS
+from aionode.idl._distribution_differences import differences
+from aionode.interfaces import KINDS, interface_names, shipped_packages
+
 ROOT: Final = Path(__file__).parent.parent
 DIRECTIVE: Final = re.compile(
     r"^\.\. auto(?P<kind>\w+):: (?P<name>[\w.]+).*\n(?P<options>(?:   :.*\n)*)", re.MULTILINE
@@ -21,6 +25,9 @@ DIRECTIVE: Final = re.compile(
 BEGIN: Final = "<!-- contents, for readers of this file: make quotes -->"
 END: Final = "<!-- end of contents -->"
 LIST: Final = re.compile(rf"\n*{re.escape(BEGIN)}.*?{re.escape(END)}\n", re.DOTALL)
+TYPES: Final = re.compile(
+    r"(?P<begin><!-- interfaces, .*? -->\n).*(?=<!-- end of interfaces -->)", re.DOTALL
+)
 HEADING: Final = (
     "In short, with the file of each name.\nIts docstring there says the rest, and `make docs` "
     "shows all of them on this page.\n"
@@ -34,12 +41,32 @@ def without_contents(page: str) -> str:
 
 def with_contents(page: str) -> str:
     """Return the text of a page of the reference with its list as the docstrings have it now."""
-    text = without_contents(page)
+    text = TYPES.sub(lambda match: f"{match['begin']}{shipped_types()}\n", without_contents(page))
     lines = [line for match in DIRECTIVE.finditer(text) for line in lines_of(match)]
     lines = list(dict.fromkeys(lines))
     if not lines:
         return text
     return "\n".join([text.rstrip("\n"), "", BEGIN, "", HEADING, *lines, "", END, ""])
+
+
+def shipped_types() -> str:
+    """Return the sections of the shipped packages: what each is for, and its types."""
+    lines: list[str] = []
+    for package in sorted(shipped_packages()):
+        sentence = first_sentence(import_module(f"aionode.interfaces.{package}"))
+        purpose = sentence.partition(": ")[2]
+        lines += ["", f"## {package}", "", f"{purpose[:1].upper()}{purpose[1:]}", ""]
+        for kind in KINDS:
+            start = f"{package}/{kind}/"
+            found = [name.removeprefix(start) for name in interface_names(package) if start in name]
+            if found:
+                lines.append(f"- {kind}: {', '.join(f'`{name}`' for name in found)}")
+        for distribution in DISTRIBUTIONS:
+            names = [name for name in differences(distribution) if name.startswith(f"{package}/")]
+            if names and distribution != "rolling":
+                texts = ", ".join(f"`{name.partition('/')[2]}`" for name in names)
+                lines.append(f"- others in {distribution.title()}: {texts}")
+    return "\n".join([*lines, ""])
 
 
 def lines_of(match: re.Match[str]) -> list[str]:

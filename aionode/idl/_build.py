@@ -17,7 +17,7 @@ from aionode.idl._definition import (
 )
 from aionode.idl._omg import messages_in
 from aionode.idl._parser import BUILTINS, LARGEST_TEXT, PRIMITIVES, parse
-from aionode.interfaces import get_interface
+from aionode.interfaces import get_interface, types_of
 from aionode.message import (
     ActionType,
     FieldType,
@@ -216,11 +216,11 @@ def existing(typename: str, built: type[Interface]) -> type[Interface] | None:
 
     So a workspace with its own std_msgs can be used together with the shipped one.
     """
-    try:
-        known: type[Interface] = get_interface(typename)
-    except InterfaceNotFoundError:
+    package, kind, name = split_type_name(typename)
+    known = types_of(package, kind).get(name)
+    if known is None:
         return None
-    halves = HALVES[split_type_name(typename)[1]]
+    halves = HALVES[kind]
     pairs: Any = ((getattr(built, h), getattr(known, h)) if h else (built, known) for h in halves)
     if all(fields(a) == fields(b) and constants(a) == constants(b) for a, b in pairs):
         return known

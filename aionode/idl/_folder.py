@@ -236,9 +236,9 @@ def checked_stem(file: Path) -> str:
 
 
 def make_importable(package: str, loaded: Interfaces) -> None:
-    """Make a loaded package importable, unless aionode ships one of that name."""
+    """Make a loaded package importable, unless aionode ships one of that name and release."""
     name = f"aionode.interfaces.{package}"
-    if package in aionode.interfaces.shipped_packages():
+    if package in aionode.interfaces.shipped_packages() - aionode.interfaces.VERSIONED:
         return
     module = getattr(loaded, package)
     module.__name__ = name

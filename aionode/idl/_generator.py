@@ -225,7 +225,7 @@ class Module:
         if plain:
             return exact
         if type_.form == "list":
-            seen = f"list[{element if type_.nested else self.builtin('str')}]"
+            seen = f"{self.builtin('list')}[{element if type_.nested else self.builtin('str')}]"
         else:
             seen = self.helper(
                 "Bytes" if type_.form == "bytes" else NUMBERS.get(type_.kind, "Ints")

@@ -3,7 +3,7 @@
 They are read when a package is first imported, and not before. A package that aionode does not ship
 comes from there as a whole. Of a shipped one, the types that are defined differently there do, so
 that their type hashes are those of the nodes of that system. Without a sourced ROS 2, ROS_DISTRO
-names the distribution whose few differences `_distribution_differences.py` knows.
+names the distribution whose differences `_distribution_differences.py` knows.
 
 `aionode.interfaces` calls this module while it imports a package.
 """
@@ -19,7 +19,7 @@ from typing import Any
 from aionode.errors import IdlError
 from aionode.idl._build import Builder
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
-from aionode.idl._distribution_differences import DIFFERENCES
+from aionode.idl._distribution_differences import differences
 from aionode.idl._folder import PACKAGE_NAME, TYPE_NAME, read
 from aionode.idl._parser import parse
 
@@ -48,7 +48,7 @@ def installed_text(typename: str) -> str | None:
     file = installed_file(typename)
     if file is not None:
         return read(file)
-    return DIFFERENCES.get(os.environ.get("ROS_DISTRO", ""), {}).get(typename)
+    return differences(os.environ.get("ROS_DISTRO", "")).get(typename)
 
 
 def installed_names(package: str, kind: str) -> Iterator[str]:
@@ -62,7 +62,7 @@ def installed_names(package: str, kind: str) -> Iterator[str]:
     }
     names.update(
         typename.rpartition("/")[2]
-        for typename in DIFFERENCES.get(os.environ.get("ROS_DISTRO", ""), {})
+        for typename in differences(os.environ.get("ROS_DISTRO", ""))
         if typename.startswith(f"{package}/{kind}/")
     )
     return (f"{package}/{kind}/{name}" for name in sorted(names))

@@ -22,10 +22,18 @@ from aionode.errors import IdlError
 from aionode.idl._build import Builder, existing
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
 from aionode.idl._folder import FileTexts, checked_stem, package_of, refuse
-from aionode.interfaces import shipped_packages
+from aionode.interfaces import VERSIONED, shipped_packages
 from aionode.message import Interface
 
-__all__ = ["NamedInterfaces", "add_workspace", "found", "named", "not_found", "packages"]
+__all__ = [
+    "NamedInterfaces",
+    "add_workspace",
+    "found",
+    "has_sources",
+    "named",
+    "not_found",
+    "packages",
+]
 
 VARIABLE = "AIONODE_INTERFACES"
 """The variable with folders of definitions, in the form of PATH."""
@@ -101,7 +109,8 @@ class NamedBuilder(Builder):
 
     def existing(self, typename: str, built: type[Interface]) -> type[Interface] | None:
         """Return the shipped class of this name, if its definition is the same."""
-        is_shipped = split_type_name(typename)[0] in shipped_packages()
+        package = split_type_name(typename)[0]
+        is_shipped = package in shipped_packages() and package not in VERSIONED
         return existing(typename, built) if is_shipped else None
 
 
@@ -174,6 +183,11 @@ def add_workspace(package: str) -> bool:
         return False
     NAMED.add(source)
     return bool(NAMED.names(package))
+
+
+def has_sources(package: str) -> bool:
+    """Return whether the folders or the workspace define types of a package."""
+    return bool(named().names(package)) or add_workspace(package)
 
 
 def defines(package: Path) -> bool:

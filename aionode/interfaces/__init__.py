@@ -10,7 +10,7 @@ Packages with definitions of their own can be imported here as well, without a b
 and in the workspace around the program: the folder ``src``, or else the repository, that it is in.
 
 Types that the sourced ROS 2 defines differently are its own. ``ROS_DISTRO`` alone brings the known
-differences.
+differences. Of the shipped packages in `VERSIONED`, those of a folder or of the workspace come first.
 """
 
 from __future__ import annotations
@@ -273,6 +273,29 @@ FIXED = frozenset(
 )
 """Packages that every node needs, whose definitions are the same in all distributions."""
 
+VERSIONED = frozenset(
+    {
+        "ackermann_msgs",
+        "control_msgs",
+        "controller_manager_msgs",
+        "dwb_msgs",
+        "geographic_msgs",
+        "irobot_create_msgs",
+        "mavros_msgs",
+        "moveit_msgs",
+        "nav2_msgs",
+        "nav_2d_msgs",
+        "object_recognition_msgs",
+        "octomap_msgs",
+        "px4_msgs",
+        "rosapi_msgs",
+        "rosbridge_msgs",
+        "tf2_web_republisher_interfaces",
+        "vision_msgs",
+    }
+)
+"""Shipped packages with releases of their own, one of which a robot has among its sources."""
+
 
 def is_sourced() -> bool:
     """Whether definitions besides the shipped ones are to be looked for."""
@@ -292,7 +315,7 @@ class DefinitionFinder(MetaPathFinder):
         package, _, kind = fullname.removeprefix(f"{__name__}.").partition(".")
         if not fullname.startswith(f"{__name__}.") or package in FIXED:
             return None
-        if package not in shipped_packages():
+        if package not in shipped_packages() or (package in VERSIONED and has_sources(package)):
             return found_elsewhere(fullname, package, kind)
         if not is_sourced():
             return None
@@ -303,6 +326,18 @@ class DefinitionFinder(MetaPathFinder):
             return shipped
         loader = None if shipped is None else shipped.loader
         return ModuleSpec(fullname, InstalledTypes(installed, package, kind, loader))
+
+
+def has_sources(package: str) -> bool:
+    """Return whether a folder that was named, or the workspace, defines a package."""
+    from aionode._packages import here  # for the few packages that may be in a workspace
+
+    module = "aionode.idl.named"  # by name: it is made of this package; and it loads parsers
+    is_named = module in sys.modules or os.environ.get("AIONODE_INTERFACES")
+    if not is_named and package not in here().sources():
+        return False
+    has: bool = import_module(module).has_sources(package)
+    return has
 
 
 def found_elsewhere(fullname: str, package: str, kind: str) -> ModuleSpec | None:

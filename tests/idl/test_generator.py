@@ -63,6 +63,7 @@ uint8[<=9] a_name_so_long_that_the_line_has_to_be_broken [10, 20, 30, 40, 50, 60
 other_msgs/Point[] points_of_another_package
 Point own_point
 std_msgs/Header header
+string[] list
 """
 
 

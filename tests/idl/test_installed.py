@@ -15,13 +15,13 @@ import pytest
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import InterfaceNotFoundError
 from aionode.idl import _installed as installed
-from aionode.idl._distribution_differences import DIFFERENCES
+from aionode.idl._distribution_differences import differences
 from aionode.interfaces import get_interface
 from aionode.interfaces.sensor_msgs import msg as sensor_msgs
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.message import fields
 
-HUMBLE_RANGE = DIFFERENCES["humble"]["sensor_msgs/msg/Range"]
+HUMBLE_RANGE = differences("humble")["sensor_msgs/msg/Range"]
 
 
 @pytest.fixture

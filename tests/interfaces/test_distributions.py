@@ -5,6 +5,11 @@
 
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,8 +18,10 @@ from rosbags.typesys import Stores, get_typestore
 from aionode._distribution import DEFAULT
 from aionode.engine.wire.typehash import type_hash
 from aionode.idl import define
-from aionode.idl._distribution_differences import DIFFERENCES
-from aionode.interfaces import get_interface, get_message
+from aionode.idl._build import Builder
+from aionode.idl._distribution_differences import differences
+from aionode.idl._parser import parse
+from aionode.interfaces import VERSIONED, get_interface, get_message
 from aionode.message import FieldType, fields, type_name
 from tests.support.strategies import shipped_types
 
@@ -58,15 +65,20 @@ MISSING: dict[str, set[str]] = {
         "geometry_msgs/msg/Pose2D",
     },
 }
-ELSEWHERE = (
-    "ackermann_msgs/",
-    "example_interfaces/",
-    "geographic_msgs/",
-    "test_msgs/",
-    "turtlesim/",
-    "vision_msgs/",
-)
+ELSEWHERE = {*VERSIONED, "example_interfaces", "test_msgs", "turtlesim"}
 """Packages that rosbags does not carry."""
+
+
+VECTORS = Path(__file__).parents[1] / "vectors" / "interface_hashes.json"
+HASHES: dict[str, dict[str, str]] = json.loads(VECTORS.read_text(encoding="utf-8"))
+"""For each distribution, how the hashes of types begin after RIHS01_."""
+
+
+def classes_of(distribution: str) -> dict[str, Any]:
+    """Return the classes of the types that differ in a distribution."""
+    texts = {name: parse(name, text) for name, text in differences(distribution).items()}
+    builder = Builder(texts, reuse=False)
+    return {name: builder.build(name) for name in texts}
 
 
 def as_text(node: Any) -> str:
@@ -90,7 +102,7 @@ def described(name: str) -> list[tuple[str, str]]:
 def test_the_shipped_types_are_those_of_ros_but_for_what_the_docs_say(distribution: str) -> None:
     """An independent source: other people's copy of ROS's definitions."""
     known = get_typestore(Stores[distribution]).fielddefs
-    names = [n for n in shipped_types() if "/msg/" in n and not n.startswith(ELSEWHERE)]
+    names = [n for n in shipped_types() if "/msg/" in n and n.split("/")[0] not in ELSEWHERE]
     missing = {name for name in names if name not in known}
     differing = set()
     for name in set(names) - missing:
@@ -113,7 +125,7 @@ def test_the_shipped_types_are_those_of_ros_but_for_what_the_docs_say(distributi
 def test_what_lyrical_has_changed_for_bags_has_its_hashes(typename: str, begin: str) -> None:
     """They are those of code that rosidl has generated from Lyrical's rosbag2."""
     name = f"rosbag2_interfaces/{typename}"
-    text = DIFFERENCES["lyrical"].get(name)
+    text = differences("lyrical").get(name)
     found: Any = get_interface(name) if text is None else define(name, text)
 
     assert type_hash(found).startswith(f"RIHS01_{begin}")
@@ -122,10 +134,48 @@ def test_what_lyrical_has_changed_for_bags_has_its_hashes(typename: str, begin: 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy", "kilted", "lyrical", "rolling"])
 def test_each_difference_is_one_to_what_is_shipped(distribution: str) -> None:
     """The shipped types are those of one distribution, which so has no differences."""
-    for name, text in DIFFERENCES.get(distribution, {}).items():
-        defined: Any = define(name, text)
-        assert type_hash(defined) != type_hash(get_interface(name))
-    assert DEFAULT not in DIFFERENCES
+    shipped = shipped_types()
+    for name, cls in classes_of(distribution).items():
+        assert name not in shipped or type_hash(cls) != type_hash(shipped[name]), name
+    assert not differences(DEFAULT)
+
+
+@pytest.mark.parametrize("distribution", [DEFAULT, "humble", "kilted", "lyrical"])
+def test_types_of_robots_have_the_hashes_that_rosidl_computes(distribution: str) -> None:
+    """Those of rosidl's own code for the definitions in the packages' repositories.
+
+    For other distributions they are those of the types that differ, of what contains one of them,
+    and of the types that only they have.
+    """
+    known = HASHES[distribution]
+    classes = shipped_types() if distribution == DEFAULT else classes_of(distribution)
+
+    assert known == {name: type_hash(cls)[7:23] for name, cls in classes.items() if name in known}
+    if distribution != DEFAULT:
+        assert set(classes) == set(known)
+
+
+def test_the_distribution_that_is_named_brings_its_goals_and_new_types() -> None:
+    """A program for Nav2 of Lyrical, on a machine without ROS."""
+    program = (
+        "from aionode.interfaces.nav2_msgs.msg import TrackingFeedback\n"
+        "from aionode.interfaces.nav2_msgs.srv import AddShapes\n"
+        "from aionode.interfaces.nav2_msgs.action import FollowPath\n"
+        "from aionode.message import fields\n"
+        "print(fields(AddShapes.Request)[0].type.nested.__name__)\n"
+        "print(fields(FollowPath.Feedback)[-1].type)"
+    )
+    environ = {**os.environ, "ROS_DISTRO": "lyrical"}
+
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", program],
+        env=environ,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.stdout.split() == ["CircleObject", "nav2_msgs/TrackingFeedback"], done.stderr
 
 
 @pytest.mark.parametrize(

@@ -81,6 +81,70 @@ def test_a_program_finds_the_workspace_that_it_lies_in(workspace: Path, tmp_path
     assert done.stdout == "0.05\n", done.stderr
 
 
+OWN_RELEASE = """\
+import sys
+import aionode.rclpy
+
+aionode.rclpy.install()
+from px4_msgs.msg import VehicleStatus as Theirs
+from aionode.interfaces.px4_msgs.msg import VehicleStatus
+from aionode.interfaces import interface_names
+from aionode.message import fields
+
+print([field.name for field in fields(VehicleStatus)], interface_names("px4_msgs"))
+print(list(Theirs.get_fields_and_field_types()))
+"""
+
+
+@pytest.mark.parametrize("named", [False, True])
+def test_the_release_that_a_robot_has_comes_before_the_shipped_one(
+    workspace: Path, tmp_path: Path, named: bool
+) -> None:
+    """PX4 and others change their messages between releases, and a robot has its sources."""
+    package = (tmp_path / "other" if named else workspace / "src") / "px4_msgs"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>px4_msgs</name></package>")
+    (package / "msg/VehicleStatus.msg").write_text("uint64 timestamp\nuint8 of_release\n")
+    program = (tmp_path if named else workspace / "src") / "program.py"
+    program.write_text(OWN_RELEASE)
+    folders = {"AIONODE_INTERFACES": str(package)} if named else {}
+
+    done = subprocess.run(
+        [sys.executable, str(program)],
+        cwd=tmp_path,
+        env={**os.environ, "AIONODE_INTERFACES": "", **folders},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    assert done.stdout.splitlines() == [
+        "['timestamp', 'of_release'] ('px4_msgs/msg/VehicleStatus',)",
+        "['timestamp', 'of_release']",
+    ], done.stderr
+
+
+def test_a_loaded_folder_replaces_the_shipped_release(
+    workspace: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As an import after `load_interfaces` gives what was loaded for packages not shipped."""
+    import aionode.interfaces
+
+    package = workspace / "src" / "octomap_msgs"
+    (package / "srv").mkdir(parents=True)
+    (package / "srv/GetOctomap.srv").write_text("string name\n---\n")
+    for module in ("", ".msg", ".srv"):
+        monkeypatch.delitem(sys.modules, f"aionode.interfaces.octomap_msgs{module}", raising=False)
+    monkeypatch.delattr(aionode.interfaces, "octomap_msgs", raising=False)
+
+    loaded = load_interfaces(package)["octomap_msgs/srv/GetOctomap"]
+
+    assert importlib.import_module("aionode.interfaces.octomap_msgs.srv").GetOctomap is loaded
+    for module in ("", ".msg", ".srv"):
+        sys.modules.pop(f"aionode.interfaces.octomap_msgs{module}", None)
+    delattr(aionode.interfaces, "octomap_msgs")
+
+
 def test_a_package_that_is_nowhere_says_what_to_do(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

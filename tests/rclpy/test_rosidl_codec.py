@@ -51,7 +51,7 @@ def test_a_new_message_is_decoded_into_what_its_constructor_makes() -> None:
 
         again = decode(type(fresh), encode(fresh))
 
-        assert again == fresh
+        assert encode(again) == encode(fresh)  # a float32 is rounded: 0.3
         assert again._check_fields == fresh._check_fields
         for name in fresh.get_fields_and_field_types():
             assert type(getattr(again, name)) is type(getattr(fresh, name)), (cls, name)

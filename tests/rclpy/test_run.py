@@ -297,14 +297,14 @@ def test_nothing_is_imported_that_a_program_does_not_use(folder: Path) -> None:
 
 def test_a_missing_package_of_ros_says_what_to_do(folder: Path) -> None:
     """At the end of the traceback, and below a cause, too."""
-    (folder / "own.py").write_text("import rclpy\nfrom nav2_msgs.action import NavigateToPose\n")
+    (folder / "own.py").write_text("import rclpy\nfrom grid_map_msgs.msg import GridMap\n")
 
     done = run(folder, "own.py")
 
     *_, error, hint = done.stderr.splitlines()
     assert done.returncode == 1
-    assert error == "ModuleNotFoundError: No module named 'nav2_msgs'"
-    assert hint.startswith("aionode.rclpy: nav2_msgs is a package of messages that aionode does")
+    assert error == "ModuleNotFoundError: No module named 'grid_map_msgs'"
+    assert hint.startswith("aionode.rclpy: grid_map_msgs is a package of messages that aionode")
     assert "aionode run --interfaces FOLDER PROGRAM" in hint
 
 
@@ -327,7 +327,7 @@ def test_a_name_that_a_package_of_aionode_does_not_have_is_shown_as_usual(folder
 
 def test_what_programs_import_is_listed_and_nothing_runs(folder: Path) -> None:
     """What is missing shows before anything moves."""
-    (folder / "own.py").write_text("from nav2_msgs.msg import Costmap\nprint('runs')\n")
+    (folder / "own.py").write_text("from slam_msgs.msg import Costmap\nprint('runs')\n")
 
     done = run(folder, "run", "--check", "program.py", "own.py", module="aionode")
 
@@ -337,7 +337,7 @@ def test_what_programs_import_is_listed_and_nothing_runs(folder: Path) -> None:
         "  helper        beside the program"[:32],
         "  std_msgs.msg  aionode",
         "own.py",
-        "  nav2_msgs.msg  missing: nav2_msgs"[:32],
+        "  slam_msgs.msg  missing: slam_msgs"[:32],
     ]
     assert run(folder, "--check", "program.py").returncode == 0
 

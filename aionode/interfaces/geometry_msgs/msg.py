@@ -44,12 +44,112 @@ __all__ = [
 ]
 
 
+class Point(Message, typename="geometry_msgs/msg/Point"):
+    """A point in space: coordinates in m."""
+
+    x: float64 = 0.0
+    y: float64 = 0.0
+    z: float64 = 0.0
+
+
+class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
+    """A rotation as a quaternion of length 1; without values it is no rotation at all."""
+
+    x: float64 = 0.0
+    y: float64 = 0.0
+    z: float64 = 0.0
+    w: float64 = 1.0
+
+
+class Pose(Message, typename="geometry_msgs/msg/Pose"):
+    """Where something is, in m, and how it is turned, as a unit quaternion."""
+
+    position: Point = DEFAULT
+    orientation: Quaternion = DEFAULT
+
+
+class PoseStamped(Message, typename="geometry_msgs/msg/PoseStamped"):
+    """A pose, with its time and coordinate frame."""
+
+    header: Header = DEFAULT
+    pose: Pose = DEFAULT
+
+
 class Vector3(Message, typename="geometry_msgs/msg/Vector3"):
     """A direction with a length, in the unit of what it is used for; a place is a Point."""
 
     x: float64 = 0.0
     y: float64 = 0.0
     z: float64 = 0.0
+
+
+class Transform(Message, typename="geometry_msgs/msg/Transform"):
+    """From one coordinate frame to another: `translation` in m, `rotation` as a unit quaternion."""
+
+    translation: Vector3 = DEFAULT
+    rotation: Quaternion = DEFAULT
+
+
+class Twist(Message, typename="geometry_msgs/msg/Twist"):
+    """A velocity: what ``/cmd_vel`` carries.
+
+    Attributes:
+        linear: In m/s; x is forward, y to the left, z up.
+        angular: In rad/s, about the same axes; a positive z turns left.
+    """
+
+    linear: Vector3 = DEFAULT
+    angular: Vector3 = DEFAULT
+
+
+class PointStamped(Message, typename="geometry_msgs/msg/PointStamped"):
+    """A point, in m, with its time and coordinate frame."""
+
+    header: Header = DEFAULT
+    point: Point = DEFAULT
+
+
+class TransformStamped(Message, typename="geometry_msgs/msg/TransformStamped"):
+    """Where the frame `child_frame_id` is, seen from the frame of the header, at the header's time.
+
+    Attributes:
+        header: Time, and the parent frame.
+        child_frame_id: The frame that is placed.
+        transform: Takes coordinates of the child frame to those of the parent frame, in m.
+    """
+
+    header: Header = DEFAULT
+    child_frame_id: str = ""
+    transform: Transform = DEFAULT
+
+
+class TwistStamped(Message, typename="geometry_msgs/msg/TwistStamped"):
+    """A velocity, in m/s and rad/s, with its time and coordinate frame."""
+
+    header: Header = DEFAULT
+    twist: Twist = DEFAULT
+
+
+class Wrench(Message, typename="geometry_msgs/msg/Wrench"):
+    """What pushes and turns a body: `force` in N, `torque` in N·m."""
+
+    force: Vector3 = DEFAULT
+    torque: Vector3 = DEFAULT
+
+
+class WrenchStamped(Message, typename="geometry_msgs/msg/WrenchStamped"):
+    """Force and torque, in N and N·m, with its time and coordinate frame."""
+
+    header: Header = DEFAULT
+    wrench: Wrench = DEFAULT
+
+
+class Pose2D(Message, typename="geometry_msgs/msg/Pose2D"):
+    """Where something is in a plane: `x` and `y` in m, `theta` in rad, counterclockwise."""
+
+    x: float64 = 0.0
+    y: float64 = 0.0
+    theta: float64 = 0.0
 
 
 class Accel(Message, typename="geometry_msgs/msg/Accel"):
@@ -110,27 +210,12 @@ class InertiaStamped(Message, typename="geometry_msgs/msg/InertiaStamped"):
     inertia: Inertia = DEFAULT
 
 
-class Point(Message, typename="geometry_msgs/msg/Point"):
-    """A point in space: coordinates in m."""
-
-    x: float64 = 0.0
-    y: float64 = 0.0
-    z: float64 = 0.0
-
-
 class Point32(Message, typename="geometry_msgs/msg/Point32"):
     """A point in space, in m, with 32 bits a coordinate: for many points, not for one."""
 
     x: float32 = 0.0
     y: float32 = 0.0
     z: float32 = 0.0
-
-
-class PointStamped(Message, typename="geometry_msgs/msg/PointStamped"):
-    """A point, in m, with its time and coordinate frame."""
-
-    header: Header = DEFAULT
-    point: Point = DEFAULT
 
 
 class Polygon(Message, typename="geometry_msgs/msg/Polygon"):
@@ -160,42 +245,11 @@ class PolygonStamped(Message, typename="geometry_msgs/msg/PolygonStamped"):
     polygon: Polygon = DEFAULT
 
 
-class Quaternion(Message, typename="geometry_msgs/msg/Quaternion"):
-    """A rotation as a quaternion of length 1; without values it is no rotation at all."""
-
-    x: float64 = 0.0
-    y: float64 = 0.0
-    z: float64 = 0.0
-    w: float64 = 1.0
-
-
-class Pose(Message, typename="geometry_msgs/msg/Pose"):
-    """Where something is, in m, and how it is turned, as a unit quaternion."""
-
-    position: Point = DEFAULT
-    orientation: Quaternion = DEFAULT
-
-
-class Pose2D(Message, typename="geometry_msgs/msg/Pose2D"):
-    """Where something is in a plane: `x` and `y` in m, `theta` in rad, counterclockwise."""
-
-    x: float64 = 0.0
-    y: float64 = 0.0
-    theta: float64 = 0.0
-
-
 class PoseArray(Message, typename="geometry_msgs/msg/PoseArray"):
     """Several poses of one time and coordinate frame."""
 
     header: Header = DEFAULT
     poses: Annotated[list[Pose], Sequence[Pose]] = DEFAULT
-
-
-class PoseStamped(Message, typename="geometry_msgs/msg/PoseStamped"):
-    """A pose, with its time and coordinate frame."""
-
-    header: Header = DEFAULT
-    pose: Pose = DEFAULT
 
 
 class PoseWithCovariance(Message, typename="geometry_msgs/msg/PoseWithCovariance"):
@@ -220,46 +274,6 @@ class QuaternionStamped(Message, typename="geometry_msgs/msg/QuaternionStamped")
 
     header: Header = DEFAULT
     quaternion: Quaternion = DEFAULT
-
-
-class Transform(Message, typename="geometry_msgs/msg/Transform"):
-    """From one coordinate frame to another: `translation` in m, `rotation` as a unit quaternion."""
-
-    translation: Vector3 = DEFAULT
-    rotation: Quaternion = DEFAULT
-
-
-class TransformStamped(Message, typename="geometry_msgs/msg/TransformStamped"):
-    """Where the frame `child_frame_id` is, seen from the frame of the header, at the header's time.
-
-    Attributes:
-        header: Time, and the parent frame.
-        child_frame_id: The frame that is placed.
-        transform: Takes coordinates of the child frame to those of the parent frame, in m.
-    """
-
-    header: Header = DEFAULT
-    child_frame_id: str = ""
-    transform: Transform = DEFAULT
-
-
-class Twist(Message, typename="geometry_msgs/msg/Twist"):
-    """A velocity: what ``/cmd_vel`` carries.
-
-    Attributes:
-        linear: In m/s; x is forward, y to the left, z up.
-        angular: In rad/s, about the same axes; a positive z turns left.
-    """
-
-    linear: Vector3 = DEFAULT
-    angular: Vector3 = DEFAULT
-
-
-class TwistStamped(Message, typename="geometry_msgs/msg/TwistStamped"):
-    """A velocity, in m/s and rad/s, with its time and coordinate frame."""
-
-    header: Header = DEFAULT
-    twist: Twist = DEFAULT
 
 
 class TwistWithCovariance(Message, typename="geometry_msgs/msg/TwistWithCovariance"):
@@ -300,17 +314,3 @@ class VelocityStamped(Message, typename="geometry_msgs/msg/VelocityStamped"):
     body_frame_id: str = ""
     reference_frame_id: str = ""
     velocity: Twist = DEFAULT
-
-
-class Wrench(Message, typename="geometry_msgs/msg/Wrench"):
-    """What pushes and turns a body: `force` in N, `torque` in N·m."""
-
-    force: Vector3 = DEFAULT
-    torque: Vector3 = DEFAULT
-
-
-class WrenchStamped(Message, typename="geometry_msgs/msg/WrenchStamped"):
-    """Force and torque, in N and N·m, with its time and coordinate frame."""
-
-    header: Header = DEFAULT
-    wrench: Wrench = DEFAULT

@@ -19,20 +19,11 @@ from aionode.message import DEFAULT, Ints, Message, Sequence, float32, int8, uin
 __all__ = ["Goals", "GridCells", "MapMetaData", "OccupancyGrid", "Odometry", "Path"]
 
 
-class Goals(Message, typename="nav_msgs/msg/Goals"):
-    """Poses to visit, in order."""
+class Path(Message, typename="nav_msgs/msg/Path"):
+    """Poses to pass, in order."""
 
     header: Header = DEFAULT
-    goals: Annotated[list[PoseStamped], Sequence[PoseStamped]] = DEFAULT
-
-
-class GridCells(Message, typename="nav_msgs/msg/GridCells"):
-    """Marked cells of a grid: their centers, and the width and height of each, in m."""
-
-    header: Header = DEFAULT
-    cell_width: float32 = 0.0
-    cell_height: float32 = 0.0
-    cells: Annotated[list[Point], Sequence[Point]] = DEFAULT
+    poses: Annotated[list[PoseStamped], Sequence[PoseStamped]] = DEFAULT
 
 
 class MapMetaData(Message, typename="nav_msgs/msg/MapMetaData"):
@@ -68,6 +59,22 @@ class OccupancyGrid(Message, typename="nav_msgs/msg/OccupancyGrid"):
     data: Annotated[Ints, Sequence[int8]] = DEFAULT
 
 
+class Goals(Message, typename="nav_msgs/msg/Goals"):
+    """Poses to visit, in order."""
+
+    header: Header = DEFAULT
+    goals: Annotated[list[PoseStamped], Sequence[PoseStamped]] = DEFAULT
+
+
+class GridCells(Message, typename="nav_msgs/msg/GridCells"):
+    """Marked cells of a grid: their centers, and the width and height of each, in m."""
+
+    header: Header = DEFAULT
+    cell_width: float32 = 0.0
+    cell_height: float32 = 0.0
+    cells: Annotated[list[Point], Sequence[Point]] = DEFAULT
+
+
 class Odometry(Message, typename="nav_msgs/msg/Odometry"):
     """Where a robot is and how fast it moves, by its own reckoning.
 
@@ -82,10 +89,3 @@ class Odometry(Message, typename="nav_msgs/msg/Odometry"):
     child_frame_id: str = ""
     pose: PoseWithCovariance = DEFAULT
     twist: TwistWithCovariance = DEFAULT
-
-
-class Path(Message, typename="nav_msgs/msg/Path"):
-    """Poses to pass, in order."""
-
-    header: Header = DEFAULT
-    poses: Annotated[list[PoseStamped], Sequence[PoseStamped]] = DEFAULT

@@ -63,6 +63,24 @@ __all__ = [
 ]
 
 
+class JointState(Message, typename="sensor_msgs/msg/JointState"):
+    """Where the joints of a robot are. The lists go together by index; one may be empty.
+
+    Attributes:
+        header: When it was measured.
+        name: Names of the joints.
+        position: In rad, or in m for a joint that slides.
+        velocity: In rad/s or m/s.
+        effort: In N·m or N.
+    """
+
+    header: Header = DEFAULT
+    name: Annotated[list[str], Sequence[str]] = DEFAULT
+    position: Annotated[Floats, Sequence[float64]] = DEFAULT
+    velocity: Annotated[Floats, Sequence[float64]] = DEFAULT
+    effort: Annotated[Floats, Sequence[float64]] = DEFAULT
+
+
 class BatteryState(Message, typename="sensor_msgs/msg/BatteryState"):
     """How full and how healthy a battery is. NaN stands for what is not measured.
 
@@ -124,6 +142,67 @@ class BatteryState(Message, typename="sensor_msgs/msg/BatteryState"):
     cell_temperature: Annotated[Floats, Sequence[float32]] = DEFAULT
     location: str = ""
     serial_number: str = ""
+
+
+class MultiDOFJointState(Message, typename="sensor_msgs/msg/MultiDOFJointState"):
+    """Where joints are that move along or about several axes; in m, rad, N and N·m."""
+
+    header: Header = DEFAULT
+    joint_names: Annotated[list[str], Sequence[str]] = DEFAULT
+    transforms: Annotated[list[Transform], Sequence[Transform]] = DEFAULT
+    twist: Annotated[list[Twist], Sequence[Twist]] = DEFAULT
+    wrench: Annotated[list[Wrench], Sequence[Wrench]] = DEFAULT
+
+
+class PointField(Message, typename="sensor_msgs/msg/PointField"):
+    """One value of each point of a PointCloud2.
+
+    Attributes:
+        name: Such as ``x`` or ``intensity``.
+        offset: Where it begins in a point, in bytes.
+        datatype: Type of number, one of the constants.
+        count: How many numbers there are.
+    """
+
+    INT8: ClassVar[uint8] = 1
+    UINT8: ClassVar[uint8] = 2
+    INT16: ClassVar[uint8] = 3
+    UINT16: ClassVar[uint8] = 4
+    INT32: ClassVar[uint8] = 5
+    UINT32: ClassVar[uint8] = 6
+    FLOAT32: ClassVar[uint8] = 7
+    FLOAT64: ClassVar[uint8] = 8
+
+    name: str = ""
+    offset: uint32 = 0
+    datatype: uint8 = 0
+    count: uint32 = 0
+
+
+class PointCloud2(Message, typename="sensor_msgs/msg/PointCloud2"):
+    """Points in space with any values each, packed as the sensor sends them.
+
+    Attributes:
+        header: When they were measured, and their frame.
+        height: Number of rows; 1 if the points have no order.
+        width: Number of points in a row.
+        fields: What a point consists of; coordinates are called x, y and z, in m.
+        is_bigendian: Whether numbers have the highest byte first.
+        point_step: Number of bytes from one point to the next.
+        row_step: Number of bytes from one row to the next.
+        data: All points, `row_step` times `height` bytes.
+        is_dense: Whether every point is valid.
+    """
+
+    header: Header = DEFAULT
+    height: uint32 = 0
+    width: uint32 = 0
+    fields: Annotated[list[PointField], Sequence[PointField]] = DEFAULT
+    is_bigendian: bool = False
+    point_step: uint32 = 0
+    row_step: uint32 = 0
+    data: Annotated[Bytes, Sequence[uint8]] = DEFAULT
+    is_dense: bool = False
 
 
 class RegionOfInterest(Message, typename="sensor_msgs/msg/RegionOfInterest"):
@@ -243,24 +322,6 @@ class Imu(Message, typename="sensor_msgs/msg/Imu"):
     linear_acceleration_covariance: Annotated[Floats, Array[float64, 9]] = DEFAULT
 
 
-class JointState(Message, typename="sensor_msgs/msg/JointState"):
-    """Where the joints of a robot are. The lists go together by index; one may be empty.
-
-    Attributes:
-        header: When it was measured.
-        name: Names of the joints.
-        position: In rad, or in m for a joint that slides.
-        velocity: In rad/s or m/s.
-        effort: In N·m or N.
-    """
-
-    header: Header = DEFAULT
-    name: Annotated[list[str], Sequence[str]] = DEFAULT
-    position: Annotated[Floats, Sequence[float64]] = DEFAULT
-    velocity: Annotated[Floats, Sequence[float64]] = DEFAULT
-    effort: Annotated[Floats, Sequence[float64]] = DEFAULT
-
-
 class Joy(Message, typename="sensor_msgs/msg/Joy"):
     """The state of a joystick: each axis from -1 to 1, each button 1 while it is down."""
 
@@ -327,16 +388,6 @@ class MagneticField(Message, typename="sensor_msgs/msg/MagneticField"):
     header: Header = DEFAULT
     magnetic_field: Vector3 = DEFAULT
     magnetic_field_covariance: Annotated[Floats, Array[float64, 9]] = DEFAULT
-
-
-class MultiDOFJointState(Message, typename="sensor_msgs/msg/MultiDOFJointState"):
-    """Where joints are that move along or about several axes; in m, rad, N and N·m."""
-
-    header: Header = DEFAULT
-    joint_names: Annotated[list[str], Sequence[str]] = DEFAULT
-    transforms: Annotated[list[Transform], Sequence[Transform]] = DEFAULT
-    twist: Annotated[list[Twist], Sequence[Twist]] = DEFAULT
-    wrench: Annotated[list[Wrench], Sequence[Wrench]] = DEFAULT
 
 
 class MultiEchoLaserScan(Message, typename="sensor_msgs/msg/MultiEchoLaserScan"):
@@ -418,57 +469,6 @@ class PointCloud(Message, typename="sensor_msgs/msg/PointCloud"):
     header: Header = DEFAULT
     points: Annotated[list[Point32], Sequence[Point32]] = DEFAULT
     channels: Annotated[list[ChannelFloat32], Sequence[ChannelFloat32]] = DEFAULT
-
-
-class PointField(Message, typename="sensor_msgs/msg/PointField"):
-    """One value of each point of a PointCloud2.
-
-    Attributes:
-        name: Such as ``x`` or ``intensity``.
-        offset: Where it begins in a point, in bytes.
-        datatype: Type of number, one of the constants.
-        count: How many numbers there are.
-    """
-
-    INT8: ClassVar[uint8] = 1
-    UINT8: ClassVar[uint8] = 2
-    INT16: ClassVar[uint8] = 3
-    UINT16: ClassVar[uint8] = 4
-    INT32: ClassVar[uint8] = 5
-    UINT32: ClassVar[uint8] = 6
-    FLOAT32: ClassVar[uint8] = 7
-    FLOAT64: ClassVar[uint8] = 8
-
-    name: str = ""
-    offset: uint32 = 0
-    datatype: uint8 = 0
-    count: uint32 = 0
-
-
-class PointCloud2(Message, typename="sensor_msgs/msg/PointCloud2"):
-    """Points in space with any values each, packed as the sensor sends them.
-
-    Attributes:
-        header: When they were measured, and their frame.
-        height: Number of rows; 1 if the points have no order.
-        width: Number of points in a row.
-        fields: What a point consists of; coordinates are called x, y and z, in m.
-        is_bigendian: Whether numbers have the highest byte first.
-        point_step: Number of bytes from one point to the next.
-        row_step: Number of bytes from one row to the next.
-        data: All points, `row_step` times `height` bytes.
-        is_dense: Whether every point is valid.
-    """
-
-    header: Header = DEFAULT
-    height: uint32 = 0
-    width: uint32 = 0
-    fields: Annotated[list[PointField], Sequence[PointField]] = DEFAULT
-    is_bigendian: bool = False
-    point_step: uint32 = 0
-    row_step: uint32 = 0
-    data: Annotated[Bytes, Sequence[uint8]] = DEFAULT
-    is_dense: bool = False
 
 
 class Range(Message, typename="sensor_msgs/msg/Range"):

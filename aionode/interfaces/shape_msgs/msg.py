@@ -11,25 +11,6 @@ from aionode.message import DEFAULT, Array, Floats, Ints, Message, Sequence, flo
 __all__ = ["Mesh", "MeshTriangle", "Plane", "SolidPrimitive"]
 
 
-class MeshTriangle(Message, typename="shape_msgs/msg/MeshTriangle"):
-    """A triangle, by the indices of its corners."""
-
-    vertex_indices: Annotated[Ints, Array[uint32, 3]] = DEFAULT
-
-
-class Mesh(Message, typename="shape_msgs/msg/Mesh"):
-    """A surface of triangles; `vertices` in m."""
-
-    triangles: Annotated[list[MeshTriangle], Sequence[MeshTriangle]] = DEFAULT
-    vertices: Annotated[list[Point], Sequence[Point]] = DEFAULT
-
-
-class Plane(Message, typename="shape_msgs/msg/Plane"):
-    """A plane as a, b, c and d of ax + by + cz + d = 0."""
-
-    coef: Annotated[Floats, Array[float64, 4]] = DEFAULT
-
-
 class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
     """A simple solid; constants name its type, and which of `dimensions` (in m) is which."""
 
@@ -51,3 +32,22 @@ class SolidPrimitive(Message, typename="shape_msgs/msg/SolidPrimitive"):
     type: uint8 = 0
     dimensions: Annotated[Floats, Sequence[float64, 3]] = DEFAULT
     polygon: Polygon = DEFAULT
+
+
+class MeshTriangle(Message, typename="shape_msgs/msg/MeshTriangle"):
+    """A triangle, by the indices of its corners."""
+
+    vertex_indices: Annotated[Ints, Array[uint32, 3]] = DEFAULT
+
+
+class Mesh(Message, typename="shape_msgs/msg/Mesh"):
+    """A surface of triangles; `vertices` in m."""
+
+    triangles: Annotated[list[MeshTriangle], Sequence[MeshTriangle]] = DEFAULT
+    vertices: Annotated[list[Point], Sequence[Point]] = DEFAULT
+
+
+class Plane(Message, typename="shape_msgs/msg/Plane"):
+    """A plane as a, b, c and d of ax + by + cz + d = 0."""
+
+    coef: Annotated[Floats, Array[float64, 4]] = DEFAULT

@@ -73,18 +73,6 @@ class Header(Message, typename="std_msgs/msg/Header"):
     frame_id: str = ""
 
 
-class Bool(Message, typename="std_msgs/msg/Bool"):
-    """One value: true or false."""
-
-    data: bool = False
-
-
-class Byte(Message, typename="std_msgs/msg/Byte"):
-    """One value: a byte, as bytes of length 1."""
-
-    data: byte = b"\x00"
-
-
 class MultiArrayDimension(Message, typename="std_msgs/msg/MultiArrayDimension"):
     """One dimension of an array.
 
@@ -111,6 +99,57 @@ class MultiArrayLayout(Message, typename="std_msgs/msg/MultiArrayLayout"):
     data_offset: uint32 = 0
 
 
+class Float64MultiArray(Message, typename="std_msgs/msg/Float64MultiArray"):
+    """An array of floats of 64 bits, of any number of dimensions.
+
+    `layout` says how `data` is to be read; it is often left empty for one dimension.
+    """
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Floats, Sequence[float64]] = DEFAULT
+
+
+class Int8MultiArray(Message, typename="std_msgs/msg/Int8MultiArray"):
+    """An array of signed integers of 8 bits, of any number of dimensions.
+
+    `layout` says how `data` is to be read; it is often left empty for one dimension.
+    """
+
+    layout: MultiArrayLayout = DEFAULT
+    data: Annotated[Ints, Sequence[int8]] = DEFAULT
+
+
+class String(Message, typename="std_msgs/msg/String"):
+    """One value: text."""
+
+    data: str = ""
+
+
+class ColorRGBA(Message, typename="std_msgs/msg/ColorRGBA"):
+    """A color: red, green, blue and opacity, each from 0 to 1."""
+
+    r: float32 = 0.0
+    g: float32 = 0.0
+    b: float32 = 0.0
+    a: float32 = 0.0
+
+
+class Empty(Message, typename="std_msgs/msg/Empty"):
+    """Nothing: that it came is the message."""
+
+
+class Bool(Message, typename="std_msgs/msg/Bool"):
+    """One value: true or false."""
+
+    data: bool = False
+
+
+class Byte(Message, typename="std_msgs/msg/Byte"):
+    """One value: a byte, as bytes of length 1."""
+
+    data: byte = b"\x00"
+
+
 class ByteMultiArray(Message, typename="std_msgs/msg/ByteMultiArray"):
     """An array of bytes, of any number of dimensions.
 
@@ -125,19 +164,6 @@ class Char(Message, typename="std_msgs/msg/Char"):
     """One value: an unsigned number of 8 bits."""
 
     data: char = 0
-
-
-class ColorRGBA(Message, typename="std_msgs/msg/ColorRGBA"):
-    """A color: red, green, blue and opacity, each from 0 to 1."""
-
-    r: float32 = 0.0
-    g: float32 = 0.0
-    b: float32 = 0.0
-    a: float32 = 0.0
-
-
-class Empty(Message, typename="std_msgs/msg/Empty"):
-    """Nothing: that it came is the message."""
 
 
 class Float32(Message, typename="std_msgs/msg/Float32"):
@@ -160,16 +186,6 @@ class Float64(Message, typename="std_msgs/msg/Float64"):
     """One value: a float of 64 bits."""
 
     data: float64 = 0.0
-
-
-class Float64MultiArray(Message, typename="std_msgs/msg/Float64MultiArray"):
-    """An array of floats of 64 bits, of any number of dimensions.
-
-    `layout` says how `data` is to be read; it is often left empty for one dimension.
-    """
-
-    layout: MultiArrayLayout = DEFAULT
-    data: Annotated[Floats, Sequence[float64]] = DEFAULT
 
 
 class Int16(Message, typename="std_msgs/msg/Int16"):
@@ -224,22 +240,6 @@ class Int8(Message, typename="std_msgs/msg/Int8"):
     """One value: a signed integer of 8 bits."""
 
     data: int8 = 0
-
-
-class Int8MultiArray(Message, typename="std_msgs/msg/Int8MultiArray"):
-    """An array of signed integers of 8 bits, of any number of dimensions.
-
-    `layout` says how `data` is to be read; it is often left empty for one dimension.
-    """
-
-    layout: MultiArrayLayout = DEFAULT
-    data: Annotated[Ints, Sequence[int8]] = DEFAULT
-
-
-class String(Message, typename="std_msgs/msg/String"):
-    """One value: text."""
-
-    data: str = ""
 
 
 class UInt16(Message, typename="std_msgs/msg/UInt16"):

@@ -146,6 +146,7 @@ def constructor(cls: type[Message]) -> Callable[..., Any]:
         "CLASS": own,
         "CHECKED": own()._check_fields,
         "ARRAY": array,
+        "COUNT": len,  # a field may be named len
         "OCTETS": OCTETS,
     }
     lines = [f"def construct({', '.join(names)}):", "    MADE = NEW(CLASS)"]
@@ -169,12 +170,12 @@ def stored(field: Field) -> list[str]:
         octets = name if type_.form == "bytes" else f"{name}.data.cast('B')"
         return [
             f"{target} = VALUES = ARRAY({TYPE_CODES[type_.kind]!r})",
-            f"if len({name}): VALUES.frombytes({octets})",
+            f"if COUNT({name}): VALUES.frombytes({octets})",
         ]
     if type_.kind == "byte":
         return [f"{target} = [OCTETS[ONE] for ONE in {name}]"]
     if type_.kind == "bool":
-        return [f"{target} = {name}.tolist() if len({name}) else []"]
+        return [f"{target} = {name}.tolist() if COUNT({name}) else []"]
     return [f"{target} = {name}"]
 
 

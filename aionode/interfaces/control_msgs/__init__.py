@@ -1,0 +1,1 @@
+"""Interfaces of control_msgs: joint trajectories, grippers and states of controllers."""

@@ -1,0 +1,1 @@
+"""Interfaces of mavros_msgs: flight controllers behind MAVLink."""

@@ -1,0 +1,1 @@
+"""Interfaces of object_recognition_msgs: recognized objects and tables."""

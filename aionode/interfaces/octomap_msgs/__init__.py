@@ -1,0 +1,1 @@
+"""Interfaces of octomap_msgs: maps of cells in an octree."""

@@ -1,0 +1,1 @@
+"""Interfaces of rosapi_msgs: questions about the graph, for browsers beside rosbridge."""

@@ -1,0 +1,1 @@
+"""Interfaces of rosbridge_msgs: the clients of a rosbridge."""

@@ -1,0 +1,1 @@
+"""Interfaces of tf2_web_republisher_interfaces: transforms for browsers."""
