@@ -24,8 +24,8 @@ from aionode.gateway.policy.policy import Policy
 from aionode.gateway.rosbridge import websocket as _rosbridge
 from aionode.gateway.rosbridge.client_list import ClientList
 from aionode.gateway.server.door import Door
-from aionode.gateway.server.server import Server, server_config
-from aionode.gateway.server.websocket import TRY_AGAIN_LATER, close
+from aionode.gateway.server.exchange import TRY_AGAIN_LATER, close
+from aionode.gateway.server.server import Server
 from aionode.gateway.session.audit import Audit
 from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.robot import Bucket, Robot
@@ -124,8 +124,8 @@ class Gateway(Clients):
             for work in (audit.run(), self._follow_policy()):
                 stack.callback(tasks.create_task(work).cancel)
             app = Door(self._application(), self)
-            self._server = server = Server(server_config(app, lambda: self._policy))
-            serving = tasks.create_task(server.serve(sockets=[listener]))
+            self._server = server = Server(app, lambda: self._policy)
+            serving = tasks.create_task(server.serve(listener))
             stack.push_async_callback(self._stop, server, serving)
             await server.has_started.wait()
             self._stack = stack.pop_all()

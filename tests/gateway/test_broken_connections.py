@@ -16,7 +16,7 @@ from websockets.exceptions import ConnectionClosed
 
 from aionode.action import CancelResponse
 from aionode.gateway import Gateway, Policy
-from aionode.gateway.server.server import WebSocketConnection
+from aionode.gateway.server.websocket import WebSocketConnection
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
@@ -323,7 +323,7 @@ async def test_a_request_that_arrives_byte_by_byte_is_given_up(what: str) -> Non
 
 
 async def test_an_idle_connection_is_closed_after_its_answer() -> None:
-    """Kept open, it would take the place of a client; uvicorn's own limit is a header away."""
+    """Kept open, it would take the place of a client; a byte of a head is no request."""
     request = b"GET /topics HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
     limits = "handshake_sec = 0.2"
     async with serving(Policy.parse(POLICY + limits)) as gateway:
@@ -333,7 +333,7 @@ async def test_an_idle_connection_is_closed_after_its_answer() -> None:
             head = (await reader.readuntil(b"\r\n\r\n")).decode()
             size = int(head.partition("content-length: ")[2].split()[0])
             assert await reader.readexactly(size)
-        writer.write(request[:20])  # it stops the keep-alive time of uvicorn
+        writer.write(request[:20])
         assert await closed(reader) == b""
         writer.close()
 
@@ -409,7 +409,7 @@ async def test_a_client_that_answers_no_pings_is_disconnected_though_it_reads_no
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """A frozen page: what waits for it keeps the connection open if nobody cuts it."""
-    monkeypatch.setattr("aionode.gateway.server.server.PING_SEC", 0.2)
+    monkeypatch.setattr("aionode.gateway.server.websocket.PING_SEC", 0.2)
     async with serving(Policy.parse(POLICY)) as gateway:
         words = gateway.node.create_publisher(String, "/words", 10)
         _, writer, _ = await upgraded(gateway)
@@ -489,14 +489,14 @@ async def test_garbage_that_goes_on_after_the_goodbye_is_hardly_read(
     """The gateway waits some seconds for the client's own goodbye, which may be behind it."""
     monkeypatch.setattr("aionode.gateway.rosbridge.client.MOST_MALFORMED", 3)
     read = 0
-    handle_text = WebSocketConnection.handle_text
+    take_message = WebSocketConnection.take_message
 
-    def count(self: WebSocketConnection, event: Any) -> None:
+    def count(self: WebSocketConnection, data: bytes) -> None:
         nonlocal read
         read += 1
-        handle_text(self, event)
+        take_message(self, data)
 
-    monkeypatch.setattr(WebSocketConnection, "handle_text", count)
+    monkeypatch.setattr(WebSocketConnection, "take_message", count)
     async with serving(Policy.parse(POLICY)) as gateway:
         reader, writer, _ = await upgraded(gateway)
         writer.write(frame(b"garbage") * 4)

@@ -8,13 +8,12 @@ from dataclasses import dataclass, field
 from typing import Any, Final
 
 import pytest
-from uvicorn.protocols.http import h11_impl
-from uvicorn.protocols.websockets import websockets_sansio_impl
 from websockets.exceptions import InvalidStatus
 
 from aionode.engine.context import Context
 from aionode.gateway import Gateway, Policy
-from aionode.gateway.server import server as _server
+from aionode.gateway.server import connection as _connection
+from aionode.gateway.server import http11
 from aionode.gateway.session import audit as _audit
 from aionode.interfaces.std_msgs.msg import String
 from aionode.node import Node
@@ -102,9 +101,8 @@ async def test_every_who_is_let_in_or_refused(
     failed: dict[str, str] = {}
     now = STRANGERS["nothing"]
     monkeypatch.setattr(_audit, "REFUSALS_PER_SEC", 10_000)
-    monkeypatch.setattr(_server, "common_name", lambda _: now.certificate)
-    for module in (h11_impl, websockets_sansio_impl):
-        monkeypatch.setattr(module, "get_remote_addr", lambda _: (now.address, 1))
+    monkeypatch.setattr(http11, "common_name", lambda _: now.certificate)
+    monkeypatch.setattr(_connection, "client_address", lambda _: (now.address, 1))
     lines: list[dict[str, Any]] = []
     async with (
         Node("robot", context=context) as robot,

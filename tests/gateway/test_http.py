@@ -18,7 +18,7 @@ from aionode import image
 from aionode.action import CancelResponse, GoalResponse, ServerGoalHandle
 from aionode.engine.context import Context
 from aionode.gateway import Gateway, Policy
-from aionode.gateway.server.server import HttpConnection
+from aionode.gateway.server.http11 import HttpConnection
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.geometry_msgs.msg import Twist

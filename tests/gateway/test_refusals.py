@@ -50,9 +50,8 @@ UNTOLD = {
     "session/graph.py:ask": "a node of the robot without parameters",
     "session/preparing.py:prepared": "raised again by `Received.once`",
     "session/command.py:_hold": "raised for who waits for the lease",
-    "server/server.py:main_loop": "a second has passed",
-    "server/server.py:shutdown": "the gateway ends",
-    "server/websocket.py:close": "its client reads no goodbye",
+    "server/server.py:end_connections": "the gateway ends",
+    "server/exchange.py:close": "its client reads no goodbye",
     "http/answers.py:_send_chunks": "the session has ended, which was said",
     "http/answers.py:_stay_alive": "some seconds have passed",
 }

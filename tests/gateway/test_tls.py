@@ -156,7 +156,7 @@ async def test_a_name_that_the_policy_does_not_know_is_nobody(folder: Path, trus
 
 
 async def test_who_does_not_speak_tls_is_disconnected(folder: Path) -> None:
-    """At once, or when the time for the handshake is over: uvicorn would give a minute."""
+    """At once, or when the time for the handshake is over: asyncio would give a minute."""
     async with serving(policy(folder)) as gateway:
         for beginning in (b"", b"\x16\x03\x01", b"GET /topics HTTP/1.1\r\n\r\n"):
             reader, writer = await asyncio.open_connection("127.0.0.1", gateway.port)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from aionode.gateway.foxglove.client import serve_frames
 from aionode.gateway.foxglove.frames import SUBPROTOCOLS
-from aionode.gateway.server.websocket import exchange
+from aionode.gateway.server.exchange import exchange
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

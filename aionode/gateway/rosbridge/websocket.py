@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from aionode.gateway.rosbridge.client import serve_frames
-from aionode.gateway.server.websocket import exchange
+from aionode.gateway.server.exchange import exchange
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket

@@ -6,7 +6,7 @@ import asyncio
 import struct
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 from aionode.gateway.session.outbox import LongFrame
 
@@ -66,11 +66,11 @@ def head(first: int, size: int) -> bytes:
     return struct.pack(">BBQ", first, 127, size)
 
 
-class Outgoing(asyncio.Transport):
-    """The transport of a WebSocket, which a large frame leaves in slices as its client reads.
+class Outgoing:
+    """The way out of a WebSocket, which a large frame leaves in slices as its client reads.
 
-    A transport copies what its socket does not take at once. What uvicorn writes meanwhile, such as
-    the answer to a ping, leaves after the frame.
+    A transport copies what its socket does not take at once. What the protocol says meanwhile, such
+    as the answer to a ping, leaves after the frame.
 
     Args:
         transport: The transport of the connection.
@@ -81,7 +81,6 @@ class Outgoing(asyncio.Transport):
     """
 
     def __init__(self, transport: asyncio.Transport, writable: asyncio.Event) -> None:
-        super().__init__()
         self._transport = transport
         self._writable = writable
         self._is_paused = False
@@ -146,10 +145,8 @@ class Outgoing(asyncio.Transport):
             self._turn.cancel()
             self._turn = None
 
-    # Methods of a transport that uvicorn calls
-
-    def write(self, data: Any) -> None:
-        """Send what is no message of the application, after the frame that is leaving."""
+    def write(self, data: bytes) -> None:
+        """Send a control frame, after the frame that is leaving."""
         waiting = self._after_bytes + self._transport.get_write_buffer_size()
         if waiting > MOST_CONTROL_BYTES:
             self.on_abort()
@@ -157,7 +154,7 @@ class Outgoing(asyncio.Transport):
         elif not self._rest:
             self._transport.write(data)
         else:
-            self._after.append(bytes(data))
+            self._after.append(data)
             self._after_bytes += len(data)
 
     def close(self) -> None:
@@ -175,19 +172,3 @@ class Outgoing(asyncio.Transport):
         self._rest.clear()
         self._after.clear()
         self._transport.abort()
-
-    def is_closing(self) -> bool:
-        """Return whether the connection is closed, or about to be."""
-        return self._transport.is_closing()
-
-    def pause_reading(self) -> None:
-        """Read nothing until `resume_reading`."""
-        self._transport.pause_reading()
-
-    def resume_reading(self) -> None:
-        """Read again."""
-        self._transport.resume_reading()
-
-    def get_extra_info(self, name: str, default: Any = None) -> Any:
-        """Return what is known of the connection."""
-        return self._transport.get_extra_info(name, default)

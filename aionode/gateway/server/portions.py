@@ -65,12 +65,14 @@ class Portions:
         if self._turn is None and not self._is_closed:
             self._turn = self._loop.call_soon(self._next_turn)
 
-    def close(self) -> None:
-        """Forget what waits."""
+    def close(self) -> bytes:
+        """Hand nothing on any more, and return what waits."""
         self._is_closed = True
+        waiting = bytes(self._waiting)
         self._waiting.clear()
         if self._turn is not None:
             self._turn.cancel()
+        return waiting
 
     def _next_turn(self) -> None:
         self._turn = None

@@ -1,89 +1,432 @@
-"""A WebSocket and the session of its client: frames in, frames out."""
+"""A WebSocket over a connection, by websockets' protocol without input and output of its own."""
 
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
-from contextlib import suppress
-from typing import TYPE_CHECKING, Final, TypeAlias
+import logging
+import secrets
+from collections.abc import Callable, Iterable
+from functools import partial
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Any, Final
 
-from starlette.websockets import WebSocketDisconnect
+import h11
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.frames import CloseCode, Frame, Opcode
+from websockets.http11 import Request
+from websockets.protocol import SEND_EOF, State
+from websockets.server import ServerProtocol
 
+from aionode.clock import S_TO_NS
+from aionode.gateway.server.connection import (
+    GOODBYE_SEC,
+    Connection,
+    is_encrypted,
+    logger,
+    response,
+)
+from aionode.gateway.server.outgoing import Outgoing
 from aionode.gateway.session.encoding.frames import Fragmented
 from aionode.gateway.session.refusals import Refusal
+from aionode.gateway.session.robot import Bucket
 
 if TYPE_CHECKING:
-    from starlette.websockets import WebSocket
+    from aionode.gateway.server.connection import Shared
+    from aionode.gateway.session.outbox import Frame as Outgone
 
-    from aionode.gateway.session.outbox import Outbox
-    from aionode.gateway.session.session import Session
+__all__ = ["WebSocketConnection"]
 
-__all__ = ["TRY_AGAIN_LATER", "close", "exchange"]
+PING_SEC: Final = 20.0
+"""Time between two pings, within which a client has to answer, in seconds."""
 
-Serve: TypeAlias = Callable[["Session", AsyncIterator[bytes | str]], Awaitable[None]]
+ANSWERED: Final = "aionode.answered"
+"""The type of a message of ASGI for the answer to a ping, which the application does not see."""
 
-POLICY_VIOLATION: Final = 1008
-"""Why a WebSocket is closed whose client sends no ops, or reads no answers (RFC 6455)."""
+MOST_ASKED: Final = 16
+"""Pings that may wait for their answers at once."""
 
-TRY_AGAIN_LATER: Final = 1013
-"""Why a WebSocket is closed whose place another client takes (IANA's registry of RFC 6455)."""
+PINGS_PER_SEC: Final = 200.0
+"""Pings and pongs that the gateway reads of a client in a second: it has to answer each ping."""
 
-CLOSING_SEC: Final = 1.0
-"""How long a client that reads nothing may keep the end of its WebSocket, in seconds."""
+MOST_PARTS: Final = 10_000
+"""Parts that a message of a WebSocket may have; clients send large ones in parts of 16 kB."""
 
-MOST_REASON: Final = 120
-"""The longest reason of an end, in bytes of UTF-8: RFC 6455 allows 123."""
+ENDED_SEC: Final = 0.02
+"""Pause for each frame that a client sends after the end of its WebSocket, in seconds."""
 
-
-async def close(websocket: WebSocket, code: int, reason: str) -> None:
-    """Close a WebSocket with a reason, unless it is closed, or its client reads nothing."""
-    short = reason.encode()[:MOST_REASON].decode(errors="ignore")
-    with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
-        async with asyncio.timeout(CLOSING_SEC):
-            await websocket.close(code, short)
+quiet = logging.getLogger("aionode.gateway.websockets")
+quiet.setLevel(logging.WARNING)  # below, it writes headers, in which tokens are
 
 
-async def exchange(
-    websocket: WebSocket, session: Session, serve: Serve, subprotocol: str | None = None
-) -> None:
-    """Let a protocol speak with a client until one of them ends it.
+class WebSocketConnection(Connection):
+    """A WebSocket that says how long its client is silent, and whether it answers now.
 
     Args:
-        websocket: The WebSocket, which is accepted here.
-        session: The session of the client; its outbox has the frames for the client.
-        serve: Takes the frames of the client, until they end, or it has had enough of them.
-        subprotocol: The name of the protocol.
+        shared: What it shares with the other connections.
+        http: The HTTP of its request, by which it is answered.
+
+    Attributes:
+        note: Counts and logs what is refused of the client; see `Session.note`.
     """
-    await websocket.accept(subprotocol)
-    async with asyncio.TaskGroup() as tasks:
-        writing = tasks.create_task(write(websocket, session.outbox))
-        has_left = False
 
-        async def frames() -> AsyncIterator[bytes | str]:
-            nonlocal has_left
-            while (message := await websocket.receive())["type"] == "websocket.receive":
-                text = message.get("text")
-                yield text if text is not None else message["bytes"]
-            has_left = True
+    def __init__(self, shared: Shared, http: h11.Connection) -> None:
+        super().__init__(shared)
+        self._http = http
+        limits = shared.policy().limits
+        self._protocol = ServerProtocol(state=State.OPEN, max_size=limits.frame_bytes, logger=quiet)
+        self._accept_headers: list[tuple[bytes, bytes]] = []
+        self._queue: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+        self._is_open = False
+        self._is_answered = False  # the request, with either an end or a beginning
+        self._has_closed = False
+        self._parts: list[bytes] = []
+        self._is_text = False
+        self._asked: dict[bytes, Callable[[], None] | None] = {}  # by the payloads of pings
+        self._awaits_pong = False
+        self._timer: asyncio.TimerHandle | None = None
+        rate_hz = limits.frames_per_sec
+        self._conts = Bucket(rate_hz, self._now_ns)
+        self._pings = Bucket(min(PINGS_PER_SEC, rate_hz), self._now_ns)
+        self.note: Callable[[Refusal, str, str], object] = ignore
 
-        await serve(session, frames())
-        writing.cancel()
-        if not has_left:
-            session.note(Refusal.DISCONNECTED, "connection", "too many frames that are malformed")
-            await websocket.close(POLICY_VIOLATION, "too many frames that are malformed")
+    def _now_ns(self) -> int:
+        return round(self._loop.time() * S_TO_NS)
+
+    def begin(self, transport: asyncio.Transport, scope: dict[str, Any], rest: bytes) -> None:
+        """Ask the application whether the client may connect.
+
+        Args:
+            transport: The transport.
+            scope: What ASGI tells of the request.
+            rest: What has arrived behind the request.
+        """
+        self.use(transport)
+        self._portions.add(rest)
+        self._outgoing = Outgoing(transport, self.writable)
+        self._outgoing.on_abort = partial(
+            self._note_end, "it does not read the answers to its pings"
+        )
+        headers = Headers(
+            (name.decode("latin-1"), value.decode("latin-1")) for name, value in scope["headers"]
+        )
+        answer = self._protocol.accept(Request(scope["raw_path"].decode("ascii"), headers))
+        self._accept_headers = encoded(answer.headers.raw_items())
+        if answer.status_code != HTTPStatus.SWITCHING_PROTOCOLS:
+            self._answer(answer.status_code, self._accept_headers, bytes(answer.body or b""))
+            return
+        scope["state"]["aionode_connection"] = self
+        offered = headers.get_all("Sec-WebSocket-Protocol")
+        scope |= {
+            "type": "websocket",
+            "scheme": "wss" if is_encrypted(transport) else "ws",
+            "subprotocols": [name.strip() for line in offered for name in line.split(",")],
+            "extensions": {"websocket.http.response": {}},
+        }
+        self._queue.put_nowait({"type": "websocket.connect"})
+        self._shared.start(self._run(scope))
+
+    async def _run(self, scope: dict[str, Any]) -> None:
+        """Serve the client; it has a moment to read the goodbye."""
+        try:
+            await self._shared.app(scope, self._receive, self._send)
+        except Exception as error:  # noqa: BLE001  # of any kind, and the log says why
+            if not (isinstance(error, OSError) and self.transport.is_closing()):  # has left
+                logger.exception("gateway: a WebSocket failed")
+        finally:
+            if not self._is_answered:
+                self._answer(500, [], b"Internal Server Error")
+            elif not self._has_closed:
+                self._outgoing.close()
+                self._part_soon()
+
+    # The answer to the request
+
+    def _answer(self, status: int, headers: list[tuple[bytes, bytes]], body: bytes) -> None:
+        """Refuse to begin."""
+        self._begin_answer(status, headers)
+        self._end_answer(body)
+
+    def _begin_answer(self, status: int, headers: Iterable[tuple[bytes, bytes]]) -> None:
+        self._is_answered = True
+        kept = [each for each in headers if each[0] not in {b"connection", b"date"}]
+        self._write_http(response(status, [*kept, (b"connection", b"close")]))
+
+    def _end_answer(self, body: bytes, *, more_body: bool = False) -> None:
+        self._write_http(h11.Data(data=body))
+        if not more_body:
+            self._write_http(h11.EndOfMessage())
+            self._has_closed = True
+            self._disconnect(CloseCode.ABNORMAL_CLOSURE)
+            self.transport.close()
+
+    def _write_http(self, event: h11.Event) -> None:
+        if not self.transport.is_closing():
+            self.transport.write(self._http.send(event) or b"")
+
+    def _accept(self, message: Any) -> None:
+        headers = [*self._accept_headers, *message.get("headers", ())]
+        if message.get("subprotocol"):
+            headers.append((b"sec-websocket-protocol", message["subprotocol"].encode("latin-1")))
+        self._is_answered = True
+        self._write_http(
+            h11.InformationalResponse(
+                status_code=101, headers=headers, reason=b"Switching Protocols"
+            )
+        )
+        self._is_open = True
+        self._portions.go_on()
+        self._timer = self._loop.call_later(PING_SEC, self._keep_alive)
+
+    # ASGI
+
+    async def _receive(self) -> dict[str, Any]:
+        """Return the next message.
+
+        The answer to a ping has its place among them: those before it were sent earlier.
+        """
+        while True:
+            message = await self._queue.get()
+            if self._queue.empty():
+                self._portions.go_on()
+            if message["type"] != ANSWERED:
+                return message
+            message["answered"]()
+
+    async def _send(self, message: Any) -> None:
+        """Send a message of the application, when the client has read the earlier ones.
+
+        Raises:
+            OSError: the client has left.
+        """
+        kind = message["type"]
+        if kind == "websocket.send":
+            text = message.get("text")
+            await self._send_frame(message["bytes"] if text is None else text)
+            return
+        await self.writable.wait()
+        if self.transport.is_closing():
+            raise ConnectionResetError("the client has left")
+        if kind == "websocket.accept":
+            self._accept(message)
+        elif kind == "websocket.http.response.start":
+            self._begin_answer(message["status"], message.get("headers", ()))
+        elif kind == "websocket.http.response.body":
+            more_body = message.get("more_body", False)
+            self._end_answer(message.get("body", b""), more_body=more_body)
+        elif self._is_answered:
+            self._close(message.get("code", 1000), message.get("reason") or "")
+        else:
+            self._answer(403, [], b"")
+
+    async def _send_frame(self, frame: Outgone) -> None:
+        while not self.writable.is_set():
+            await self.writable.wait()
+        if not self._may_send():
+            raise ConnectionResetError("the client has left")
+        self._outgoing.send(self._shared.framing.parts(frame))
+
+    def _may_send(self) -> bool:
+        return self._is_open and not (self._has_closed or self.transport.is_closing())
+
+    def send_now(self, frame: Outgone) -> bool:
+        """Send a frame, if its client has read enough of the earlier ones; return whether."""
+        if not (self.writable.is_set() and self._may_send()) or isinstance(frame, Fragmented):
+            return False
+        self._outgoing.send(self._shared.framing.parts(frame))
+        return True
+
+    def pause_writing(self) -> None:
+        """Send nothing until the client has read what was sent."""
+        self._outgoing.pause()
+
+    def resume_writing(self) -> None:
+        """Send again."""
+        self._outgoing.resume()
+
+    # Frames
+
+    def is_ready(self) -> bool:
+        """Return whether the application has taken all that was read."""
+        return self._is_open and (self._queue.empty() or self._has_closed)
+
+    def take(self, data: bytes) -> None:
+        """Take a part of what was received."""
+        self._protocol.receive_data(data)
+        for event in self._protocol.events_received():
+            if isinstance(event, Frame):
+                self._take_frame(event)
+        self._write_protocol()
+
+    def _write_protocol(self) -> None:
+        """Send what the protocol has to say, and end if it does."""
+        written = self._protocol.data_to_send()
+        data = b"".join(written)
+        if data:
+            self._outgoing.write(data)
+        if SEND_EOF in written:
+            self._finish()
+
+    def _take_frame(self, frame: Frame) -> None:
+        if frame.opcode is Opcode.PING:  # the protocol answers it
+            self._count(self._pings)
+        elif frame.opcode is Opcode.PONG:
+            self._count(self._pings)
+            self._take_pong(bytes(frame.data))
+        elif frame.opcode is not Opcode.CLOSE:
+            self._take_part(frame)
+
+    def _take_part(self, frame: Frame) -> None:
+        """Take a part of a message; without any bytes in them, there could be any number."""
+        if frame.opcode is Opcode.CONT:
+            self._count(self._conts)
+        else:
+            self._is_text = frame.opcode is Opcode.TEXT
+        if len(self._parts) >= MOST_PARTS:
+            self._note_end(f"a message has more than {MOST_PARTS} parts")
+            self.abort()
+            return
+        self._parts.append(bytes(frame.data))
+        if frame.fin:
+            parts, self._parts = self._parts, []
+            self.take_message(parts[0] if len(parts) == 1 else b"".join(parts))
+
+    def take_message(self, data: bytes) -> None:
+        """Hand a message to the application; after the goodbye, a few a second are read at most."""
+        if self._has_closed:
+            self._portions.owed_sec += ENDED_SEC
+            return
+        message: dict[str, Any] = {"type": "websocket.receive"}
+        if self._is_text:
+            try:
+                message["text"] = data.decode()
+            except UnicodeDecodeError:
+                self._protocol.fail(CloseCode.INVALID_DATA, "text that is no UTF-8")
+                self._write_protocol()
+                return
+        else:
+            message["bytes"] = data
+        self._queue.put_nowait(message)
+
+    def _count(self, bucket: Bucket) -> None:
+        if bucket.wait_sec():
+            self._portions.owed_sec += 1.0 / bucket.rate_hz
+
+    def has_unread(self) -> bool:
+        """Return whether something of the client waits here: it is not silent, but has to wait."""
+        return bool(self._portions) or not self._queue.empty()
+
+    # Pings
+
+    def ping(self, answered: Callable[[], None] | None = None) -> None:
+        """Ask the client for a sign, and call `answered` with it: what comes then is no older.
+
+        Nobody can answer before: what a ping carries is random. A client that gets several pings
+        at once may answer the last one only, so its answer counts for the earlier ones as well.
+        """
+        if not self._may_send():
+            return
+        payload = secrets.token_bytes(8)
+        if len(self._asked) >= MOST_ASKED:
+            del self._asked[next(iter(self._asked))]
+        self._asked[payload] = answered
+        self._protocol.send_ping(payload)
+        self._write_protocol()
+
+    def _take_pong(self, payload: bytes) -> None:
+        if payload not in self._asked:
+            return
+        self._awaits_pong = False
+        answered = self._asked[payload]
+        while payload in self._asked:
+            del self._asked[next(iter(self._asked))]
+        if answered is not None:
+            self._queue.put_nowait({"type": ANSWERED, "answered": answered})
+
+    def _keep_alive(self) -> None:
+        """Ping the client; close the connection of one that has not answered since the last time.
+
+        It reads no goodbye either.
+        """
+        if self._has_closed:
+            return
+        if self._awaits_pong:
+            self._note_end(f"it has answered no ping for {PING_SEC:g} s")
+            self.abort()
+            return
+        self._awaits_pong = True
+        self.ping()
+        self._timer = self._loop.call_later(PING_SEC, self._keep_alive)
+
+    # The end
+
+    def _close(self, code: int, reason: str) -> None:
+        """Say goodbye, and wait for that of the client, which may be behind what waits."""
+        if self._has_closed:
+            return
+        self._has_closed = True
+        self._disconnect(code, reason)
+        if self._protocol.state is State.OPEN:
+            self._protocol.send_close(code, reason)
+            self._write_protocol()
+        self._portions.go_on()
+        self._part_soon()
+
+    def _part_soon(self) -> None:
+        self._loop.call_later(GOODBYE_SEC, self.abort)
+
+    def _finish(self) -> None:
+        """End with what the client has sent: its goodbye, or what is no WebSocket."""
+        if not self._has_closed:
+            self._has_closed = True
+            self._protocol.receive_eof()
+            end = self._protocol.close_exc
+            if end.sent is not None and end.sent.code == CloseCode.MESSAGE_TOO_BIG and not end.rcvd:
+                limit = f"at most {self._shared.policy().limits.frame_bytes} bytes fit"
+                text = f"{limit}, as frame_bytes says; the connection has ended"
+                self.note(Refusal.TOO_LARGE, "frame", text)
+            self._disconnect(*said(end))
+            self._part_soon()
+        self._outgoing.close()
+
+    def _disconnect(self, code: int, reason: str = "") -> None:
+        message = {"type": "websocket.disconnect", "code": code, "reason": reason}
+        self._queue.put_nowait(message)
+
+    def _note_end(self, reason: str) -> None:
+        self.note(Refusal.DISCONNECTED, "connection", reason)
+
+    def end(self) -> None:
+        """Close the WebSocket, as the server ends."""
+        if not self._is_answered:
+            self._answer(503, [], b"the gateway ends")
+        else:
+            self._close(CloseCode.SERVICE_RESTART, "")
+            self._outgoing.close()
+
+    def abort(self) -> None:
+        """Close the connection without a word, which nobody would read."""
+        self._outgoing.abort()
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Tell the application."""
+        if self._timer is not None:
+            self._timer.cancel()
+        super().connection_lost(exc)
+        self._has_closed = True
+        self._disconnect(CloseCode.NO_STATUS_RCVD if self._is_open else CloseCode.ABNORMAL_CLOSURE)
 
 
-async def write(websocket: WebSocket, outbox: Outbox) -> None:
-    """Send the frames of the outbox; if that is closed, the client is disconnected."""
-    try:
-        async for frame in outbox:
-            if isinstance(frame, Fragmented):
-                for part in frame.parts():
-                    await websocket.send_text(part)
-            elif isinstance(frame, str):
-                await websocket.send_text(frame)
-            else:
-                await websocket.send({"type": "websocket.send", "bytes": frame})
-        await websocket.close(POLICY_VIOLATION, "too many answers that the client does not read")
-    except WebSocketDisconnect:
-        return  # the reader is told as well
+def ignore(*_: object) -> None:
+    """Do nothing."""
+
+
+def said(end: ConnectionClosed) -> tuple[int, str]:
+    """Return the code and reason of the end of a WebSocket, of whichever side has said them."""
+    close = end.rcvd or end.sent
+    return (close.code, close.reason) if close else (CloseCode.ABNORMAL_CLOSURE, "")
+
+
+def encoded(headers: Iterable[tuple[str, str]]) -> list[tuple[bytes, bytes]]:
+    """Return headers as HTTP has them."""
+    return [(name.lower().encode("latin-1"), value.encode("latin-1")) for name, value in headers]

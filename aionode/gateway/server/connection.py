@@ -1,0 +1,200 @@
+"""A connection of a client, whatever is spoken over it, and what all connections share."""
+
+from __future__ import annotations
+
+import asyncio
+import email.utils
+import logging
+from collections.abc import Awaitable, Callable, Coroutine, Iterable
+from http import HTTPStatus
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from urllib.parse import unquote
+
+import h11
+
+from aionode.gateway.server.outgoing import Framing
+from aionode.gateway.server.portions import Portions
+
+if TYPE_CHECKING:
+    from aionode.gateway.policy.policy import Policy
+
+__all__ = ["GOODBYE_SEC", "Application", "Connection", "Shared", "is_encrypted", "logger"]
+__all__ += ["response", "scope_of"]
+
+logger = logging.getLogger("aionode.gateway")
+
+Application: TypeAlias = Callable[[Any, Any, Any], Awaitable[None]]
+"""An application of ASGI."""
+
+PHRASES: Final = {status.value: status.phrase.encode() for status in HTTPStatus}
+"""The words of each status."""
+
+GOODBYE_SEC: Final = 5.0
+"""Longest time for a client to read the end of a connection, in seconds."""
+
+SPARE: Final = 16
+"""Connections beyond the number of clients: those for pages, and those that are told that there are
+too many."""
+
+
+class Shared:
+    """What the connections of a server share.
+
+    Args:
+        app: The application of ASGI that they serve.
+        policy: Returns the policy as it is now.
+        tasks: The group in which requests are handled.
+
+    Attributes:
+        framing: Makes the frames of all WebSockets.
+        connections: Those that are open.
+        requests: The tasks of the application.
+        has_lost_one: Set when a connection has ended.
+    """
+
+    def __init__(
+        self, app: Application, policy: Callable[[], Policy], tasks: asyncio.TaskGroup
+    ) -> None:
+        self.app = app
+        self.policy = policy
+        self.framing = Framing()
+        self.connections: set[Connection] = set()
+        self.requests: set[asyncio.Task[None]] = set()
+        self.has_lost_one = asyncio.Event()
+        self._tasks = tasks
+
+    def start(self, work: Coroutine[Any, Any, None]) -> None:
+        """Handle a request."""
+        task = self._tasks.create_task(work)
+        self.requests.add(task)
+        task.add_done_callback(self.requests.discard)
+
+    def admit(self, connection: Connection) -> bool:
+        """Take a new connection, and return whether there is room for it.
+
+        The oldest connection without a session makes room: a client says at once what it wants, and
+        those who only keep connections, or read none of what is public, must not keep it out.
+        """
+        self.connections.add(connection)
+        if len(self.connections) <= self.policy().limits.clients + SPARE:
+            return True
+        without = [
+            other for other in self.connections if other is not connection and not other.has_session
+        ]
+        oldest = min(without, key=lambda other: other.made_s, default=None)
+        if oldest is None:
+            return False
+        oldest.abort()
+        self.connections.discard(oldest)  # its end is told in the next turn only
+        return True
+
+
+class Connection(asyncio.Protocol):
+    """A connection: what arrives is handed on in parts, as fast as it is handled.
+
+    Attributes:
+        made_s: When it was made, by the clock of the loop.
+        has_session: Whether a session uses it, as the application says.
+        transport: Its transport.
+        writable: Set while the client has read enough of what was sent.
+        is_lost: Whether it has ended.
+    """
+
+    transport: asyncio.Transport
+
+    def __init__(self, shared: Shared) -> None:
+        self._shared = shared
+        self._loop = asyncio.get_running_loop()
+        self.made_s = self._heard_s = self._loop.time()
+        self.has_session = False
+        self.is_lost = False
+        self.writable = asyncio.Event()
+        self.writable.set()
+
+    def use(self, transport: asyncio.Transport) -> None:
+        """Begin with a transport."""
+        self.transport = transport
+        self._portions = Portions(transport, self.take, self.is_ready)
+
+    def data_received(self, data: bytes) -> None:
+        """Note the time, and take what was received, some of it at a time."""
+        self._heard_s = self._loop.time()
+        self._portions.add(data)
+
+    def pause_writing(self) -> None:
+        """Have what is sent wait until the client has read enough."""
+        self.writable.clear()
+
+    def resume_writing(self) -> None:
+        """Send again."""
+        self.writable.set()
+
+    def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002  # asyncio's name
+        """Forget what waits, and tell the server, which may wait for its last connection to end."""
+        self.is_lost = True
+        self._portions.close()
+        self.writable.set()  # nobody says it any more
+        self._shared.connections.discard(self)
+        self._shared.has_lost_one.set()
+
+    def silent_sec(self) -> float:
+        """Return how long nothing has arrived, in seconds."""
+        return self._loop.time() - self._heard_s
+
+    def abort(self) -> None:
+        """Close the connection without a word, which nobody would read."""
+        self.transport.abort()
+
+    # What is spoken
+
+    def take(self, data: bytes) -> None:
+        """Take a part of what was received."""
+        raise NotImplementedError
+
+    def is_ready(self) -> bool:
+        """Return whether `take` may be called now."""
+        raise NotImplementedError
+
+    def end(self) -> None:
+        """End, as the server does."""
+        raise NotImplementedError
+
+
+def scope_of(request: h11.Request, transport: asyncio.Transport) -> dict[str, Any]:
+    """Return what ASGI tells of a request, whatever its kind."""
+    path, _, query = request.target.partition(b"?")
+    return {
+        "asgi": {"version": "3.0", "spec_version": "2.3"},
+        "http_version": request.http_version.decode("ascii"),
+        "server": address(transport, "sockname"),
+        "client": client_address(transport),
+        "root_path": "",
+        "path": unquote(path.decode("ascii")),
+        "raw_path": path,
+        "query_string": query,
+        "headers": list(request.headers),
+    }
+
+
+def client_address(transport: asyncio.Transport) -> tuple[str, int] | None:
+    """Return where a client connects from."""
+    return address(transport, "peername")
+
+
+def address(transport: asyncio.Transport, end: str) -> tuple[str, int] | None:
+    """Return the host and port of one end of a connection; None where it has none."""
+    known = transport.get_extra_info(end)
+    return (str(known[0]), int(known[1])) if isinstance(known, tuple) else None
+
+
+def is_encrypted(transport: asyncio.Transport) -> bool:
+    """Return whether a connection is one of TLS."""
+    return transport.get_extra_info("ssl_object") is not None
+
+
+def response(status: int, headers: Iterable[tuple[bytes, bytes]]) -> h11.Response:
+    """Return the head of an answer, with its time."""
+    now = email.utils.formatdate(usegmt=True).encode()
+    return h11.Response(
+        status_code=status, headers=[(b"date", now), *headers], reason=PHRASES.get(status, b"")
+    )
