@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["Backoff", "wants_another"]
+__all__ = ["Backoff", "doubled", "wants_another"]
 
 
 class Backoff:
@@ -36,10 +36,15 @@ class Backoff:
         """
         if ran_sec > 0 and ran_sec >= self._max_delay_sec:
             self.failed_in_a_row = 0
-        # The exponent is bounded: 2.0**1024 overflows, after a week of failures.
-        factor = 2.0 ** min(self.failed_in_a_row, 64)
+        delay = doubled(self._min_delay_sec, self.failed_in_a_row, self._max_delay_sec)
         self.failed_in_a_row += 1
-        return min(self._max_delay_sec, self._min_delay_sec * factor)
+        return delay
+
+
+def doubled(first: float, failures: int, longest: float) -> float:
+    """Return a delay that grows with each failure before it, up to a limit."""
+    # The exponent is bounded: 2.0**1024 overflows, after a week of failures.
+    return min(longest, first * 2.0 ** min(failures, 64))
 
 
 def wants_another(policy: str, *, failed: bool) -> bool:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import rclpy
+from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.engine.transport.base import SampleInfo
@@ -82,7 +83,8 @@ def spin_until(node: Any, future: Any) -> Any:
 def test_few_lifespans_of_publishers_are_remembered() -> None:
     """Messages may come with any number of invented gids."""
     handle: Any = object.__new__(SubscriptionHandle)
-    handle._lifespans, handle.io = {}, SimpleNamespace(call=lambda *_: 0)
+    handle._lifespans = Recent(REMEMBERED_PUBLISHERS)
+    handle.io = SimpleNamespace(call=lambda *_: 0)
     for number in range(5000):
         handle._has_expired(SampleInfo(number.to_bytes(16, "big"), 1, 0), 0)
 

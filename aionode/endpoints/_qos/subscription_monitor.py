@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Protocol
 
+from aionode._process.recent import Recent
 from aionode.clock import SilenceAlarm
 from aionode.endpoints._qos.event_hub import EventHub
 from aionode.endpoints.events import (
@@ -106,7 +107,7 @@ class SubscriptionMonitor(EventHub):
         self._own_lifespan_ns = lifespan_ns(qos.lifespan)
         # By gid, of publishers that limit it. They stay when the publisher has gone, as its
         # messages may still be on their way; the one known for longest is first.
-        self._lifespans_ns: dict[bytes, int] = {}
+        self._lifespans_ns: Recent[bytes, int] = Recent(REMEMBERED_LIFESPANS)
         self._items: ExpiringItems | None = None
         self._purge: Alarm | None = None
         if self._own_lifespan_ns != NEVER_NS:
@@ -180,9 +181,7 @@ class SubscriptionMonitor(EventHub):
             (self._liveliness.add if present else self._liveliness.remove)(publisher)
         limit_ns = lifespan_ns(publisher.qos.lifespan)
         if present and limit_ns < self._own_lifespan_ns:
-            if len(self._lifespans_ns) >= REMEMBERED_LIFESPANS:
-                del self._lifespans_ns[next(iter(self._lifespans_ns))]
-            self._lifespans_ns[publisher.gid] = limit_ns
+            self._lifespans_ns.put(publisher.gid, limit_ns)
             self._expire()
 
     # Messages

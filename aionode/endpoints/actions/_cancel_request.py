@@ -7,6 +7,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from aionode._process.later import Later
+from aionode._process.restart import doubled
 from aionode.endpoints.actions.common import uuid_message
 from aionode.engine.rules.goal import CancelCode, lost_id
 from aionode.errors import EntityDestroyedError, ServiceError, ServiceUnavailableError
@@ -64,7 +66,7 @@ class CancelRequest:
         self._request = client.srv_type.Request()
         self._request.goal_info.goal_id = goal.goal_id
         self._attempts = 0
-        self._timer: asyncio.TimerHandle | None = None
+        self._later = Later()
         self._exchanges: list[Exchange] = []
         self._ended = False
         if goal._sending is not None and not goal._sending.answer.done():
@@ -82,9 +84,7 @@ class CancelRequest:
             response = self._client.srv_type.Response(return_code=CancelCode.GOAL_TERMINATED)
             self._take_response(response)
             return
-        self._timer = self._loop.call_later(
-            min(FIRST_RETRY_S * 2**self._attempts, LONGEST_RETRY_S), self._send
-        )
+        self._later.call(doubled(FIRST_RETRY_S, self._attempts, LONGEST_RETRY_S), self._send)
         self._attempts += 1
         if self._client.service_is_ready():
             exchange = self._client._begin(self._request)
@@ -130,8 +130,7 @@ class CancelRequest:
         if isinstance(error, ServiceUnavailableError | EntityDestroyedError):
             return  # the goal may have been accepted and the answer lost
         if error is None and decision.result().accepted:
-            if self._timer is not None:
-                self._timer.cancel()
+            self._later.cancel()
             self._attempts = 0
             self._send()
         else:
@@ -158,8 +157,7 @@ class CancelRequest:
         exchanges, self._exchanges = self._exchanges, []
         for exchange in exchanges:
             exchange.cancel()
-        if self._timer is not None:
-            self._timer.cancel()
+        self._later.cancel()
         self._attempts = 0
         self._send()
 
@@ -176,8 +174,7 @@ class CancelRequest:
         if self._ended:
             return
         self._ended = True
-        if self._timer is not None:
-            self._timer.cancel()
+        self._later.cancel()
         for exchange in self._exchanges:
             exchange.cancel()
         if self._goal._sending is not None:

@@ -20,6 +20,7 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode._process.concurrency import checkpoint
+from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints.core.callback_runner import accepts
 from aionode.endpoints.core.node_tasks import create_own_task
@@ -158,7 +159,7 @@ class SilenceWatch:
         # has not gone, the last one last.
         self._newest = b""
         self._newest_ns = 0
-        self._heard: dict[bytes, int] = {}
+        self._heard: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         # Whether a silence was noticed, and when `on_silence` was called last.
         self._due = False
         self._called_ns: int | None = None
@@ -250,10 +251,8 @@ class SilenceWatch:
         return not by_ros_time and now_ns - published_ns >= self._silence_ns
 
     def _hear(self, gid: bytes, arrived_ns: int) -> None:
-        heard = self._heard
-        if heard.pop(gid, None) is None and len(heard) >= REMEMBERED_PUBLISHERS:
-            del heard[next(iter(heard))]
-        heard[gid] = arrived_ns
+        self._heard.pop(gid, None)  # so that it is the last one to be forgotten
+        self._heard.put(gid, arrived_ns)
         self._newest = gid
         self._newest_ns = arrived_ns
         self._alarm.note(arrived_ns)

@@ -6,6 +6,7 @@ from asyncio import CancelledError
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Protocol, TypedDict
 
+from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.stats import NOTED_CALLS, CallbackStats
@@ -132,7 +133,7 @@ class SubscriptionReader(MessageQueue[Any]):
         self.runner: CallbackRunner
         self.watch: Watch | None = None
         # By the gid of the publisher; the one known for longest is first.
-        self._last_sequences: dict[bytes, int] = {}
+        self._last_sequences: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         self._reception_sequence = 0
 
     def deliver(  # noqa: C901  # fewer calls for each message, see below
@@ -363,21 +364,20 @@ class DirectReader(SubscriptionReader):
         self._take(msg, sequence, source_ns, arrived_ns or self._now_ns())
 
 
-def missing_before(last_sequences: dict[bytes, int], gid: bytes, sequence: int) -> int:
+def missing_before(last_sequences: Recent[bytes, int], gid: bytes, sequence: int) -> int:
     """Take the number of a message; return how many before it are missing from its publisher.
 
     Args:
-        last_sequences: The last number of each publisher, by gid. Of the publishers it keeps only
-            so many, as messages may carry any number of invented gids.
+        last_sequences: The last number of each publisher, by gid; messages may carry any number of
+            invented gids.
         gid: The publisher.
         sequence: The number. One that is not newer than the last counts for nothing.
     """
     last = last_sequences.get(gid)
     if last is None:
-        if len(last_sequences) >= REMEMBERED_PUBLISHERS:
-            del last_sequences[next(iter(last_sequences))]
-        last = sequence - 1
-    elif sequence <= last:
+        last_sequences.put(gid, sequence)
+        return 0
+    if sequence <= last:
         return 0
     last_sequences[gid] = sequence
     return sequence - last - 1

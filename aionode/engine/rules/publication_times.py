@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from aionode._process.recent import Recent
+
 __all__ = ["PublicationTimes"]
 
 REMEMBERED_PUBLISHERS = 1024
@@ -32,7 +34,7 @@ class PublicationTimes:
 
     def __init__(self) -> None:
         # By gid; the one known for longest is first.
-        self._clocks: dict[bytes, PublisherClock] = {}
+        self._clocks: Recent[bytes, PublisherClock] = Recent(REMEMBERED_PUBLISHERS)
 
     def published_ns(
         self, gid: bytes, source_ns: int, arrived_ns: int, system_began_ns: int
@@ -50,9 +52,8 @@ class PublicationTimes:
             return arrived_ns
         clock = self._clocks.get(gid)
         if clock is None or source_ns < clock.source_ns:  # a new one, or its clock was set back
-            if len(self._clocks) >= REMEMBERED_PUBLISHERS:
-                del self._clocks[next(iter(self._clocks))]
-            clock = self._clocks[gid] = PublisherClock(system_began_ns)
+            clock = PublisherClock(system_began_ns)
+            self._clocks.put(gid, clock)
         clock.note(source_ns, arrived_ns)
         if clock.began_ns - SYNCHRONIZED_NS <= system_began_ns <= clock.began_ns:
             return source_ns + system_began_ns

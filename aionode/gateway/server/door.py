@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
+from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS
 from aionode.errors import RefusedError
 from aionode.gateway.policy.identity import from_scope, place_of, take_token
@@ -124,7 +125,10 @@ class Guesses:
 
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self._now_ns = now_ns
-        self._free_ns: dict[str, int] = {}  # when a place has no wrong tokens left, by place
+        # Forgets first from where none came for longest.
+        self._free_ns: Recent[str, int] = Recent(
+            MOST_PLACES
+        )  # when a place has no wrong tokens left, by place
 
     def check(self, address: str) -> None:
         """Refuse a token if too many wrong ones came from where it comes from.
@@ -142,9 +146,7 @@ class Guesses:
         """Take that a token was wrong."""
         now_ns, place = self._now_ns(), place_of(address)
         free_ns = max(self._free_ns.pop(place, 0), now_ns) + WRONG_NS
-        if len(self._free_ns) >= MOST_PLACES:
-            del self._free_ns[next(iter(self._free_ns))]  # from where none came for longest
-        self._free_ns[place] = free_ns
+        self._free_ns.put(place, free_ns)
 
 
 def is_public(scope: Message) -> bool:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+from aionode._process.recent import Recent
+
 if TYPE_CHECKING:
     from aionode.gateway.policy.identity import Identity
     from aionode.gateway.session.audit import Audit
@@ -42,7 +44,7 @@ class GoalOwners:
     def __init__(self, node: Node, audit: Audit) -> None:
         self._node = node
         self._audit = audit
-        self._owned: dict[str, Owned] = {}  # by the id of the goal
+        self._owned: Recent[str, Owned] = Recent(MOST_GOALS)  # by the id of the goal
 
     def create_action_client(self, action_type: Any, action: str) -> Any:
         """Return a client of an action that sends goals for others."""
@@ -56,9 +58,7 @@ class GoalOwners:
         from aionode.interfaces.unique_identifier_msgs.msg import UUID  # few clients send goals
 
         goal_id = self._node.context.new_uuid()
-        if len(self._owned) >= MOST_GOALS:
-            del self._owned[next(iter(self._owned))]
-        self._owned[goal_id.hex()] = Owned(identity, way)
+        self._owned.put(goal_id.hex(), Owned(identity, way))
         return UUID(uuid=list(goal_id))
 
     def _tell_goes_on(self, action: str, goal_id: str) -> None:

@@ -10,6 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS
 from aionode.errors import MessageError, RefusedError, escaped
 
@@ -117,7 +118,7 @@ class Refusals:
         self.counts: Counter[Refusal] = Counter()
         self._node = node
         self._now_ns = node.context.time_base.steady_ns
-        self._lines: dict[tuple[tuple[str, str], str, Refusal, str], Line] = {}
+        self._lines: Recent[tuple[tuple[str, str], str, Refusal, str], Line] = Recent(MOST_SUBJECTS)
         self._windows: dict[tuple[str, str], Window] = {}
 
     def note(
@@ -150,9 +151,7 @@ class Refusals:
         window.lines += 1
         unsaid = 0
         if line is None:
-            if len(self._lines) >= MOST_SUBJECTS:
-                del self._lines[next(iter(self._lines))]
-            self._lines[key] = Line(now_ns + WAIT_NS)
+            self._lines.put(key, Line(now_ns + WAIT_NS))
         else:
             unsaid = line.unsaid
             is_over = now_ns > line.due_ns + line.wait_ns

@@ -8,6 +8,7 @@ import re
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS, SteadyClock
 from aionode.errors import InterfaceNotFoundError
 from aionode.gateway.session.command import Commands
@@ -144,7 +145,7 @@ class Rates:
     def __init__(self, now_ns: Callable[[], int]) -> None:
         self._now_ns = now_ns
         # With its rule, which therefore lives, so that no other one has its id.
-        self._buckets: dict[tuple[str, int, str], tuple[Rule, Bucket]] = {}
+        self._buckets: Recent[tuple[str, int, str], tuple[Rule, Bucket]] = Recent(MOST_RATES)
 
     def allows(self, identity: Identity, rule: Rule, name: str) -> bool:
         """Count one more, and return whether it is within the rate."""
@@ -152,9 +153,7 @@ class Rates:
             return True
         key = (identity.name, id(rule), name)
         if key not in self._buckets:
-            if len(self._buckets) >= MOST_RATES:
-                del self._buckets[next(iter(self._buckets))]  # the oldest, not those of others
-            self._buckets[key] = (rule, Bucket(rule.rate_hz, self._now_ns))
+            self._buckets.put(key, (rule, Bucket(rule.rate_hz, self._now_ns)))
         return self._buckets[key][1].wait_sec() <= 0.0
 
 

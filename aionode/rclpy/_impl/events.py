@@ -11,8 +11,9 @@ from enum import IntEnum
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from aionode._process.recent import Recent
 from aionode.clock import SilenceAlarm
-from aionode.endpoints.core.subscription_reader import missing_before
+from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS, missing_before
 from aionode.endpoints.events import (
     IncompatibleTypeInfo,
     MatchedInfo,
@@ -302,7 +303,7 @@ class MessageLostWatch(Watch):
 
     def start(self) -> None:
         """Begin to watch."""
-        last: dict[bytes, int] = {}
+        last: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
 
         def note(sample_info: SampleInfo) -> None:
             missing = missing_before(last, sample_info.gid, sample_info.sequence)

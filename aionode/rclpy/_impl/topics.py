@@ -8,6 +8,7 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+from aionode._process.recent import Recent
 from aionode.clock import MachineTime
 from aionode.endpoints.core.endpoint import heavy_text
 from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
@@ -290,7 +291,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
             )
         # Used by the threads that take, one at a time unless the callback group is reentrant. With
         # several, two messages may get the same number, or a publisher be looked up twice.
-        self._lifespans: dict[bytes, int] = {}
+        self._lifespans: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         self._received = 0
         self._announce(node.bare.create_subscription, self._support.wire_type, self.inbox)
 
@@ -354,9 +355,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         lifespan_ns = self._lifespans.get(sample_info.gid)
         if lifespan_ns is None:
             lifespan_ns = self.io.call(self._lifespan_of, sample_info.gid)
-            if len(self._lifespans) >= REMEMBERED_PUBLISHERS:
-                del self._lifespans[next(iter(self._lifespans))]
-            self._lifespans[sample_info.gid] = lifespan_ns
+            self._lifespans.put(sample_info.gid, lifespan_ns)
         if not lifespan_ns:
             return False
         return expires_ns(sample_info.source_ns, arrived_ns, lifespan_ns) <= now_ns()

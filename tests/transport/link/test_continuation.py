@@ -93,9 +93,10 @@ def test_any_bytes_are_refused(data: bytes) -> None:
         links.unseal(data)
 
 
-def test_secrets_are_bounded(links: LinkSecrets, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_secrets_are_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     """The oldest is forgotten: links may end and begin for months."""
     monkeypatch.setattr(continuation, "MOST_LINKS", 3)
+    links = LinkSecrets()
     for number in range(10):
         links.add("b2", bytes([number]) * 16)
 

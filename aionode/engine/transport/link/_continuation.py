@@ -13,6 +13,7 @@ from hashlib import blake2b
 from hmac import compare_digest
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.recent import Recent
 from aionode.engine.transport.link._protocol import FrameParser, Kind
 from aionode.errors import FrameError
 
@@ -75,13 +76,11 @@ class LinkSecrets:
     """The secrets of the other ends of all links that there were lately."""
 
     def __init__(self) -> None:
-        self._by_name: dict[bytes, LinkSecret] = {}
+        self._by_name: Recent[bytes, LinkSecret] = Recent(MOST_LINKS)
 
     def add(self, participant: str, secret: bytes) -> None:
         """Remember the secret of a context at the other end of a new link."""
-        while len(self._by_name) >= MOST_LINKS:
-            del self._by_name[next(iter(self._by_name))]
-        self._by_name[name_of(secret)] = LinkSecret(participant, secret)
+        self._by_name.put(name_of(secret), LinkSecret(participant, secret))
 
     def clear(self) -> None:
         """Forget all of them."""

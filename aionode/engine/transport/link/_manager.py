@@ -7,6 +7,8 @@ import logging
 from itertools import chain
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.recent import Recent
+from aionode._process.restart import doubled
 from aionode.clock import MachineTime
 from aionode.engine.transport.drops import Drop, Drops
 from aionode.engine.transport.link._connection import Connection, flush
@@ -126,7 +128,7 @@ class LinkManager:
         self._failures: dict[str, int] = {}
         # By connection and publisher: what a destroyed publisher left to be sent or confirmed,
         # until everything is confirmed or the connection is closed.
-        self._ending: dict[tuple[Connection, bytes], LinkSendQueue] = {}
+        self._ending: Recent[tuple[Connection, bytes], LinkSendQueue] = Recent(MAX_ENDING)
         self._timers: set[asyncio.TimerHandle] = set()  # of `later`, until they have run
         self._link_changes = 0
 
@@ -228,9 +230,9 @@ class LinkManager:
     def keep(self, gid: bytes, send_queue: LinkSendQueue) -> None:
         """Keep what a destroyed publisher left to be sent or confirmed."""
         if not send_queue.settled:
-            self._ending[send_queue.connection, gid] = send_queue
-        while len(self._ending) > MAX_ENDING:
-            self._ending.pop(next(iter(self._ending))).drop()
+            given_up = self._ending.put((send_queue.connection, gid), send_queue)
+            if given_up is not None:
+                given_up.drop()
 
     def remove(self, gid: bytes) -> None:
         """Forget an endpoint of this context, which was closed."""
@@ -359,10 +361,8 @@ class LinkManager:
         self._backoff.add(participant)
         failures = self._failures.get(participant, 0)
         self._failures[participant] = failures + 1
-        self.later(
-            min(AGAIN_S * 2 ** min(failures, 10), LAST_AGAIN_S),
-            lambda: self._try_again(participant),
-        )
+        delay_s = doubled(AGAIN_S, failures, LAST_AGAIN_S)
+        self.later(delay_s, lambda: self._try_again(participant))
 
     def _try_again(self, participant: str) -> None:
         self._backoff.discard(participant)

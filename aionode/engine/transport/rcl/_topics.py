@@ -7,6 +7,7 @@ from ctypes import byref, c_size_t, string_at
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
+from aionode._process.recent import Recent
 from aionode.engine.transport.base import StopSender, Writer
 from aionode.engine.transport.rcl._bindings import UNNUMBERED, ByteArray, MessageInfo, load, view
 from aionode.engine.transport.rcl._state import RclDeclaration
@@ -259,7 +260,8 @@ class RclReader(RclDeclaration):
         self._take_it: Callable[..., int] | None = None
         self._other = b""  # gid of the publisher of the last message, which is no own one
         self._waits_for_room = False
-        self._counts: dict[bytes, int] = {}  # where the middleware does not number messages
+        # Where the middleware does not number messages.
+        self._counts: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         state.add(self)
 
     def declare(self, rcl: Rcl) -> None:
@@ -338,10 +340,8 @@ class RclReader(RclDeclaration):
         payload = string_at(array.buffer, size)
         sequence = info.sequence
         if sequence == UNNUMBERED:
-            counts = self._counts
-            if gid not in counts and len(counts) >= REMEMBERED_PUBLISHERS:
-                del counts[next(iter(counts))]
-            sequence = counts[gid] = counts.get(gid, 0) + 1
+            sequence = self._counts.get(gid, 0) + 1
+            self._counts.put(gid, sequence)
         try:
             msg = self._decode(payload)
         except DecodeError as error:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final, Protocol
 
+from aionode._process.recent import Recent
 from aionode.engine.transport.reliability.limits import NEVER, OVERHEAD_BYTES
 from aionode.engine.transport.reliability.submessage import SubmessageKind
 from aionode.engine.transport.reliability.writer_proxy import ProxyOutput, WriterProxy
@@ -77,7 +78,7 @@ class StatefulReader:
     ) -> None:
         self.proxies: dict[bytes, WriterProxy] = {}
         # The last sequence number of each writer without a proxy: no writer is in both.
-        self._last: dict[bytes, int] = {}
+        self._last: Recent[bytes, int] = Recent(REMEMBERED_WRITERS)
         self._gid = gid
         self._output = output
         self._now_ns = now_ns
@@ -95,14 +96,8 @@ class StatefulReader:
         """
         if self._has_history and 0 < sequence <= self._last.get(writer, 0):
             return False
-        self._remember(writer, sequence)
+        self._last.put(writer, sequence)
         return True
-
-    def _remember(self, writer: bytes, sequence: int) -> None:
-        last = self._last
-        if writer not in last and len(last) >= REMEMBERED_WRITERS:
-            del last[next(iter(last))]
-        last[writer] = sequence
 
     def receive(self, submessage: Submessage) -> bool:
         """Handle a HEARTBEAT, GAP or DATA of a writer; return whether to call `tick`."""
@@ -122,7 +117,7 @@ class StatefulReader:
         """Return the proxy of its sender, if that has one now."""
         if proxy is not None and self._is_left_to_history(proxy, heartbeat):
             del self.proxies[proxy.gid]
-            self._remember(proxy.gid, proxy.delivered)
+            self._last.put(proxy.gid, proxy.delivered)
             proxy = None
         if proxy is None:
             proxy = self._add_proxy(heartbeat)

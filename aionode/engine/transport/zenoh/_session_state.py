@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple, Protocol, TypeVar
 
 import zenoh
 
+from aionode._process.later import Later
 from aionode.clock import MachineTime, perf_ns
 from aionode.engine.transport.base import Registration
 from aionode.engine.transport.drops import Drop, Drops
@@ -143,7 +144,7 @@ class SessionState:
         self.bulk = SendThread("aionode-bulk", self.waker)
         self.send_threads = {self.bulk}
         self.control_messages = ControlMessages(self.bulk, queue_bytes)
-        self._calm: asyncio.TimerHandle | None = None  # ends a crowd
+        self._calm = Later()  # ends a crowd
         self.announced.on_crowded.append(self.note_crowd)
         self.peer_senders = PeerSenders(self.waker, self._send_progress)
         self.burst = Burst()
@@ -310,16 +311,13 @@ class SessionState:
 
         And for a while after that: it tells of the first that it drops long before the last.
         """
-        if self._calm is not None:
-            self._calm.cancel()
-            self._calm = None
+        self._calm.cancel()
         if self.announced.is_crowded or self.session is None:
-            self._set_crowded(self.announced.is_crowded)
+            self._set_crowded(is_crowded=self.announced.is_crowded)
         else:
-            loop = asyncio.get_running_loop()
-            self._calm = loop.call_later(CALM_S, self._set_crowded, False)
+            self._calm.call(CALM_S, lambda: self._set_crowded(is_crowded=False))
 
-    def _set_crowded(self, is_crowded: bool) -> None:
+    def _set_crowded(self, *, is_crowded: bool) -> None:
         self.control_messages.is_crowded = self.peer_senders.is_crowded = is_crowded
         for declaration in list(self._declarations):
             declaration.note_crowd()

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from aionode._process.recent import Recent
+
 if TYPE_CHECKING:
     from collections.abc import Callable
 
@@ -56,7 +58,7 @@ class TargetNumbers:
 
     def __init__(self, others: Callable[[], int]) -> None:
         self._others = others
-        self._of: dict[bytes, Numbers] = {}
+        self._of: Recent[bytes, Numbers] = Recent(REMEMBERED_PUBLISHERS)
 
     def number(self, gid: bytes, taken: int, *, by_target: bool) -> int:
         """Return the number of a message.
@@ -70,9 +72,7 @@ class TargetNumbers:
         known = self._of.get(gid)
         if known is None:
             if by_target:
-                if len(self._of) >= REMEMBERED_PUBLISHERS:
-                    del self._of[next(iter(self._of))]
-                self._of[gid] = Numbers(taken, by_target=True)
+                self._of.put(gid, Numbers(taken, by_target=True))
             return taken
         rise = taken - known.taken
         if rise <= 0:  # late, or again

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, ClassVar, Final
 
 import zenoh
 
+from aionode._process.later import Later
 from aionode.engine.transport.zenoh._defects._switch import is_mended
 from aionode.engine.transport.zenoh.connections.config import gossip_endpoints
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from aionode.engine.transport.network import Network
     from aionode.engine.transport.zenoh._session_state import SessionState
     from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
@@ -47,7 +46,7 @@ class ConnectionMend(ABC):
         self._state = state
         self._network = network
         self._session: zenoh.Session | None = None
-        self._timer: asyncio.TimerHandle | None = None
+        self._later = Later()
         state.connections.on_change.append(self._hear)
 
     def start(self, session: zenoh.Session) -> None:
@@ -58,7 +57,7 @@ class ConnectionMend(ABC):
     def stop(self) -> None:
         """Act no more; work that a thread has begun ends by itself."""
         self._session = None
-        self._cancel()
+        self._later.cancel()
 
     def _hear(self, change: ConnectionChange) -> None:
         if self._session is not None and change.kind != zenoh.WhatAmI.CLIENT:  # that dials itself
@@ -67,13 +66,3 @@ class ConnectionMend(ABC):
     @abstractmethod
     def _take_change(self, change: ConnectionChange, now_s: float) -> None:
         """Act on a connection to a router or peer."""
-
-    def _call_in(self, delay_s: float, call: Callable[[], None]) -> None:
-        """Call a function in a while, in place of the one that waits."""
-        self._cancel()
-        self._timer = asyncio.get_running_loop().call_later(delay_s, call)
-
-    def _cancel(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None

@@ -131,7 +131,7 @@ class Recovery(ConnectionMend):
         elif now_s >= self._until_s:
             return  # nothing was lost
         self._checks = CHECKS
-        if self._timer is None:
+        if not self._later.waits:
             self._changing_since_s = now_s
         if now_s - self._changing_since_s < POSTPONED_S:
             self._compare_in(FIRST_S)
@@ -139,10 +139,9 @@ class Recovery(ConnectionMend):
     def _compare_in(self, delay_s: float) -> None:
         """Compare in a while; processes that saw the same end do not all do so at once."""
         spread = 1 + int(self._state.participant[-4:], 16) / 0x10000
-        self._call_in(delay_s * spread, self._compare)
+        self._later.call(delay_s * spread, self._compare)
 
     def _compare(self) -> None:
-        self._timer = None
         session = self._session
         if session is None or self._state.announced.left_out:
             return  # what was left out would pass for lost
@@ -234,7 +233,7 @@ class Recovery(ConnectionMend):
             self._checks -= 1
             self._watcher.check()
         now_s = asyncio.get_running_loop().time()
-        if self._timer is None and now_s < self._until_s:
+        if not self._later.waits and now_s < self._until_s:
             self._compare_in(FIRST_S if missing else AGAIN_S)
 
 

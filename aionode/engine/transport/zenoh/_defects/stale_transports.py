@@ -90,15 +90,14 @@ class StaleTransports(ConnectionMend):
         return DECLARED_S * max(len(self._state.connections.kinds) / PEERS_PER_SECOND, 1)
 
     def _check_in(self, delay_s: float) -> None:
-        if self._timer is None:
-            self._call_in(delay_s, self._check_returned)
+        if not self._later.waits:
+            self._later.call(delay_s, self._check_returned)
 
     def _check_returned(self) -> None:
         """Cut the connections to participants that have returned, but have not declared anything.
 
         All at once: each cut is itself a change, after which the others would have to wait again.
         """
-        self._timer = None
         session, acknowledgements = self._session, self._state.acknowledgements
         if session is None:
             return

@@ -11,12 +11,13 @@ on one topic speaks for no other.
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Hashable
 from typing import TYPE_CHECKING, Final
 
 import zenoh
 
+from aionode._process.later import Later
+from aionode._process.recent import Recent
 from aionode.engine.transport.loop_waker import ThreadsafeQueue
 from aionode.engine.transport.reliability.submessage import (
     VERSION,
@@ -69,7 +70,7 @@ class Repeater:
     def __init__(self, interval_s: float) -> None:
         self._interval_s = interval_s
         self._calls: dict[Callable[[], bool], None] = {}
-        self._timer: asyncio.TimerHandle | None = None
+        self._later = Later()
 
     def add(self, call: Callable[[], bool]) -> None:
         """Call `call` from now on."""
@@ -77,11 +78,10 @@ class Repeater:
         self._go_on()
 
     def _go_on(self) -> None:
-        if self._calls and self._timer is None:
-            self._timer = asyncio.get_running_loop().call_later(self._interval_s, self._run)
+        if self._calls and not self._later.waits:
+            self._later.call(self._interval_s, self._run)
 
     def _run(self) -> None:
-        self._timer = None
         for call in list(self._calls):
             if not call():
                 self._calls.pop(call, None)
@@ -90,9 +90,7 @@ class Repeater:
     def clear(self) -> None:
         """Call nothing any more."""
         self._calls.clear()
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._later.cancel()
 
 
 class Acknowledgements:
@@ -123,7 +121,7 @@ class Acknowledgements:
         control_messages: ControlMessages,
     ) -> None:
         self.participants: set[str] = set()
-        self._gone: dict[str, None] = {}  # in order
+        self._gone: Recent[str, str] = Recent(GONE)
         self._announced = announced
         self.present: set[str] = set()
         # By gid below the key of their topic: a submessage counts for no endpoint of another.
@@ -252,10 +250,8 @@ class Acknowledgements:
         elif participant in self.present:
             self.present.discard(participant)
             self._announced.release(participant, key)
-            self._gone[participant] = None
-            if len(self._gone) > GONE:
-                oldest = next(iter(self._gone))
-                del self._gone[oldest]
+            oldest = self._gone.put(participant, participant)
+            if oldest is not None:
                 self.participants.discard(oldest)
 
     def _note_present(self, participant: str, key: str) -> None:

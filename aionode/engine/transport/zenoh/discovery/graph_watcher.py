@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
+from aionode._process.later import Later
 from aionode.clock import perf_ns
 from aionode.engine.transport.send_thread import SendThread
 from aionode.engine.transport.zenoh._session_state import Declaration
@@ -147,7 +148,7 @@ class Watcher:
         self._warned = False
         self._may_tell = False
         self._expected: Alarm | None = None
-        self._filling: asyncio.TimerHandle | None = None
+        self._filling = Later()
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._asking = SendThread("aionode-graph", state.waker)
         self._queue = state.queue(self._take)
@@ -166,9 +167,7 @@ class Watcher:
         if self._subscriber is not None:
             self._subscriber.undeclare()
             self._subscriber = None
-        if self._filling is not None:
-            self._filling.cancel()
-            self._filling = None
+        self._filling.cancel()
         self._asking.abandon()
         self._queue.clear()
         self._state.announced.clear()
@@ -326,8 +325,8 @@ class Watcher:
             self._forget_domain(key)
             return
         self._state.announced.release(participant_of(key), key)
-        if self._state.announced.left_out and self._filling is None:
-            self._filling = asyncio.get_running_loop().call_later(FILL_S, self._fill)
+        if self._state.announced.left_out and not self._filling.waits:
+            self._filling.call(FILL_S, self._fill)
         if self._state.graph is None:
             return
         if isinstance(info, NodeInfo):
@@ -338,7 +337,6 @@ class Watcher:
 
     def _fill(self) -> None:
         """Ask for what was left out: there is room again."""
-        self._filling = None
         self._state.announced.begin_to_fill()
         self.check()
 

@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING, Final
 
 import zenoh
 
+from aionode._process.later import Later
+from aionode._process.restart import doubled
 from aionode.engine.transport.send_thread import SendThread
 from aionode.engine.transport.zenoh.connections.config import open_probe
 from aionode.engine.transport.zenoh.connections.handlers import direct, reason
@@ -139,7 +141,7 @@ class RouterMatching:
         self._declared = state.queue(self._take_declared)
         self._lost = state.queue(self._take_lost)
         self._thread = SendThread("aionode-routers", state.waker)
-        self._timer: asyncio.TimerHandle | None = None
+        self._later = Later()
 
     def set_routers(self, zids: Iterable[str]) -> None:
         """Take the ids of the routers that the context is connected to."""
@@ -182,9 +184,7 @@ class RouterMatching:
 
     def stop(self) -> None:
         """End all sessions; `close` waits for that."""
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._later.cancel()
         self.set_routers(())
         for queue in (self._changes, self._declared, self._lost):
             queue.clear()
@@ -198,12 +198,11 @@ class RouterMatching:
     # On the loop
 
     def _declare_in(self, delay_s: float) -> None:
-        if self._timer is None:
-            self._timer = asyncio.get_running_loop().call_later(delay_s, self._declare_all)
+        if not self._later.waits:
+            self._later.call(delay_s, self._declare_all)
 
     def _declare_all(self) -> None:
         """Declare a publisher for each key that was asked for, and has none yet."""
-        self._timer = None
         session = self._state.session
         if session is None:
             return
@@ -238,7 +237,7 @@ class RouterMatching:
             return
         self._end(router)
         self._routers[router.zid] = RouterSession(router.zid, router.failures + 1)
-        self._declare_in(min(AGAIN_S * 2 ** min(router.failures, 10), LAST_AGAIN_S))
+        self._declare_in(doubled(AGAIN_S, router.failures, LAST_AGAIN_S))
         for key in list(self._asked):
             self._take_change(key)
 

@@ -9,7 +9,6 @@ with static peers opens a router that links it with them, and takes no peers.
 
 from __future__ import annotations
 
-import asyncio
 import logging
 import secrets
 import threading
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Final
 
 import zenoh
 
+from aionode._process.later import Later
 from aionode.clock import perf_ns
 from aionode.engine.transport.network import is_near
 from aionode.engine.transport.send_thread import start_thread
@@ -70,7 +70,7 @@ class LocalRouter:
         self._router: zenoh.Session | None = None
         self._closed = True
         state.connections.on_change.append(self._take_change)
-        self._timer: asyncio.TimerHandle | None = None
+        self._later = Later()
         # Held to read and change `_router`, and while a router is opened, so that `close` finds it.
         # `close` sets `_closed` before it takes the lock: no router is opened after that.
         self._opening = threading.Lock()
@@ -91,9 +91,7 @@ class LocalRouter:
         if self._closed:
             return
         self._closed = True
-        if self._timer is not None:
-            self._timer.cancel()
-            self._timer = None
+        self._later.cancel()
         router = await run_in_own_thread(self._give_up)
         if router is not None:
             await close_session(router)
@@ -108,12 +106,11 @@ class LocalRouter:
         """Take the place of the router of another process when that has ended."""
         if change.is_made or not change.zid.startswith(ROUTER_IDS) or self._closed:
             return
-        if self._timer is None:
+        if not self._later.waits:
             delay_s = TAKE_OVER_S * int(self._state.participant[-4:], 16) / 0x10000
-            self._timer = asyncio.get_running_loop().call_later(delay_s, self._take_over)
+            self._later.call(delay_s, self._take_over)
 
     def _take_over(self) -> None:
-        self._timer = None
         start_thread(threading.Thread(target=self._open_again, name="aionode-zenoh"))
 
     def _open_again(self) -> None:

@@ -1,0 +1,37 @@
+"""Calls that wait for their time."""
+
+from __future__ import annotations
+
+import asyncio
+
+from aionode._process.later import Later
+
+
+async def test_one_call_waits_at_a_time() -> None:
+    """What is asked for next takes the place of what waits, and may be asked for by the call."""
+    later, calls, called = Later(), [], asyncio.Event()
+
+    def second() -> None:
+        calls.append("second")
+        if len(calls) == 1:
+            later.call(0.0, second)
+        else:
+            called.set()
+
+    later.call(0.0, lambda: calls.append("first"))
+    later.call(0.0, second)
+    await called.wait()
+
+    assert (calls, later.waits) == (["second", "second"], False)
+
+
+async def test_what_is_cancelled_is_not_called() -> None:
+    """Who closes leaves nothing behind that acts."""
+    later, called = Later(), asyncio.Event()
+    later.call(0.0, called.set)
+    later.cancel()
+    asyncio.get_running_loop().call_later(0.0, later.call, 0.0, called.set)
+    assert not later.waits
+
+    await called.wait()
+    assert not later.waits
