@@ -28,7 +28,7 @@ from aionode.interfaces.rcl_interfaces.srv import GetParameters
 from aionode.interfaces.std_msgs.msg import String
 from aionode.message import type_name
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile
-from tests.faults.motion.wheels import Wheels, move
+from tests.faults.motion.wheels import NEAR, Wheels, move
 from tests.faults.roles import (
     REPORTS_VARIABLE,
     Hear,
@@ -219,6 +219,8 @@ class Process:
             self.publishes.set()
         elif word == "join":
             self.join()
+        elif word == "near":
+            self.wheels.distance = NEAR
         else:
             asyncio.get_running_loop().remove_reader(sys.stdin)
             self.publishes.set()

@@ -32,9 +32,10 @@ REPORTS_VARIABLE = "AIONODE_FAULTS_REPORTS"
 
 Output = Literal["file", "full", "unread", "terminal"]
 
-Word = Literal["pause", "go on", "quiet", "join"]
+Word = Literal["pause", "go on", "quiet", "join", "near"]
 """What a process is told in a line on its stdin: to publish nothing until it is to go on, to
-publish, call and send goals no more, or to have its wheels join."""
+publish, call and send goals no more, to have its wheels join, or that the target of its wheels is
+near."""
 
 
 class Publish(msgspec.Struct, frozen=True):

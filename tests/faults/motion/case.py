@@ -22,10 +22,10 @@ ALLOWED_S = 0.2
 
 Strike = Callable[["Play"], Awaitable[None]]
 
-Switch = Literal["lease", "silence", "lost", "end", "signals", "gateway"]
+Switch = Literal["lease", "silence", "lost", "end", "signals", "gateway", "defaults"]
 """A mechanism that stops the wheels: the lease of the mover, ``on_silence`` of the wheels,
 ``on_client_lost`` of the server, what a node does at its end, aionode's handling of signals, the
-rules of a gateway for commands."""
+rules of a gateway for commands, the defaults that a type has in its definition."""
 
 
 class Stopped(msgspec.Struct):
@@ -152,6 +152,11 @@ class Motion(msgspec.Struct, frozen=True):
     def without(self, switch: Switch) -> Motion:
         """Return the same case with one of its mechanisms switched off."""
         mover, wheel = self.mover.mover, self.wheel
+        if mover is None and switch == "defaults":
+            zero = "{tolerance: 0.0}" if wheel.action else "{for_sec: 0.0}"
+            command = tuple(zero if word == "{}" else word for word in self.mover.command)
+            role = msgspec.structs.replace(self.mover, command=command)
+            return msgspec.structs.replace(self, mover=role, off=switch)
         if mover is None:  # a command, which only its wheels can stop
             assert switch == "silence"
             return msgspec.structs.replace(
@@ -168,6 +173,8 @@ class Motion(msgspec.Struct, frozen=True):
                 mover = msgspec.structs.replace(
                     mover, asks="goal left" if wheel.action else "publisher"
                 )
+            case "defaults":
+                mover = msgspec.structs.replace(mover, sends_zeros=True)
             case "gateway":
                 mover = msgspec.structs.replace(mover, client="lax")
             case "signals":

@@ -18,6 +18,7 @@ from tests.faults.motion.goings import (
     Strike,
     at_once,
     browser_leaves,
+    comes_near,
     drives_into_standstill,
     frozen,
     guardian_killed,
@@ -445,6 +446,7 @@ def cables() -> Iterator[Motion]:
 
 GATEWAY = Role("gateway", command=("-m", "tests.faults.motion.gateway"))
 WAYS: tuple[Way, ...] = ("rosbridge", "foxglove json", "foxglove cdr", "http")
+GOAL_WAYS: tuple[Way, ...] = ("rosbridge", "http")
 
 
 def gateways() -> Iterator[Motion]:
@@ -465,8 +467,7 @@ def gateways() -> Iterator[Motion]:
             strike=run_into("nan"),
             **by_lease,
         )
-    goal_ways: tuple[Way, ...] = ("rosbridge", "http")
-    for way in goal_ways:
+    for way in GOAL_WAYS:
         yield case(
             together,
             f"a page with a goal over {way}",
@@ -513,6 +514,55 @@ def gateways() -> Iterator[Motion]:
     )
 
 
+INTERFACES = Path(__file__).with_name("interfaces")
+
+
+def defaults() -> Iterator[Motion]:
+    """Yield what happens to the wheels of who sends the defaults of a definition.
+
+    Only the wheels have the definition: the others know the type by what a node describes. With
+    zeros in place of its defaults nothing ends the motion.
+    """
+
+    def within(role: Role) -> Role:
+        if not (role.wheels or role.moves):
+            return role
+        env = {"AIONODE_INTERFACES": str(INTERFACES), **role.env}
+        return msgspec.structs.replace(role, env=env)
+
+    shell = Place("defaults", "On one host", "link", within)
+    web = Place("defaults, gateway", "Through a gateway", "longest", within, roles=(GATEWAY,))
+    near: dict[str, Any] = {
+        "goes": "comes near its target",
+        "stops": "the tolerance in the definition of the action",
+        "wheel": Wheel("", action=True, has_defaults=True),
+        "strike": comes_near,
+        "limit_s": 0.0,
+    }
+    dies: dict[str, Any] = {
+        "goes": "is killed",
+        "stops": "the time in the definition of the message",
+        "wheel": Wheel("", has_defaults=True),
+        "strike": killed,
+        "limit_s": TTL_S,
+        "ends": True,
+    }
+    by_page: dict[str, Any] = {"program": "page", "client": "lax", "has_defaults": True}
+    movers: list[tuple[Place, str, Role, dict[str, Any]]] = [
+        (shell, "aionode action send_goal of {}", SEND_GOAL, near | {"ends": True}),
+        (shell, "aionode topic pub of {}", PUB_DEFAULTS, dies),
+    ]
+    for way in WAYS:
+        if way in GOAL_WAYS:
+            role = mover(asks="goal", way=way, **by_page)
+            movers.append((web, f"a page with a goal of {{}} over {way}", role, near))
+        if way != "foxglove cdr":  # there the page itself encodes all fields
+            role = mover(asks="publisher", way=way, **by_page)
+            movers.append((web, f"a page that sends {{}} over {way}", role, dies))
+    for place, who, role, options in movers:
+        yield case(place, who, mover=role, switches=("defaults",), **options)
+
+
 def beyond(hosts: TwoHosts, role: Role) -> Role:
     """Return a role on the robot if it is wheels, else on the other host, which names the robot."""
     if role.wheels:
@@ -537,6 +587,22 @@ PUB = Role(
 """A command from a shell, which is one message a second, and no sender in it."""
 
 
+PUB_DEFAULTS = Role(
+    "",
+    command=(
+        *("-m", "aionode", "topic", "pub", "-r", "20"),
+        *("TOPIC", "minibot_interfaces/msg/Drive", "{}"),
+    ),
+)
+SEND_GOAL = Role(
+    "",
+    command=(
+        *("-m", "aionode", "action", "send_goal"),
+        *("TOPIC", "minibot_interfaces/action/Approach", "{}"),
+    ),
+)
+
+
 LAUNCH = Role(
     "",
     command=(
@@ -559,6 +625,7 @@ def motions() -> list[Motion]:
         *(motion for place in places for kind in kinds for motion in kind(place)),
         *limits(places[0]),
         *gateways(),
+        *defaults(),
         *launches(places[0]),
         *cables(),
         *ros_motions(),

@@ -58,6 +58,8 @@ finite = false
 
 TWIST = "geometry_msgs/msg/Twist"
 ACTION = "test_msgs/action/Fibonacci"
+DRIVE = "minibot_interfaces/msg/Drive"
+APPROACH = "minibot_interfaces/action/Approach"
 
 
 def port_file() -> Path:
@@ -91,6 +93,9 @@ class Page:
         self._port = port
         self._moves = asyncio.Event()
         self._speed = 1.0
+        self._type, self._action = TWIST, ACTION
+        if mover.has_defaults:
+            self._type, self._action = DRIVE, APPROACH
         os.set_blocking(sys.stdin.fileno(), False)
         asyncio.get_running_loop().add_reader(sys.stdin, self._obey)
         reporter.report.ready = True
@@ -119,12 +124,20 @@ class Page:
 
     def _values(self) -> dict[str, Any]:
         """Return a command in JSON: a page writes null for a NaN."""
+        if self._mover.has_defaults:
+            return {"by": os.getpid()} | ({"for_sec": 0.0} if self._mover.sends_zeros else {})
         twist = command()
         speed = None if math.isnan(self._speed) else self._speed
         return {
             "linear": {"x": speed, "y": twist.linear.y},
             "angular": {"x": twist.angular.x},
         }
+
+    def _goal(self) -> dict[str, Any]:
+        """Return a goal in JSON."""
+        if self._mover.has_defaults:
+            return {"by": os.getpid()} | ({"tolerance": 0.0} if self._mover.sends_zeros else {})
+        return {"order": os.getpid()}
 
     async def _at_its_pace(self, send: Callable[[], Awaitable[object]]) -> None:
         while True:
@@ -140,16 +153,17 @@ class Page:
         async with self._connect() as page:
             if self._mover.asks == "goal":
                 op = {"op": "send_action_goal", "id": "1", "action": self._mover.topic}
-                goal = {"action_type": ACTION, "args": {"order": os.getpid()}, "feedback": True}
+                goal = {"action_type": self._action, "args": self._goal(), "feedback": True}
                 await page.send(json.dumps(op | goal))
                 async for _ in page:
                     pass
-            op = {"op": "publish", "topic": self._mover.topic, "type": TWIST}
+            op = {"op": "publish", "topic": self._mover.topic, "type": self._type}
             await self._at_its_pace(lambda: page.send(json.dumps({**op, "msg": self._values()})))
 
     async def _foxglove(self) -> None:
         encoding = self._mover.way.split()[1]
-        channel = {"id": 1, "topic": self._mover.topic, "encoding": encoding, "schemaName": TWIST}
+        channel = {"id": 1, "topic": self._mover.topic, "encoding": encoding}
+        channel["schemaName"] = self._type
         async with self._connect("foxglove.sdk.v1") as app, asyncio.TaskGroup() as tasks:
             tasks.create_task(drain(app))
             await app.send(json.dumps({"op": "advertise", "channels": [channel]}))
@@ -170,9 +184,9 @@ class Page:
         ) as client:
             if self._mover.asks == "goal":
                 await client.post(
-                    f"/actions{self._mover.topic}?type={ACTION}", json={"order": os.getpid()}
+                    f"/actions{self._mover.topic}?type={self._action}", json=self._goal()
                 )
-            path = f"/topics{self._mover.topic}?type={TWIST}"
+            path = f"/topics{self._mover.topic}?type={self._type}"
             await self._at_its_pace(lambda: client.post(path, json=self._values()))
 
 

@@ -154,3 +154,9 @@ async def killed_beside_another(play: Play) -> None:
     await asyncio.sleep(1.0)
     play.struck()
     play.child.send(signal.SIGKILL)
+
+
+async def comes_near(play: Play) -> None:
+    """Let the target of the wheels be near."""
+    play.struck()
+    play.wheels.tell("near")

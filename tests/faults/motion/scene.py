@@ -282,9 +282,15 @@ class Scene:
         late = tuple(play.motion.wheel for play in plays if play.motion.joins_late)
         if late:  # it takes long to start, and has to join while the fault lasts
             await self._add(stage, Role("late", wheels=late, joins=True))
+        if any(role.command for play in plays for role in play.movers):
+            await self._until_ready(stage)  # a command may ask the wheels for their types at once
         for play in plays:
             for role in play.movers:
                 await self._add(stage, role)
+        await self._until_ready(stage)
+
+    async def _until_ready(self, stage: Stage) -> None:
+        """Wait until what has started is ready, as far as it says so."""
         ends_s = time.monotonic() + READY_LIMIT_S
         for child in stage.children.values():
             while not child.last.ready and self._may_come(child) and time.monotonic() < ends_s:  # noqa: ASYNC110

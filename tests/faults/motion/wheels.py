@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import importlib
 import os
 import time
 from collections.abc import Callable
@@ -15,10 +16,18 @@ from aionode.qos import DurabilityPolicy, QoSProfile
 from tests.faults.motion.words import Handed, Mover, What, Wheel
 from tests.faults.roles import Report
 
-__all__ = ["Wheels", "command", "move", "profile"]
+__all__ = ["NEAR", "Wheels", "command", "move", "profile"]
 
 STEP_S = 0.05
 """How often a goal moves the wheels."""
+
+FAR, NEAR = 1.0, 0.03
+"""Distances of a target."""
+
+
+def own(kind: str, name: str) -> Any:
+    """Return a type of the package that only wheels and who moves them have."""
+    return getattr(importlib.import_module(f"aionode.interfaces.minibot_interfaces.{kind}"), name)
 
 
 def profile(each: Mover | Wheel) -> QoSProfile:
@@ -36,12 +45,17 @@ def command() -> Twist:
 async def move(node: Node, wheel: Wheel) -> None:
     """Move wheels until cancelled."""
     if wheel.action:
-        client = node.create_action_client(Fibonacci, wheel.topic)
+        approach = own("action", "Approach") if wheel.has_defaults else None
+        client = node.create_action_client(approach or Fibonacci, wheel.topic)
         await client.wait_for_server()
-        await client.call(Fibonacci.Goal(order=os.getpid()))
-    publisher = node.create_publisher(Twist, wheel.topic, profile(wheel))
+        if approach is None:
+            await client.call(Fibonacci.Goal(order=os.getpid()))
+        else:
+            await client.call(approach.Goal(by=os.getpid(), tolerance=0.0))
+    drive = own("msg", "Drive") if wheel.has_defaults else None
+    publisher = node.create_publisher(drive or Twist, wheel.topic, profile(wheel))
     while True:
-        publisher.publish(command())
+        publisher.publish(command() if drive is None else drive(by=os.getpid()))
         await asyncio.sleep(STEP_S)
 
 
@@ -52,16 +66,23 @@ class Wheels:
         node: Its node.
         report: Where what they are handed is noted.
         tell: Called when they are to stop, so that the harness learns at once.
+
+    Attributes:
+        distance: How far their target is.
     """
 
     def __init__(self, node: Node, report: Report, tell: Callable[[], None]) -> None:
+        self.distance = FAR
         self._node = node
         self._report = report
         self._tell = tell
 
     def attach(self, wheel: Wheel) -> None:
         """Let a wheel obey."""
-        (self._serve if wheel.action else self._subscribe)(wheel)
+        if wheel.has_defaults:
+            (self._approach if wheel.action else self._drive)(wheel.topic)
+        else:
+            (self._serve if wheel.action else self._subscribe)(wheel)
 
     def _note(self, topic: str, what: What, by: int = 0, sent_s: float = 0.0) -> None:
         self._report.handed.append(Handed(topic, what, time.monotonic(), by, sent_s))
@@ -107,3 +128,34 @@ class Wheels:
             drive,
             **options,
         )
+
+    def _approach(self, topic: str) -> None:
+        approach = own("action", "Approach")
+
+        async def drive(goal: Any) -> Any:
+            by = goal.request.by
+            try:
+                while self.distance > goal.request.tolerance:
+                    self._note(topic, "move", by, time.monotonic())
+                    await asyncio.sleep(STEP_S)
+            finally:
+                self._note(topic, "stop", by)
+            goal.succeed()
+            return approach.Result()
+
+        self._node.create_action_server(approach, topic, drive)
+
+    def _drive(self, topic: str) -> None:
+        end: asyncio.TimerHandle | None = None
+
+        def take(msg: Any) -> None:
+            nonlocal end
+            if end is not None:
+                end.cancel()
+                end = None
+            self._note(topic, "move" if msg.speed else "stop", msg.by)
+            if msg.for_sec:
+                loop = asyncio.get_running_loop()
+                end = loop.call_later(msg.for_sec, self._note, topic, "stop")
+
+        self._node.create_subscription(own("msg", "Drive"), topic, take, 10)

@@ -47,6 +47,9 @@ class Mover(msgspec.Struct, frozen=True):
             soon it comes: what aionode's handling of signals is compared with.
         way: By which way in it drives through a gateway.
         client: Who it is there, and its token.
+        has_defaults: Whether it sends what has defaults in its definition, which only the wheels
+            have: see `Wheel`.
+        sends_zeros: Whether it sends zeros in their place.
     """
 
     topic: str
@@ -62,6 +65,8 @@ class Mover(msgspec.Struct, frozen=True):
     old_signals: bool = False
     way: Way = "rosbridge"
     client: str = "page"
+    has_defaults: bool = False
+    sends_zeros: bool = False
 
 
 class Wheel(msgspec.Struct, frozen=True):
@@ -75,6 +80,9 @@ class Wheel(msgspec.Struct, frozen=True):
         accepts: Whether its server of goals has a callback that accepts to cancel them.
         continues: Whether it says that the goals of lost clients go on.
         transient: Whether it asks for what its publishers have kept.
+        has_defaults: Whether its type is one of the package ``minibot_interfaces``, whose fields
+            have defaults: it goes to a target until that is within the tolerance of the goal, or
+            as long as a command says.
     """
 
     topic: str
@@ -84,6 +92,7 @@ class Wheel(msgspec.Struct, frozen=True):
     accepts: bool = True
     continues: bool = False
     transient: bool = False
+    has_defaults: bool = False
 
 
 class Handed(msgspec.Struct, frozen=True, array_like=True):
