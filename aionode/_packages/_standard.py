@@ -9,6 +9,8 @@ from aionode._packages._executables import Executable
 __all__ = ["program_module", "standard_executables"]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
+    "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
     "tf2_ros": {"static_transform_publisher": "_static_transform_publisher"},
 }
 """The module of `aionode.programs` that is an executable, by package and name."""

@@ -16,8 +16,8 @@ from aionode.arguments import remove_ros_args
 from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
-from aionode.programs._rotations import quaternion_of_angles
 from aionode.tf import StaticTransformBroadcaster
+from aionode.tf.apply import from_angles
 
 __all__ = ["Given", "StaticTransformPublisher", "main"]
 
@@ -49,8 +49,8 @@ OLD_STYLES: Final = {
 }
 """What values mean by their places, by their number."""
 
-LENGTH_TOLERANCE: Final = 1e-3
-"""By how much the length of a quaternion may differ from 1: tf2 ignores others."""
+LENGTH_TOLERANCE: Final = 0.01
+"""By how much the square of a quaternion's length may differ from 1: tf2 ignores others."""
 
 
 @dataclass
@@ -94,7 +94,7 @@ class Given:
             raise ValueError("Frame id must not be empty")
         if not child_frame_id:
             raise ValueError("Child frame id must not be empty")
-        rotation: tuple[float, ...] = quaternion_of_angles(*(numbers.get(a, 0.0) for a in ANGLES))
+        rotation: tuple[float, ...] = from_angles(*(numbers.get(a, 0.0) for a in ANGLES))
         if not numbers.keys().isdisjoint(QUATERNION):
             rotation = tuple(numbers.get(name, float(name == "qw")) for name in QUATERNION)
         translation = tuple(numbers.get(name, 0.0) for name in TRANSLATION)
@@ -162,7 +162,7 @@ class StaticTransformPublisher(Node):
                 f"'{given.child_frame_id}': child_frame_id cannot equal frame_id"
             )
         length = math.hypot(*given.rotation)
-        if abs(length - 1.0) > LENGTH_TOLERANCE:
+        if abs(length**2 - 1.0) > LENGTH_TOLERANCE:
             log.warning(
                 f"The quaternion has the length {length:g}; listeners ignore this transform, as "
                 "they take rotations of length 1 only"
@@ -206,7 +206,3 @@ def main() -> None:
         sys.stderr.write(f"error parsing command line arguments: {error}\n{USAGE}")
         raise SystemExit(1) from None
     aionode.run(lambda: StaticTransformPublisher(given))
-
-
-if __name__ == "__main__":
-    main()

@@ -7,13 +7,14 @@ quite 1, so that results agree with tf2.
 
 from __future__ import annotations
 
-from math import acos, sin, sqrt
+from math import acos, cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-__all__ = ["IDENTITY", "Edge", "Pose", "chained", "composed", "interpolated", "inverted", "unit"]
+__all__ = ["IDENTITY", "Edge", "Pose", "chained", "composed"]
+__all__ += ["from_angles", "interpolated", "inverted", "unit"]
 
 Pose = tuple[float, float, float, float, float, float, float]
 """Translation x, y, z, and rotation x, y, z, w."""
@@ -113,3 +114,14 @@ def unit(pose: Pose) -> Pose:
     if leading < 0.0:
         scale = -scale
     return x, y, z, i * scale, j * scale, k * scale, w * scale
+
+
+def from_angles(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
+    """Return the quaternion of a rotation around the fixed axes x, y and z."""
+    (sr, cr), (sp, cp), (sy, cy) = ((sin(a / 2), cos(a / 2)) for a in (roll, pitch, yaw))
+    return (
+        sr * cp * cy - cr * sp * sy,
+        cr * sp * cy + sr * cp * sy,
+        cr * cp * sy - sr * sp * cy,
+        cr * cp * cy + sr * sp * sy,
+    )

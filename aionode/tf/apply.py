@@ -7,14 +7,22 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.interfaces.geometry_msgs import msg as geometry
 from aionode.interfaces.sensor_msgs.msg import PointCloud2
-from aionode.tf._arithmetic import Pose, composed, unit
+from aionode.tf._arithmetic import Pose, composed, from_angles, unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
     from aionode.interfaces.geometry_msgs.msg import TransformStamped
 
-__all__ = ["do_transform", "register_transform", "rotation_matrix", "transformer_of"]
+__all__ = [
+    "Pose",
+    "composed",
+    "do_transform",
+    "from_angles",
+    "register_transform",
+    "rotation_matrix",
+    "transformer_of",
+]
 
 MessageT = TypeVar("MessageT")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import asin, atan2, copysign, cos, degrees, pi, sin
+from math import asin, atan2, copysign, degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -13,7 +13,7 @@ from aionode.cli._support.options import hertz, seconds
 from aionode.clock import Clock, ClockType, Time
 from aionode.errors import TransformException
 from aionode.tf import Buffer, StaticTransformBroadcaster, TimeoutException
-from aionode.tf.apply import matrix_of, pose_of
+from aionode.tf.apply import from_angles, matrix_of, pose_of
 
 if TYPE_CHECKING:
     from aionode.cli._support.output import Output
@@ -282,15 +282,4 @@ def static_transform(
         transform=Transform(
             translation=Vector3(x=x, y=y, z=z), rotation=Quaternion(x=i, y=j, z=k, w=w)
         ),
-    )
-
-
-def from_angles(roll: float, pitch: float, yaw: float) -> tuple[float, float, float, float]:
-    """Return the quaternion of a rotation around the fixed axes x, y and z."""
-    (sr, cr), (sp, cp), (sy, cy) = ((sin(a / 2), cos(a / 2)) for a in (roll, pitch, yaw))
-    return (
-        sr * cp * cy - cr * sp * sy,
-        cr * sp * cy + sr * cp * sy,
-        cr * cp * sy - sr * sp * cy,
-        cr * cp * cy + sr * sp * sy,
     )

@@ -1,0 +1,247 @@
+"""``joint_state_publisher``: publishes where all joints are, also those that nobody measures."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import aionode
+from aionode import DurabilityPolicy, Node, QoSProfile
+from aionode.arguments import remove_ros_args
+from aionode.errors import CommandError
+from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
+from aionode.interfaces.sensor_msgs.msg import JointState
+from aionode.interfaces.std_msgs.msg import Header, String
+from aionode.programs._urdf import Joint, Mimic, Robot
+
+__all__ = ["JointStatePublisher", "main"]
+
+DEFAULTS: dict[str, Any] = {
+    "publish_default_efforts": False,
+    "publish_default_positions": True,
+    "publish_default_velocities": False,
+    "rate": 10,
+    "source_list": [],
+    "use_mimic_tags": True,
+    "use_smallest_joint_limits": True,
+    "delta": 0.0,
+}
+
+
+@dataclass
+class State:
+    """Where a joint is that follows no other one.
+
+    Attributes:
+        least: Its least position.
+        greatest: Its greatest position.
+        is_endless: Whether it turns without end.
+        position: Where it is; None if nobody has said so.
+        velocity: How fast it is; as above.
+        effort: With which effort; as above.
+        is_rising: Which way `delta` moves it.
+    """
+
+    least: float
+    greatest: float
+    is_endless: bool
+    position: float | None
+    velocity: float | None
+    effort: float | None
+    is_rising: bool = True
+
+    def move(self, delta: float) -> None:
+        """Move it by a step, to and fro between its limits, or around."""
+        if self.position is None:
+            return
+        self.position += delta if self.is_rising else -delta
+        if self.position > self.greatest:
+            self.position = self.least if self.is_endless else self.greatest
+            self.is_rising = self.is_endless
+        elif self.position < self.least:
+            self.position = self.least
+            self.is_rising = True
+
+
+class JointStatePublisher(Node):
+    """Publishes `joint_states` for all joints that move, of a description that is published.
+
+    Args:
+        file: A file with the description, if it is not to be waited for.
+
+    Raises:
+        CommandError: There is no such file, it is no URDF, or a parameter does not fit.
+    """
+
+    def __init__(self, file: str | None = None) -> None:
+        super().__init__(
+            "joint_state_publisher", automatically_declare_parameters_from_overrides=True
+        )
+        for name, value in DEFAULTS.items():
+            if not self.has_parameter(name):
+                self.declare_parameter(name, value, ParameterDescriptor(dynamic_typing=True))
+        self.joints: list[str] = []
+        self.states: dict[str, State] = {}
+        self.followers: dict[str, Mimic] = {}
+        self.given_followers = self._given_followers()
+        if file is not None:
+            try:
+                self.use(Path(file).read_text(encoding="utf-8"))
+            except (OSError, ValueError) as error:
+                raise CommandError(f"{file}: {error}") from None
+        else:
+            self.get_logger().info(
+                "Waiting for robot_description to be published on the robot_description topic..."
+            )
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_subscription(String, "robot_description", self.on_description, latched)
+        for source in self.value("source_list"):
+            self.create_subscription(JointState, source, self.on_source, 10)
+        self.publisher = self.create_publisher(JointState, "joint_states", 10)
+        rate = self.value("rate")
+        if not isinstance(rate, int | float) or not 0 < rate < math.inf:
+            raise CommandError(f"rate is {rate!r}; a number above 0 fits")
+        self.create_timer(1.0 / rate, self.publish)
+
+    def value(self, name: str) -> Any:
+        """Return the value of a parameter."""
+        return self.get_parameter(name).value
+
+    def _given_followers(self) -> dict[str, Mimic]:
+        """Return the joints that parameters let follow others.
+
+        Raises:
+            CommandError: They are not as documented.
+        """
+        parts: dict[str, dict[str, Any]] = {}
+        for name, parameter in self.get_parameters_by_prefix("dependent_joints").items():
+            joint, _, part = name.rpartition(".")
+            if not joint:
+                raise CommandError(f"Invalid dependent_joint name '{name}'")
+            if part not in ("parent", "factor", "offset"):
+                raise CommandError(
+                    f"Invalid dependent_joint name '{part}' (allowed values are 'parent', "
+                    "'factor', 'offset')"
+                )
+            parts.setdefault(joint, {})[part] = parameter.value
+        if any("parent" not in given for given in parts.values()):
+            raise CommandError("All dependent_joints must at least have a parent")
+        return {
+            joint: Mimic(
+                given["parent"], float(given.get("factor", 1.0)), float(given.get("offset", 0.0))
+            )
+            for joint, given in parts.items()
+        }
+
+    def use(self, text: str) -> None:
+        """Take a description.
+
+        Raises:
+            ValueError: It is no URDF.
+        """
+        robot = Robot.of(text)
+        moved = [joint for joint in robot.joints.values() if joint.is_moved]
+        followers = {
+            joint.name: joint.mimic
+            for joint in moved
+            if joint.mimic is not None and self.value("use_mimic_tags")
+        } | {name: given for name, given in self.given_followers.items() if name in robot.joints}
+        for name in followers:
+            leader(name, followers)  # refuses those that follow each other
+        self.joints = [joint.name for joint in moved]
+        self.followers = followers
+        self.states = {
+            joint.name: self.state(joint) for joint in moved if joint.name not in followers
+        }
+
+    def state(self, joint: Joint) -> State:
+        """Return where a joint begins: at its zero, or in its middle if it cannot be there."""
+        least, greatest = joint.limits or (-math.pi, math.pi)
+        if self.value("use_smallest_joint_limits"):
+            soft_least, soft_greatest = joint.soft_limits
+            least = least if soft_least is None else max(least, soft_least)
+            greatest = greatest if soft_greatest is None else min(greatest, soft_greatest)
+        zero = (least + greatest) / 2 if least > 0 or greatest < 0 else 0.0
+        zeros = self.get_parameters_by_prefix("zeros")
+        if joint.name in zeros:
+            zero = float(zeros[joint.name].value)
+        return State(
+            least,
+            greatest,
+            joint.kind == "continuous",
+            zero if self.value("publish_default_positions") else None,
+            0.0 if self.value("publish_default_velocities") else None,
+            0.0 if self.value("publish_default_efforts") else None,
+        )
+
+    def on_description(self, msg: String) -> None:
+        """Take a description that was published."""
+        try:
+            self.use(msg.data)
+        except ValueError as error:
+            self.get_logger().warning(f"robot_description is not used: {error}")
+
+    def on_source(self, msg: JointState) -> None:
+        """Take over what another topic says of joints; of parts that it has not, nothing."""
+        for part in ("position", "velocity", "effort"):
+            values = getattr(msg, part).tolist()
+            for name, value in zip(msg.name, values, strict=False):
+                if name in self.states:
+                    setattr(self.states[name], part, value)
+
+    def publish(self) -> None:
+        """Publish where all joints are."""
+        if not self.joints:
+            return
+        delta = self.value("delta")
+        if delta > 0:
+            for state in self.states.values():
+                state.move(delta)
+        msg = JointState(header=Header(stamp=self.get_clock().now().to_msg()), name=self.joints)
+        led = [leader(name, self.followers) for name in self.joints]
+        states = [(self.states.get(mimic.joint), mimic) for mimic in led]
+        for part in ("position", "velocity", "effort"):
+            known = any(getattr(state, part) is not None for state in self.states.values())
+            if known or (part == "position" and self.followers):
+                setattr(msg, part, [part_of(part, state, mimic) for state, mimic in states])
+        self.publisher.publish(msg)
+
+
+def leader(name: str, followers: dict[str, Mimic]) -> Mimic:
+    """Return which joint a joint follows in the end, itself if none, and how.
+
+    Raises:
+        ValueError: It follows itself.
+    """
+    factor, offset = 1.0, 0.0
+    chain = [name]
+    while chain[-1] in followers:
+        mimic = followers[chain[-1]]
+        offset += factor * mimic.offset
+        factor *= mimic.multiplier
+        chain.append(mimic.joint)
+        if mimic.joint in chain[:-1]:
+            raise ValueError(f"Found an infinite recursive mimic chain: {chain}")
+    return Mimic(chain[-1], factor, offset)
+
+
+def part_of(part: str, state: State | None, mimic: Mimic) -> float:
+    """Return a number of a joint that follows another one; 0 where nothing is known."""
+    value: float | None = None if state is None else getattr(state, part)
+    if value is None:
+        return 0.0
+    if part == "position":
+        return value * mimic.multiplier + mimic.offset
+    return value * mimic.multiplier if part == "velocity" else value
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    parser = argparse.ArgumentParser(prog="joint_state_publisher")
+    parser.add_argument("description_file", help="Robot description file to use", nargs="?")
+    file = parser.parse_args(remove_ros_args(sys.argv)[1:]).description_file
+    aionode.run(lambda: JointStatePublisher(file))
