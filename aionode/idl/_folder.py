@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import sys
-import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from types import ModuleType
@@ -18,7 +17,7 @@ from aionode.idl._definition import HALVES, InterfaceText, split_type_name
 from aionode.idl._omg import parse_idl
 from aionode.idl._parser import parse
 
-__all__ = ["FileTexts", "Interfaces", "load_interfaces", "read_folder", "refuse"]
+__all__ = ["FileTexts", "Interfaces", "load_interfaces", "read_folder"]
 
 PACKAGE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 TYPE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
@@ -29,19 +28,13 @@ class Interfaces(Mapping[str, type[Any]]):
 
     Args:
         types: The classes.
-        failed: Why there is no class of some types, which is raised where one is asked for.
     """
 
-    def __init__(
-        self, types: Mapping[str, type[Any]], failed: Mapping[str, IdlError] | None = None
-    ) -> None:
+    def __init__(self, types: Mapping[str, type[Any]]) -> None:
         self._types = dict(sorted(types.items()))
-        self._failed = dict(failed or {})
         self._packages: dict[str, ModuleType] = {}
         for typename, cls in self._types.items():
             setattr(self._module_of(typename), typename.rpartition("/")[2], cls)
-        for typename, error in self._failed.items():
-            refuse(self._module_of(typename), typename.rpartition("/")[2], error)
 
     def _module_of(self, typename: str) -> ModuleType:
         package, kind, _ = split_type_name(typename)
@@ -52,8 +45,6 @@ class Interfaces(Mapping[str, type[Any]]):
         return module
 
     def __getitem__(self, typename: str) -> type[Any]:
-        if typename in self._failed:
-            raise self._failed[typename]
         return self._types[typename]
 
     def __iter__(self) -> Iterator[str]:
@@ -77,7 +68,7 @@ class Interfaces(Mapping[str, type[Any]]):
         )
 
 
-def load_interfaces(path: str | Path, *, reuse: bool = True, lenient: bool = False) -> Interfaces:
+def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
     """Return the interfaces of a folder as classes, without a build step.
 
     The folder is a package with ``msg``, ``srv`` or ``action`` folders, or contains packages at any
@@ -89,41 +80,17 @@ def load_interfaces(path: str | Path, *, reuse: bool = True, lenient: bool = Fal
         path: The folder.
         reuse: Return the existing class for a type with the same definition, so that its messages
             are accepted wherever either is; otherwise every class is new.
-        lenient: A definition that is not valid refuses its own type alone, and those that use it,
-            each where it is asked for.
 
     Raises:
         IdlError: A definition is not valid; the error names file, line and column.
         FileNotFoundError: The folder does not exist.
     """
-    files = definition_files(path, lenient=lenient)
+    files = definition_files(path)
     builder = Builder(FileTexts(files), reuse=reuse)
-    built: dict[str, type[Any]] = {}
-    failed: dict[str, IdlError] = {}
-    for typename in files:
-        try:
-            built[typename] = builder.build(typename)
-        except IdlError as error:
-            if not lenient:
-                raise
-            failed[typename] = error
-    loaded = Interfaces(built, failed)
+    loaded = Interfaces({typename: builder.build(typename) for typename in files})
     for package in {split_type_name(typename)[0] for typename in files}:
         make_importable(package, loaded)
     return loaded
-
-
-def refuse(module: ModuleType, name: str, error: IdlError) -> None:
-    """Let a module raise an error where one of its types is asked for."""
-    failed: dict[str, IdlError] = vars(module).setdefault("__refused__", {})
-    failed[name] = error
-
-    def find(wanted: str) -> Any:
-        if wanted in failed:
-            raise failed[wanted]
-        raise AttributeError(f"module {module.__name__!r} has no attribute {wanted!r}")
-
-    vars(module).update(__getattr__=find)
 
 
 class FileTexts(Mapping[str, InterfaceText]):
@@ -157,11 +124,11 @@ def read_folder(path: str | Path) -> Mapping[str, InterfaceText]:
         IdlError: A definition is not valid, or two definitions of the same type differ.
         FileNotFoundError: The folder does not exist.
     """
-    texts = FileTexts(definition_files(path, lenient=False))
+    texts = FileTexts(definition_files(path))
     return {typename: texts[typename] for typename in texts}
 
 
-def definition_files(path: str | Path, *, lenient: bool) -> dict[str, Path]:
+def definition_files(path: str | Path) -> dict[str, Path]:
     """Return the files with the definitions of a folder, by type name.
 
     Raises:
@@ -177,13 +144,8 @@ def definition_files(path: str | Path, *, lenient: bool) -> dict[str, Path]:
         for file in sorted(root.rglob(f"*.{ending}")):
             if file.parent.name != kind:
                 continue
-            try:
-                typename = f"{package_of(file)}/{kind}/{checked_stem(file)}"
-                expect_same(typename, files.setdefault(typename, file), file)
-            except IdlError as error:
-                if not lenient:
-                    raise
-                warnings.warn(f"{error}; it is not used", RuntimeWarning, stacklevel=3)
+            typename = f"{package_of(file)}/{kind}/{checked_stem(file)}"
+            expect_same(typename, files.setdefault(typename, file), file)
     return files
 
 

@@ -21,7 +21,7 @@ from aionode._packages import here
 from aionode.errors import IdlError
 from aionode.idl._build import Builder, existing
 from aionode.idl._definition import HALVES, InterfaceText, split_type_name
-from aionode.idl._folder import FileTexts, checked_stem, package_of, refuse
+from aionode.idl._folder import FileTexts, checked_stem, package_of
 from aionode.interfaces import VERSIONED, shipped_packages
 from aionode.message import Interface
 
@@ -243,3 +243,16 @@ class NamedLoader(Loader):
                 vars(module)[name] = self.named.build(typename)
             except IdlError as error:
                 refuse(module, name, error)
+
+
+def refuse(module: ModuleType, name: str, error: IdlError) -> None:
+    """Let a module raise an error where one of its types is asked for."""
+    failed: dict[str, IdlError] = vars(module).setdefault("__refused__", {})
+    failed[name] = error
+
+    def find(wanted: str) -> Any:
+        if wanted in failed:
+            raise failed[wanted]
+        raise AttributeError(f"module {module.__name__!r} has no attribute {wanted!r}")
+
+    vars(module).update(__getattr__=find)

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import os
 import pickle
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -207,25 +205,3 @@ def test_a_definition_can_be_given_as_text() -> None:
         get_interface("as_text/msg/Words")
     with pytest.raises(TypeError, match="not a valid ROS type name"):
         define("Words", "string text")
-
-
-def test_a_definition_that_is_not_valid_refuses_its_own_type_alone(tmp_path: Path) -> None:
-    """The folder of a workspace has types that nobody asks for."""
-    folder = tmp_path / "odd_msgs" / "msg"
-    folder.mkdir(parents=True)
-    (folder / "Good.msg").write_text("int32 x\n")
-    (folder / "Bad.msg").write_text("time stamp\n")
-    (folder / "UsesBad.msg").write_text("Bad bad\n")
-    (folder / "Wide.msg").write_bytes(b"\xff\xfe")
-    os.mkfifo(folder / "Pipe.msg")
-    loaded: Any = load_interfaces(tmp_path, lenient=True)
-    assert list(loaded) == ["odd_msgs/msg/Good"]
-    assert get_interface("odd_msgs/msg/Good") is loaded.odd_msgs.msg.Good
-    for name in ("Bad", "UsesBad"):
-        with pytest.raises(IdlError, match="did you mean builtin_interfaces/Time"):
-            get_interface(f"odd_msgs/msg/{name}")
-        with pytest.raises(IdlError, match=r"Bad\.msg"):
-            getattr(loaded.odd_msgs.msg, name)
-    for name in ("Wide", "Pipe"):
-        with pytest.raises(IdlError, match=name):
-            loaded[f"odd_msgs/msg/{name}"]

@@ -16,6 +16,7 @@ import pytest
 from aionode import Node
 from aionode.cli import main
 from aionode.cli._main import root
+from aionode.errors import IdlError
 from aionode.idl import definition_text, load_interfaces
 from aionode.interfaces import get_interface, interface_names
 
@@ -165,14 +166,30 @@ def test_a_folder_of_the_variable_that_is_missing_is_named(
         assert go_to().Goal().tolerance == 0.05
 
 
-def test_one_definition_that_is_not_valid_stays_alone(
+def test_a_definition_that_is_not_valid_refuses_its_own_type_alone(
     workspace: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Others of its package can be used."""
-    (workspace / "src/robot_interfaces/action/Bad.action").write_text("nothing\n")
+    """The folder of a workspace has types that nobody asks for."""
+    package = workspace / "src/robot_interfaces"
+    (package / "msg").mkdir()
+    (package / "action/Bad.action").write_text("nothing\n")
+    (package / "msg/Old.msg").write_text("time stamp\n")
+    (package / "msg/UsesOld.msg").write_text("Old old\n")
+    (package / "msg/Wide.msg").write_bytes(b"\xff\xfe")
+    os.mkfifo(package / "msg/Pipe.msg")
     monkeypatch.setenv("AIONODE_INTERFACES", str(workspace))
 
     assert go_to().Goal().tolerance == 0.05
+    module = importlib.import_module("aionode.interfaces.robot_interfaces.msg")
+    for name, problem in (
+        ("Old", "did you mean builtin_interfaces/Time"),
+        ("UsesOld", "did you mean builtin_interfaces/Time"),
+        ("Wide", r"Wide\.msg.*not UTF-8"),
+    ):
+        with pytest.raises(IdlError, match=problem):
+            get_interface(f"robot_interfaces/msg/{name}")
+        with pytest.raises(IdlError, match=problem):
+            getattr(module, name)
 
 
 def test_a_file_whose_name_is_no_type_is_named(
