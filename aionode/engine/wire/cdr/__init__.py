@@ -35,7 +35,6 @@ __all__ = [
 ]
 
 MessageT = TypeVar("MessageT", bound=Message)
-Encoded = TypeVar("Encoded")
 
 Data: TypeAlias = bytes | bytearray | memoryview
 """Types that can hold an encoded message."""
@@ -51,7 +50,7 @@ def encode(msg: Message) -> bytes:
     try:
         function = ENCODERS[msg.__class__]
     except KeyError:
-        function = encoder(msg.__class__)
+        function = ENCODERS[msg.__class__] = encoder(msg.__class__)
     return function(msg)
 
 
@@ -69,13 +68,11 @@ def decode(msg_type: type[MessageT], data: Data) -> MessageT:
     try:
         function = DECODERS[msg_type]
     except KeyError:
-        function = decoder(msg_type)
+        function = DECODERS[msg_type] = decoder(msg_type)
     return function(data)  # type: ignore[no-any-return] # a message of this type
 
 
-def encoder(
-    cls: type[MessageT], family: MessageFamily | None = None
-) -> Callable[[MessageT], bytes]:
+def encoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[MessageT], bytes]:
     """Return the function that encodes messages of one class, as `encode` does.
 
     Args:
@@ -85,15 +82,11 @@ def encoder(
     Raises:
         TypeError: `cls` is not a message class.
     """
-    if family is not None:
-        return family_encoder(cls, JOIN, family)
-    if cls not in ENCODERS:
-        ENCODERS[cls] = new_encoder(cls, JOIN, OWN)
-    return ENCODERS[cls]
+    return encoder_of(cls, JOIN, family)
 
 
 def parts_encoder(
-    cls: type[MessageT], family: MessageFamily | None = None
+    cls: type[MessageT], family: MessageFamily = OWN
 ) -> Callable[[MessageT], list[bytes | memoryview]]:
     """Return the function that encodes messages of one class into a list of parts.
 
@@ -109,14 +102,10 @@ def parts_encoder(
     Raises:
         TypeError: `cls` is not a message class.
     """
-    if family is not None:
-        return family_encoder(cls, views, family)
-    if cls not in PARTS_ENCODERS:
-        PARTS_ENCODERS[cls] = new_encoder(cls, views, OWN)
-    return PARTS_ENCODERS[cls]
+    return encoder_of(cls, views, family)
 
 
-def decoder(cls: type[MessageT], family: MessageFamily | None = None) -> Callable[[Data], MessageT]:
+def decoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[Data], MessageT]:
     """Return the function that decodes messages of one class, as `decode` does.
 
     Args:
@@ -126,45 +115,28 @@ def decoder(cls: type[MessageT], family: MessageFamily | None = None) -> Callabl
     Raises:
         TypeError: `cls` is not a message class.
     """
-    if family is not None:
-        return family_decoder(cls, family)
-    if cls not in DECODERS:
-        DECODERS[cls] = new_decoder(cls, OWN)
-    return DECODERS[cls]
+    return decoder_of(cls, family)
 
 
 ENCODERS: dict[type[Message], Callable[[Any], bytes]] = {}
-PARTS_ENCODERS: dict[type[Message], Callable[[Any], list[bytes | memoryview]]] = {}
 DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
+"""What `encode` and `decode` have used: a dictionary is faster than the caches."""
 
 
 @cache
-def family_encoder(
+def encoder_of(
     cls: Any, finish: Callable[[Sequence[Any]], Any], family: MessageFamily
 ) -> Callable[[Any], Any]:
-    """Return the encoder of a class for objects of another family."""
-    return new_encoder(cls, finish, family)
-
-
-@cache
-def family_decoder(cls: Any, family: MessageFamily) -> Callable[[Any], Any]:
-    """Return the decoder of a class that makes objects of another family."""
-    return new_decoder(cls, family)
-
-
-def new_encoder(
-    cls: type[Message], finish: Callable[[Sequence[Any]], Encoded], family: MessageFamily
-) -> Callable[[Any], Encoded]:
-    """Return a new encoder of a class; arguments as for `generate_encoder`."""
+    """Return the encoder of a class; arguments as for `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
     if unserialized(cls) is not cls:
         return attrgetter("data") if finish is JOIN else lambda msg: finish((msg.data,))
     if family is not OWN:
-        own = new_encoder(cls, finish, OWN)
+        own = encoder_of(cls, finish, OWN)
         return generate_encoder(cls, lambda msg: own(family.adopt(msg)), finish, family)
     take = snapshotter(cls)
 
-    def encode_unusual(msg: Any) -> Encoded:
+    def encode_unusual(msg: Any) -> Any:
         taken = take(msg)
         try:
             return fast(taken, True)
@@ -178,11 +150,13 @@ def new_encoder(
     return fast
 
 
-def new_decoder(cls: type[Message], family: MessageFamily) -> Callable[[Any], Any]:
-    """Return a new decoder of a class that makes objects of `family`."""
+@cache
+def decoder_of(cls: Any, family: MessageFamily) -> Callable[[Any], Any]:
+    """Return the decoder of a class that makes objects of `family`."""
     fields(cls)  # raises TypeError for a service class
     if unserialized(cls) is not cls:
-        return cls
+        constructor: Callable[[Any], Any] = cls
+        return constructor
 
     def decode_carefully(data: bytes) -> Any:
         return decode_slowly(cls, memoryview(data), family)
