@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from aionode.clock import TimeBase
     from aionode.qos import QoSProfile
 
-__all__ = ["Context"]
+__all__ = ["Context", "openings"]
 
 RegisteredT = TypeVar("RegisteredT", bound=Registration)
 
@@ -144,7 +144,6 @@ class Context:
         time_base: Where the time comes from.
         participant: Id of this context in the graph, in hexadecimal.
         seed: The seed of its ids; None if they are unique.
-        openings: How often a context of this process has opened: for nodes that run, or have run.
 
     Raises:
         ConfigurationError: an argument, or the environment variable used instead, is invalid (a
@@ -154,7 +153,7 @@ class Context:
             a network.
     """
 
-    openings: ClassVar[int] = 0
+    _openings: ClassVar[int] = 0
     _default: ClassVar[Context | None] = None
     _command_line: ClassVar[Usage] = Usage(Arguments())
     # For forked children: every context of this process, and whether one of them, or of the
@@ -404,7 +403,7 @@ class Context:
 
     async def _open_transports(self) -> None:
         opened: list[Transport] = []
-        Context.openings += 1
+        Context._openings += 1
         if any(not isinstance(transport, LocalTransport) for transport in self._transports):
             if Context._parent_has_connected:
                 raise ForkedProcessError(repr(self))
@@ -591,6 +590,11 @@ class Context:
         )
         gid = gid_of(endpoint_token(self.network.domain_id, endpoint))
         return dataclasses.replace(endpoint, gid=gid)
+
+
+def openings() -> int:
+    """Return how often a context of this process has opened: for nodes that run, or have run."""
+    return Context._openings
 
 
 SENDS.append(Context._send_rest)

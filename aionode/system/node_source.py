@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from aionode.engine.context import Context
+from aionode.engine.context import openings
 from aionode.errors import CommandError
 from aionode.interfaces import interface_names
 from aionode.node import Node
@@ -52,10 +52,10 @@ def maker_of(spec: str) -> Callable[[], Any] | None:
         CommandError: There is no such thing, or it imports what is not installed; a program of
             rclpy may do so by a name that its text does not show.
     """
-    before = Context.openings
+    before = openings()
     try:
         module_of(spec.partition(":")[0], spec)
-        return node_maker(spec) if Context.openings == before else None
+        return node_maker(spec) if openings() == before else None
     except ImportError as error:
         # A folder of definitions beside the file is taken for a package without modules.
         if isinstance(error, ModuleNotFoundError) or "(unknown location)" in str(error):

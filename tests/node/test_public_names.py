@@ -47,7 +47,7 @@ report_progress trigger_activate trigger_cleanup trigger_configure trigger_deact
 trigger_shutdown
 """
 CONTEXT = """
-arguments as_default default domain_id dropped drops graph network new_uuid ok openings participant
+arguments as_default default domain_id dropped drops graph network new_uuid ok participant
 ros_distro seed shutdown time_base transports
 """
 TRANSPORT = """
