@@ -35,7 +35,7 @@ check: .venv/installed-dev
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy
-	$(BIN)/lint-imports --no-logo
+	PYTHONPATH=aionode/ros_packages $(BIN)/lint-imports --no-logo
 	$(BIN)/python docs/quotes.py --check
 	$(BIN)/python -m pytest -q tests/test_docs.py tests/test_structure.py
 	$(BIN)/python -m pytest -q -m checks tests/typing tests/idl/test_generator.py

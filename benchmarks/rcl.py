@@ -206,11 +206,12 @@ async def aionode_part(role: str, kind: str) -> None:
 
 def rclpy_part(role: str, kind: str) -> None:
     """Echo until stdin is closed, or measure when told."""
+    from std_msgs.msg import String
+
     import rclpy
     from rclpy.executors import SingleThreadedExecutor
     from rclpy.experimental.events_executor import EventsExecutor
     from rclpy.task import Future
-    from std_msgs.msg import String
 
     topic = kind.replace("-", "_")
     rclpy.init()
@@ -227,7 +228,7 @@ def rclpy_part(role: str, kind: str) -> None:
     message = String(data=TEXT)
     times: list[int] = []
     began, count, pause_s = 0, 1, 0.0
-    ended = Future(executor=executor)
+    ended: Future[None] = Future(executor=executor)
 
     def send() -> None:
         nonlocal began

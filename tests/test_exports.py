@@ -60,7 +60,6 @@ PRESETS = [
     "qos_profile_system_default",
 ]
 WITHIN = {
-    "aionode.rclpy": {"provide"},  # for the distribution aionode-rclpy
     "aionode.endpoints.client": {"Exchange"},  # what a client is made with
     "aionode.endpoints.timer": {"to_period_ns"},  # for nodes
     "aionode.node": {"direct_subscription"},  # for recorders
@@ -113,6 +112,7 @@ ELSEWHERE = (
     "aionode.examples",
     "aionode.gateway.",
     "aionode.idl.",
+    "aionode.launch.",
     "aionode.message.",
     "aionode.parameter.",
     "aionode.rclpy",

@@ -15,6 +15,7 @@ import pytest
 from aionode import Context, Node
 from aionode.interfaces.geometry_msgs.msg import TransformStamped
 from aionode.interfaces.std_msgs.msg import Header, String
+from aionode.rclpy._finder import SUPPLIED
 from aionode.tf import Buffer, StaticTransformBroadcaster
 from tests.rclpy.list_class_names import names_of
 
@@ -53,7 +54,7 @@ NATIVE = {
 
 def written_names(cls: type) -> set[str]:
     """Return the names that a class of aionode defines, or gives to its instances."""
-    if cls.__module__.partition(".")[0] != "aionode":
+    if cls.__module__.partition(".")[0] not in {"aionode", *SUPPLIED}:
         return set()
     (tree,) = ast.parse(textwrap.dedent(inspect.getsource(cls))).body
     assert isinstance(tree, ast.ClassDef)

@@ -23,7 +23,7 @@ runs code of others between any two bytecodes of that thread all the same:
 - *The garbage collector*, in any thread: finalizers and callbacks of weak references. For them
   holds what holds for handlers. What they raise, Python prints, and it goes no further.
 
-`aionode.rclpy._impl.uninterrupted` keeps these rules for programs of rclpy, whose threads, handlers
+`rclpy._impl.uninterrupted` keeps these rules for programs of rclpy, whose threads, handlers
 and finalizers know nothing of them.
 """
 

@@ -16,26 +16,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from aionode._packages import Packages, workspace_of
-from aionode.launch._evaluation import (
-    arguments_of,
-    check_later_steps,
-    evaluate,
-    load_file,
-    new_context,
-)
-from aionode.launch._launch.launch_service import LaunchService
-from aionode.launch._plan import Log, Step
-from aionode.launch._preview import records, text_of
-from aionode.launch._running import RunningLaunch, first_of, run_service
 from aionode.launch._watch import restart_changed
+from aionode.launch.plan import Log, Step
+from aionode.rclpy import install
 
 if TYPE_CHECKING:
     from aionode.system import System
 
-__all__ = ["DeclaredArgument", "Plan", "plan_running", "run_plan", "share_directory"]
+# The classes of launch files are those of `launch`, which `install` lets this process find: what
+# imports them is imported by the functions below, after that.
 
-# Programs import it as a name of launch, and the engine stands on those.
-LaunchService.engine = run_service
+__all__ = ["DeclaredArgument", "Plan", "plan_running", "run_plan", "share_directory"]
 
 
 @dataclass(frozen=True)
@@ -83,11 +74,11 @@ class Plan:
         *,
         workspace: str | Path | None = None,
     ) -> None:
-        from aionode.rclpy import install
-
         self._before = dict(os.environ)  # a file of Python may change it
         around = workspace_of(Path(path)) if workspace is None else Path(workspace)
         install(workspace=around)
+        from aionode.launch._evaluation import load_file
+
         self._packages = Packages(around)
         self.path = path
         self.description, self.main = load_file(path)
@@ -97,6 +88,8 @@ class Plan:
     @property
     def declared(self) -> list[DeclaredArgument]:
         """The arguments that the file takes."""
+        from aionode.launch._evaluation import arguments_of
+
         return [
             DeclaredArgument(
                 name=argument.name,
@@ -115,6 +108,8 @@ class Plan:
             LaunchFileError: It cannot be evaluated with these arguments (a ValueError).
         """
         if self._steps is None:
+            from aionode.launch._evaluation import check_later_steps, evaluate, new_context
+
             context = new_context(self.path, self._arguments)
             context.packages = self._packages
             steps = evaluate([self.description], context)
@@ -142,11 +137,15 @@ class Plan:
 
     def records(self) -> Iterator[dict[str, Any]]:
         """Yield what is started, as plain values that can be written as JSON."""
+        from aionode.launch._preview import records
+
         yield from records(self.steps, self._before)
         self._forget_names()
 
     def lines(self) -> Iterator[str]:
         """Yield what is started, for readers."""
+        from aionode.launch._preview import text_of
+
         return (text_of(record) for record in self.records())
 
 
@@ -172,6 +171,8 @@ async def run_plan(
         LaunchFileError: What an event handler or a timer does cannot be evaluated (a ValueError).
         NotReadyError: A node did not come, so that `once_ready` was not run (a TimeoutError).
     """
+    from aionode.launch.running import RunningLaunch, first_of
+
     running = RunningLaunch(system, waits_for_nodes=once_ready is not None, stays=watch)
     try:
         async with asyncio.TaskGroup() as tasks:
@@ -206,6 +207,8 @@ async def plan_running(plan: Plan, system: System) -> AsyncIterator[None]:
             ValueError).
         NotReadyError: A node did not come (a TimeoutError).
     """
+    from aionode.launch.running import RunningLaunch
+
     running = RunningLaunch(system, waits_for_nodes=True)
     try:
         async with asyncio.TaskGroup() as tasks:

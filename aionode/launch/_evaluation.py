@@ -16,19 +16,19 @@ from typing import Any
 from aionode._process.bounded_files import read_file
 from aionode.errors import AionodeError, LaunchFileError
 from aionode.launch._frontend import description_of
-from aionode.launch._launch.actions import (
+from aionode.launch._markup import read_xml, read_yaml
+from aionode.launch.plan import Opaque, Step, Timer, Watch
+from aionode.rclpy._missing import advice
+from launch.actions import (
     DeclareLaunchArgument,
     GroupAction,
     IncludeLaunchDescription,
     TimerAction,
 )
-from aionode.launch._launch.event_handler import entities_of
-from aionode.launch._launch.launch_context import KnownLater, LaunchContext
-from aionode.launch._launch.launch_description import LaunchDescription
-from aionode.launch._launch.launch_description_entity import LaunchDescriptionEntity
-from aionode.launch._markup import read_xml, read_yaml
-from aionode.launch._plan import Opaque, Step, Timer, Watch
-from aionode.rclpy._missing import advice
+from launch.event_handler import entities_of
+from launch.launch_context import KnownLater, LaunchContext
+from launch.launch_description import LaunchDescription
+from launch.launch_description_entity import LaunchDescriptionEntity
 
 __all__ = ["arguments_of", "check_later_steps", "evaluate", "load_file", "new_context"]
 
@@ -221,14 +221,13 @@ def problem_of(error: Exception) -> str:
     if isinstance(error, ImportError) and error.name is not None:
         match = re.match(r"cannot import name '(\w+)'", str(error))  # before Python 3.12
         missing = None if match is None else match.group(1)
-        package = error.name.removeprefix("aionode.launch._")
         if missing is not None and is_own(error.name):
             known = ", ".join(getattr(sys.modules.get(error.name), "__all__", ()))
             return (
-                f"{package} has no {missing}; it has: {known}. "
+                f"{error.name} has no {missing}; it has: {known}. "
                 "--real runs the file with ROS 2's own launch, where that is installed"
             )
-        return advice(error.name, OWN_PACKAGES) or f"no module {package}"
+        return advice(error.name, OWN_PACKAGES) or f"no module {error.name}"
     text = str(error) or type(error).__name__
     if isinstance(error, KeyError) and type(error) is not KeyError:
         return str(error.args[0])  # its text, and not a key
@@ -240,7 +239,7 @@ def problem_of(error: Exception) -> str:
 
 def is_own(module: str) -> bool:
     """Return whether a module is one of those that stand for ROS's."""
-    return module.startswith(("aionode.launch._launch", "aionode.rclpy._ament"))
+    return module.partition(".")[0] in OWN_PACKAGES
 
 
 def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:

@@ -8,20 +8,20 @@ from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
+import launch_ros
 from aionode.errors import LaunchFileError
-from aionode.launch import _launch_ros as launch_ros
-from aionode.launch._launch import actions, substitutions
-from aionode.launch._launch.actions._loops import PopLocals, PushLocals
-from aionode.launch._launch.conditions import IfCondition, UnlessCondition
-from aionode.launch._launch.frontend.expose import SUBSTITUTIONS
-from aionode.launch._launch.launch_description import LaunchDescription
-from aionode.launch._launch.launch_description_sources import AnyLaunchDescriptionSource
-from aionode.launch._launch.substitution import Substitution, TextSubstitution
-from aionode.launch._launch.utilities.type_utils import coerce_to_type
-from aionode.launch._launch_ros import actions as ros_actions
-from aionode.launch._launch_ros import descriptions
 from aionode.launch._markup import Element
-from aionode.launch._words import parse_words
+from launch import actions, substitutions
+from launch.actions._loops import PopLocals, PushLocals
+from launch.conditions import IfCondition, UnlessCondition
+from launch.frontend.expose import SUBSTITUTIONS
+from launch.frontend.parse_substitution import parse_words
+from launch.launch_description import LaunchDescription
+from launch.launch_description_sources import AnyLaunchDescriptionSource
+from launch.substitution import Substitution, TextSubstitution
+from launch.utilities.type_utils import coerce_to_type
+from launch_ros import actions as ros_actions
+from launch_ros import descriptions
 
 __all__ = ["description_of"]
 

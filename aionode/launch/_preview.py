@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from aionode.launch._evaluation import evaluate
-from aionode.launch._plan import (
+from aionode.launch.plan import (
     Call,
     Component,
     Emit,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from aionode.launch._launch.events.process import (
+from launch.events.process import (
     ProcessExited,
     ProcessStarted,
     ProcessStderr,
@@ -13,9 +13,9 @@ from aionode.launch._launch.events.process import (
 )
 
 if TYPE_CHECKING:
-    from aionode.launch._launch.event import Event
-    from aionode.launch._plan import Process
+    from aionode.launch.plan import Process
     from aionode.system import Member, MemberEnd
+    from launch.event import Event
 
 __all__ = ["ProcessEvents"]
 

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Final
 
 from aionode._packages import around
-from aionode.rclpy._finder import ALIASES, FINDER, KINDS, exists, gives_way, of_alias
+from aionode.rclpy._finder import FINDER, KINDS, SUPPLIED, exists, gives_way
 from aionode.rclpy._missing import advice
-from aionode.rclpy._rosidl import has_interfaces, module_name, names_in
+from aionode.rclpy.interface_search import has_interfaces, module_name, names_in
 
 __all__ = ["check"]
 
@@ -218,8 +218,8 @@ def find(wanted: Import, file: Path) -> Finding:
         interface = name.partition("_")[0]
         if not name or (place / inside / f"{interface}.{inside}").is_file():
             return Finding(module, f"in {place}")
-    supplied = {*ALIASES, *([package] if has_interfaces(package) else ())}
-    reason = advice(module, frozenset(supplied)) or "no module of this name is installed"
+    supplied = SUPPLIED | ({package} if has_interfaces(package) else set())
+    reason = advice(module, supplied) or "no module of this name is installed"
     return Finding(module, reason, is_there=False)
 
 
@@ -227,9 +227,8 @@ def in_aionode(module: str, name: str) -> Finding:
     """Return whether a module of aionode has a name, and what it needs besides."""
     try:
         if not name or has_name(module, name):
-            own = own_name(module)
-            if own is not None:
-                import_module(own)
+            if is_module_here(module):
+                import_module(module)
             return Finding(module, "aionode")
     except ImportError as error:  # such as that of bags without what reads them
         return Finding(module, str(error), is_there=False)
@@ -259,23 +258,17 @@ def own_folders(file: Path) -> list[Path]:
 
 def source_of(module: str) -> str | None:
     """Return ``aionode``, ``installed``, or None for a module that is not there."""
-    package, _, inside = module.partition(".")
-    if package in ALIASES and not gives_way(package):
-        return "aionode" if of_alias(module, package, inside) is not None else None
-    if package == "aionode":
+    package = module.partition(".")[0]
+    if is_module_here(module) and not gives_way(package):
         return "aionode" if exists(module) else None
     if has_interfaces(package) and FINDER.find_spec(module, None) is not None:
         return "aionode"
     return "installed" if specs_on(None, module) else None
 
 
-def own_name(module: str) -> str | None:
-    """Return the name that a module has in aionode; None if it has none of its own there."""
-    package, _, inside = module.partition(".")
-    if package not in ALIASES and package != "aionode":
-        return None
-    own = ".".join(filter(None, (ALIASES.get(package, package), inside)))
-    return own if exists(own) else None
+def is_module_here(module: str) -> bool:
+    """Return whether a module is one of a package in Python that aionode has."""
+    return module.partition(".")[0] in {*SUPPLIED, "aionode"}
 
 
 def specs_on(path: list[str] | None, module: str) -> list[ModuleSpec]:
@@ -306,13 +299,9 @@ def files_on(folder: Path, module: str, name: str) -> tuple[Path, ...]:
 
 def has_name(module: str, name: str) -> bool:
     """Return whether a module of aionode has a name, be it a module in turn."""
+    if is_module_here(module):
+        return hasattr(import_module(module), name) or exists(f"{module}.{name}")
     package, _, inside = module.partition(".")
-    if package in ALIASES or package == "aionode":
-        own = own_name(module)
-        if own is None:  # a module for each class, as launch has them
-            parent = own_name(module.rpartition(".")[0])
-            return parent is not None and name in import_module(parent).__all__
-        return hasattr(import_module(own), name) or exists(f"{own}.{name}")
     kind = inside.partition(".")[0]
     if not kind:
         return name in KINDS and has_interfaces(package, name)

@@ -13,25 +13,25 @@ from types import ModuleType
 from typing import Any, Final
 
 from aionode.interfaces import shipped_packages
-from aionode.rclpy._module_names import (
-    ALIASES,
-    YIELDING,
-    shared_errors_take_names,
-    take_names,
-)
-from aionode.rclpy._reexports import add_names
-from aionode.rclpy._rosidl import (
-    add_folder,
-    classes_of,
-    has_interfaces,
-    module_name,
-    names_in,
-)
+from aionode.rclpy.interface_search import add_folder, has_interfaces, module_name, names_in
 
-__all__ = ["ALIASES", "install", "provide"]
+__all__ = ["SUPPLIED", "install", "provide"]
 
-OWN: Final = "aionode.rclpy."
-LAUNCH: Final = ("launch", "launch_ros", "nav2_common")
+FOLDER: Final = Path(__file__).parents[1] / "ros_packages"
+"""The folder with the Python packages of ROS that aionode has."""
+SUPPLIED: Final = frozenset(path.name for path in FOLDER.iterdir() if path.name != "__pycache__")
+"""Their names."""
+YIELDING: Final = ("launch_param_builder", "nav2_common")
+"""Those of them that give way to a package of the workspace, or an installed one, of their name."""
+A_MODULE_FOR_EACH_CLASS: Final = ("launch", "launch_ros", "nav2_common")
+"""Those that have a module for each class in ROS, and one for several classes here."""
+
+SHARED_ELSEWHERE: Final = {
+    "InvalidQoSProfileException": "rclpy.qos",
+    "InvalidQosOverridesError": "rclpy.qos_overriding_options",
+}
+"""The exceptions of `aionode.errors` that rclpy has outside of ``rclpy.exceptions``."""
+
 KINDS: Final = ("msg", "srv", "action")
 
 
@@ -58,10 +58,9 @@ def install(
         FileNotFoundError: There is no such folder.
     """
     loaded = sys.modules.get("rclpy")
-    if loaded is not None and loaded.__name__ != ALIASES["rclpy"]:
-        place = getattr(loaded, "__file__", None)
+    if loaded is not None and not (loaded.__spec__ and is_own(loaded.__spec__)):
         raise ImportError(
-            f"aionode.rclpy.install: the rclpy of {place} is imported already; "
+            f"aionode.rclpy.install: the rclpy of {loaded.__file__} is imported already; "
             "call install() before the first import of rclpy",
             name="rclpy",
         )
@@ -88,25 +87,40 @@ def rclpy_of_ros() -> Path | None:
     spec = PathFinder.find_spec("rclpy")
     if spec is None or spec.origin is None:
         return None
-    file = Path(spec.origin)
-    return None if is_own(file) else file.parent
+    return None if is_own(spec) else Path(spec.origin).parent
 
 
-def is_own(file: Path) -> bool:
-    """Return whether an installed package is one of the distribution ``aionode-rclpy``."""
-    return "aionode" in file.read_text(encoding="utf-8", errors="replace")[:300]
+def is_own(spec: ModuleSpec) -> bool:
+    """Return whether a package is one of aionode's, or of the distribution ``aionode-rclpy``."""
+    read = getattr(spec.loader, "get_data", None)  # from a wheel that is on the path, too
+    return read is not None and b"aionode" in read(spec.origin)[:300]
 
 
 def provide(name: str) -> None:
     """Replace a module that is being imported by aionode's of that name.
 
-    The packages of the distribution ``aionode-rclpy`` consist of this call.
+    The message packages of the distribution ``aionode-rclpy`` consist of this call.
     """
     if FINDER not in sys.meta_path:
         sys.meta_path.insert(0, FINDER)
         shared_errors_take_names()
     del sys.modules[name]
     import_module(name)
+
+
+def shared_errors_take_names() -> None:
+    """Let the exceptions that rclpy has as well say that they are of rclpy.
+
+    For processes that run a program of rclpy; elsewhere they are those of `aionode.errors`.
+    """
+    from aionode import errors
+
+    exceptions = import_module("rclpy.exceptions")
+    shared = {**dict.fromkeys(exceptions.__all__, "rclpy.exceptions"), **SHARED_ELSEWHERE}
+    for name, shown in shared.items():
+        error = getattr(errors, name, None)
+        if error is not None:
+            error.__module__ = shown
 
 
 class AionodeFinder(MetaPathFinder):
@@ -116,15 +130,15 @@ class AionodeFinder(MetaPathFinder):
         self,
         fullname: str,
         path: Sequence[str] | None,
-        target: ModuleType | None = None,
+        target: ModuleType | None = None,  # noqa: ARG002  # the protocol of finders
     ) -> ModuleSpec | None:
         """Return how a module is loaded; None if it is not one of these."""
         package, _, inside = fullname.partition(".")
-        if package in ALIASES and not gives_way(package):
-            return of_alias(fullname, package, inside)
+        if package in SUPPLIED and not gives_way(package):
+            return of_supplied(fullname, path)
         kind, _, module = inside.partition(".")
         if package == "aionode" or package in sys.stdlib_module_names or kind not in ("", *KINDS):
-            return load_with_names(fullname, path)
+            return None
         if not inside:
             return of_package(package)
         if not has_interfaces(package, kind):
@@ -142,11 +156,19 @@ def gives_way(package: str) -> bool:
     if package not in YIELDING:
         return False
     spec = PathFinder.find_spec(package)
-    if spec is not None and spec.origin is not None and not is_own(Path(spec.origin)):
+    if spec is not None and spec.origin is not None and not is_own(spec):
         return True
     from aionode._packages import here
 
     return here().module_root(package) is not None
+
+
+def of_supplied(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
+    """Return how a module of a package in `FOLDER` is loaded."""
+    spec = PathFinder.find_spec(fullname, [str(FOLDER)] if path is None else path)
+    if spec is None and fullname.partition(".")[0] in A_MODULE_FOR_EACH_CLASS:
+        return of_one_name(fullname)
+    return spec
 
 
 def of_package(package: str) -> ModuleSpec | None:
@@ -169,20 +191,12 @@ def of_package(package: str) -> ModuleSpec | None:
     return spec_from_loader(package, EmptyLoader(), is_package=True) if is_found else None
 
 
-def of_alias(fullname: str, package: str, inside: str) -> ModuleSpec | None:
-    """Return how a module of a package is loaded that is aionode's."""
-    own = ".".join((ALIASES[package], inside)) if inside else ALIASES[package]
-    if exists(own):
-        return spec_from_loader(fullname, AliasLoader(own))
-    return of_one_name(fullname, own) if package in LAUNCH else None
-
-
-def of_one_name(fullname: str, own: str) -> ModuleSpec | None:
+def of_one_name(fullname: str) -> ModuleSpec | None:
     """Return how a module such as ``launch.actions.execute_process`` is loaded.
 
     ROS's launch has one for each class. Programs may import a class from there.
     """
-    parent, _, last = own.rpartition(".")
+    parent, _, last = fullname.rpartition(".")
     if not exists(parent):
         return None
     package = import_module(parent)
@@ -194,36 +208,11 @@ def of_one_name(fullname: str, own: str) -> ModuleSpec | None:
 
 
 def exists(module: str) -> bool:
-    """Return whether there is a module of aionode of this name."""
+    """Return whether there is a module of this name."""
     try:
         return find_spec(module) is not None
     except ModuleNotFoundError:
         return False
-
-
-class AliasLoader(Loader):
-    """Gives a module a second name; it stays one object."""
-
-    def __init__(self, own: str) -> None:
-        self.own = own
-        self.spec: ModuleSpec | None = None
-
-    def create_module(self, spec: ModuleSpec) -> ModuleType:
-        """Return the module of aionode."""
-        module = import_module(self.own)
-        self.spec = module.__spec__
-        if self.own.startswith("aionode.launch."):
-            vars(module).setdefault("__path__", [])  # see `of_one_name`
-        return module
-
-    def exec_module(self, module: ModuleType) -> None:
-        """Undo what the import system has changed: the module keeps its own description."""
-        module.__spec__ = self.spec
-        add_names()
-        if self.own == ALIASES["rclpy"]:  # what was loaded before `install`; the rest has its names
-            for name, loaded in list(sys.modules.items()):
-                if f"{name}.".startswith(OWN):
-                    take_names(loaded)
 
 
 class NamesLoader(Loader):
@@ -235,25 +224,6 @@ class NamesLoader(Loader):
     def exec_module(self, module: ModuleType) -> None:
         """Give the module the names."""
         vars(module).update({name: getattr(self.package, name) for name in self.package.__all__})
-
-
-def load_with_names(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
-    """Return how a module of `aionode.rclpy` is loaded, after which its names are those of ROS."""
-    if not fullname.startswith(OWN):
-        return None
-    spec = PathFinder.find_spec(fullname, path)
-    loader = None if spec is None else spec.loader
-    if loader is None:
-        return spec
-    execute = loader.exec_module
-
-    def execute_and_name(module: ModuleType) -> None:
-        execute(module)
-        take_names(module)
-        add_names()
-
-    vars(loader).update(exec_module=execute_and_name)
-    return spec
 
 
 class EmptyLoader(Loader):
@@ -282,6 +252,8 @@ class KindLoader(Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         """Give the module what finds its classes."""
+        from rosidl_generator_py import classes_of  # which this finder finds
+
         package, kind = self.package, self.kind
 
         def names() -> list[str]:
@@ -312,6 +284,8 @@ class InterfaceLoader(Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         """Put the classes and their metaclasses into the module."""
+        from rosidl_generator_py import classes_of
+
         for name, cls in classes_of(self.name).items():
             vars(module)[name] = cls
             vars(module)[type(cls).__name__] = type(cls)

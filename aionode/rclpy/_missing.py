@@ -38,7 +38,7 @@ INSTEAD: Final = {
 
 COMPILED: Final = """
     controller_manager image_transport_py moveit point_cloud_transport_py python_qt_binding
-    qt_dotgraph qt_gui rmw_implementation rosidl_generator_py rosidl_runtime_c rqt rqt_gui
+    qt_dotgraph qt_gui rmw_implementation rosidl_runtime_c rqt rqt_gui
     rqt_gui_py rqt_py_common sros2
 """
 """Packages with compiled modules, or that need a ROS 2 that is installed."""

@@ -59,8 +59,8 @@ def main(argv: Sequence[str]) -> None:
         SystemExit: There is no such program, or an argument is missing.
     """
     folders, is_module, name, arguments = parsed(argv)
-    from aionode.rclpy._finder import install  # not to be loaded for a usage text
-    from aionode.rclpy._module_names import shared_errors_take_names
+    # not to be loaded for a usage text
+    from aionode.rclpy._finder import install, shared_errors_take_names
 
     workspace = folders["--workspace"][-1] if folders["--workspace"] else None
     try:
@@ -252,12 +252,12 @@ def report(
 
 def advise(error: Exception) -> None:
     """Print what to do about the modules of ROS that an exception did not find."""
-    from aionode.rclpy._finder import ALIASES
+    from aionode.rclpy._finder import SUPPLIED
     from aionode.rclpy._missing import advice, missing_modules
-    from aionode.rclpy._rosidl import has_interfaces
+    from aionode.rclpy.interface_search import has_interfaces
 
     for module in missing_modules(error):
-        text = advice(module, frozenset(ALIASES))
+        text = advice(module, SUPPLIED)
         if text is not None and not has_interfaces(module.partition(".")[0]):
             sys.stderr.write(f"aionode.rclpy: {text}\n")
 

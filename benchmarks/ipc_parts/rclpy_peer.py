@@ -31,8 +31,9 @@ class RclpyBall:
 
 def rclpy_process(part: str) -> None:
     """Play, or echo, until stdin is closed."""
-    import rclpy  # from a ROS installation, as the next ones
     import std_msgs.msg
+
+    import rclpy  # from a ROS installation, as the next ones
     from rclpy.experimental.events_executor import (
         EventsExecutor,
     )
@@ -53,7 +54,8 @@ def rclpy_process(part: str) -> None:
         return
     pings = node.create_publisher(std_msgs.msg.String, "rclpy_ping", 10)
     times: list[int] = []
-    left, began_ns, done = 0, 0, Future()
+    left, began_ns = 0, 0
+    done: Future[None] = Future()
 
     def throw() -> None:
         nonlocal began_ns

@@ -409,10 +409,11 @@ class Rclpy(Peer):
 
     def open(self) -> None:
         """Start a node, and wait for the other one."""
+        from std_msgs.msg import String, UInt8MultiArray
+
         import rclpy
         from rclpy.executors import SingleThreadedExecutor
         from rclpy.task import Future
-        from std_msgs.msg import String, UInt8MultiArray
 
         try:
             from example_interfaces.srv import AddTwoInts  # type: ignore[import-not-found]
@@ -427,11 +428,11 @@ class Rclpy(Peer):
                 EventsExecutor,
             )
 
-            self.executor = EventsExecutor()
+            self.executor: Any = EventsExecutor()
         else:
             self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
-        self.done = Future()
+        self.done: Future[None] = Future()
         self.words = self.node.create_publisher(String, self.says, ROOM)
         self.node.create_subscription(String, self.hears, lambda msg: self.hear(msg.data), ROOM)
         self.blocks = self.node.create_publisher(UInt8MultiArray, f"{self.says}_block", 10)

@@ -12,6 +12,7 @@ from aionode.cli._main import main
 from aionode.cli._nouns.run import Programs
 from aionode.errors import CommandError, ExecutableNotFoundError, PackageNotFoundError
 from aionode.system.node_source import node_maker
+from tests.support.without_ros import without_ros
 
 SOURCE = """
 from aionode import Node
@@ -251,7 +252,8 @@ def test_a_program_that_needs_ros_is_told_by_which_option_it_runs(
     program = tmp_path / "needs_ros.py"
     program.write_text(line)
 
-    assert main(["run", str(program)]) == 1
+    with without_ros():
+        assert main(["run", str(program)]) == 1
 
     (text,) = capsys.readouterr().err.splitlines()
     assert text.endswith(f"`aionode run --rclpy {program}`")

@@ -12,7 +12,7 @@ import pytest
 
 from aionode.errors import LaunchFileError
 from aionode.launch import Plan
-from aionode.launch._plan import Process, Watch
+from aionode.launch.plan import Process, Watch
 from tests.launch.conftest import BODY, HEAD
 
 if TYPE_CHECKING:
@@ -572,7 +572,7 @@ def test_names_of_launch_are_found_by_programs(tmp_path: Path) -> None:
         check=False,
     )
 
-    assert done.stdout.strip() == "aionode.launch._launch", done.stderr
+    assert done.stdout.strip() == "launch", done.stderr
 
 
 @pytest.mark.parametrize(

@@ -11,9 +11,9 @@ import pytest
 from aionode.errors import LaunchFileError
 from aionode.launch import Plan
 from aionode.launch._frontend import command_words
-from aionode.launch._launch.launch_context import LaunchContext
-from aionode.launch._launch.substitution import perform_substitutions
-from aionode.launch._words import parse_words
+from launch.frontend.parse_substitution import parse_words
+from launch.launch_context import LaunchContext
+from launch.substitution import perform_substitutions
 
 if TYPE_CHECKING:
     from tests.launch.conftest import Files

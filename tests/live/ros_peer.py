@@ -4,15 +4,16 @@ import contextlib
 import sys
 from typing import Any
 
-import rclpy
 from example_interfaces.action import Fibonacci
 from example_interfaces.srv import AddTwoInts
+from std_msgs.msg import String
+
+import rclpy
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
-from std_msgs.msg import String
 
 KEPT = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 PERIOD_S = 0.05

@@ -14,8 +14,8 @@ from aionode.errors import CommandError, LaunchFileError, ParameterFileError, Po
 from aionode.gateway import Policy
 from aionode.interfaces.std_msgs.msg import String
 from aionode.launch._evaluation import load_description
-from aionode.launch._launch.utilities.type_utils import coerce_to_type
 from aionode.parameter import get_parameter_value
+from launch.utilities.type_utils import coerce_to_type
 
 BOMB = "a0: &a0 [x]\n" + "".join(
     f"a{at}: &a{at} [{', '.join([f'*a{at - 1}'] * 10)}]\n" for at in range(1, 11)

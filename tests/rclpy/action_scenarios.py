@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from scenarios import PATIENCE_S, Trace, attempt, main, scene, until
+from test_msgs.action import Fibonacci
+from unique_identifier_msgs.msg import UUID
+
 import rclpy
 from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.task import Future
-from scenarios import PATIENCE_S, Trace, attempt, main, scene, until
-from test_msgs.action import Fibonacci
-from unique_identifier_msgs.msg import UUID
 
 
 class Counting:

@@ -19,11 +19,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import rclpy
 from rcl_interfaces.srv import ListParameters
-from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from std_msgs.msg import Int32
 
+import rclpy
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
 from tests.support.guest import guest, locks
 
 PEER = """

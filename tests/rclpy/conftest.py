@@ -8,16 +8,19 @@ from collections.abc import Iterator
 import pytest
 
 import aionode.rclpy
-from aionode.rclpy import _finder
+from aionode.rclpy._finder import FINDER, EmptyLoader, InterfaceLoader, KindLoader
+
+aionode.rclpy.install()  # the tests import rclpy
 
 
 @pytest.fixture
 def installed() -> Iterator[None]:
-    """A process in which aionode stands in for ROS, and afterwards does not."""
-    before = dict(sys.modules)
+    """A process in which aionode stands in for ROS; message packages are forgotten afterwards."""
     aionode.rclpy.install()
     yield
-    sys.meta_path.remove(_finder.FINDER)
-    for name in set(sys.modules) - set(before):
-        if not name.startswith("aionode"):
+    assert FINDER in sys.meta_path
+    for name, module in list(sys.modules.items()):
+        if isinstance(
+            getattr(module, "__loader__", None), EmptyLoader | KindLoader | InterfaceLoader
+        ):
             del sys.modules[name]

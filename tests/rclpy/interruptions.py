@@ -18,19 +18,19 @@ from time import monotonic
 from types import FrameType
 from typing import Any
 
-import rclpy
 from rcl_interfaces.srv import ListParameters
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.signals import SignalHandlerOptions
 from std_msgs.msg import Int32
 
-from aionode.rclpy._impl import uninterrupted
-from aionode.rclpy._impl.errors import RCLError
+import rclpy
+from rclpy._impl import uninterrupted
+from rclpy._impl.errors import RCLError
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
 
 PATIENCE_S = 10.0
 PUBLISHED = 10_000
 MANY_PLACES = 30
-OWN_CODE = ("aionode/rclpy", "aionode/_process/lendable_loop", "aionode/engine/")
+OWN_CODE = ("aionode/ros_packages", "aionode/_process/lendable_loop", "aionode/engine/")
 
 
 class Interrupted(Exception):  # noqa: N818  # no error of the program

@@ -29,7 +29,7 @@ def names_of(node: ast.ClassDef) -> Iterator[str]:
         if isinstance(attribute.ctx, ast.Store) and ast.unparse(attribute.value) == "self":
             yield attribute.attr
     for part in node.body:
-        if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
+        if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             names = [part.name]
         else:
             words = (word for word in ast.walk(part) if isinstance(word, ast.Name))

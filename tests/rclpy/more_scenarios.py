@@ -13,9 +13,13 @@ from collections.abc import Callable
 from typing import Any
 
 import action_scenarios  # noqa: F401  # its scenes
-import rclpy
 from rcl_interfaces.msg import Log, LoggerLevel, ParameterValue
 from rcl_interfaces.srv import GetLoggerLevels, ListParameters, SetLoggerLevels
+from scenarios import PATIENCE_S, Trace, attempt, main, scene, thread_name, until
+from service_msgs.msg import ServiceEventInfo
+from std_msgs.msg import Int32
+
+import rclpy
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import (
     get_action_client_names_and_types_by_node,
@@ -46,9 +50,6 @@ from rclpy.task import Future
 from rclpy.time import Time
 from rclpy.timer import TimerInfo
 from rclpy.waitable import NumberOfEntities, Waitable
-from scenarios import PATIENCE_S, Trace, attempt, main, scene, thread_name, until
-from service_msgs.msg import ServiceEventInfo
-from std_msgs.msg import Int32
 
 
 def spin(node: Any) -> None:

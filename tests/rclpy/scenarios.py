@@ -18,8 +18,6 @@ import warnings
 from collections.abc import Callable
 from typing import Any
 
-import rclpy
-import rclpy.executors
 from lifecycle_msgs.msg import TransitionEvent
 from lifecycle_msgs.srv import (
     ChangeState,
@@ -29,6 +27,10 @@ from lifecycle_msgs.srv import (
 )
 from rcl_interfaces.msg import ParameterDescriptor, ParameterType, SetParametersResult
 from rcl_interfaces.srv import ListParameters
+from std_msgs.msg import Int32, String
+
+import rclpy
+import rclpy.executors
 from rclpy.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -57,7 +59,6 @@ from rclpy.task import Future
 from rclpy.time import Time
 from rclpy.timer import TimerInfo
 from rclpy.wait_for_message import wait_for_message
-from std_msgs.msg import Int32, String
 
 Trace = Callable[..., None]
 

@@ -11,15 +11,14 @@ from unittest.mock import Mock
 
 import pytest
 
-import aionode.rclpy
+import rclpy
 from aionode.action import GoalStatus
 from aionode.engine.rules import status_pace as _status_pace
 from aionode.engine.rules.goal_store import GoalStore
 from aionode.interfaces.example_interfaces.action import Fibonacci as OwnFibonacci
 from aionode.interfaces.tf2_msgs.action import LookupTransform as OwnLookupTransform
-from aionode.rclpy._impl.errors import RCLError
-from aionode.rclpy._rosidl import action_class
-from aionode.rclpy.action import (
+from rclpy._impl.errors import RCLError
+from rclpy.action import (
     ActionClient,
     ActionServer,
     CancelResponse,
@@ -28,15 +27,16 @@ from aionode.rclpy.action import (
     get_action_names_and_types,
     get_action_server_names_and_types_by_node,
 )
-from aionode.rclpy.action.client import ClientGoalHandle
-from aionode.rclpy.action.server import ServerGoalHandle
-from aionode.rclpy.clock import Clock
-from aionode.rclpy.clock_type import ClockType
-from aionode.rclpy.executors import SingleThreadedExecutor
-from aionode.rclpy.node import Node
-from aionode.rclpy.qos import qos_profile_services_default
-from aionode.rclpy.service_introspection import ServiceIntrospectionState
-from aionode.rclpy.task import Future
+from rclpy.action.client import ClientGoalHandle
+from rclpy.action.server import ServerGoalHandle
+from rclpy.clock import Clock
+from rclpy.clock_type import ClockType
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import qos_profile_services_default
+from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.task import Future
+from rosidl_generator_py import action_class
 from tests.support.peers import DOMAIN_ID, isolated_environment
 
 Fibonacci = action_class("example_interfaces/action/Fibonacci")
@@ -54,24 +54,24 @@ def small_queues(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[aionode.rclpy.Context]:
+def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[rclpy.Context]:
     """A context that hears nothing else on the machine."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
-    context = aionode.rclpy.Context()
-    aionode.rclpy.init(args=[], context=context, domain_id=DOMAIN_ID)
+    context = rclpy.Context()
+    rclpy.init(args=[], context=context, domain_id=DOMAIN_ID)
     yield context
-    aionode.rclpy.shutdown(context=context)
+    rclpy.shutdown(context=context)
 
 
 @pytest.fixture
-def node(context: aionode.rclpy.Context) -> Node:
+def node(context: rclpy.Context) -> Node:
     """A node."""
     return Node("node", context=context)
 
 
 @pytest.fixture
-def executor(context: aionode.rclpy.Context, node: Node) -> SingleThreadedExecutor:
+def executor(context: rclpy.Context, node: Node) -> SingleThreadedExecutor:
     """An executor that spins it when a test says so."""
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)

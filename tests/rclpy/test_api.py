@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode import rclpy
+import rclpy
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
@@ -23,21 +23,21 @@ from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInt
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
 from aionode.interfaces.std_msgs.msg import String as OwnString
 from aionode.message import SerializedMessage
-from aionode.rclpy._impl.errors import RCLError
-from aionode.rclpy._impl.topics import SubscriptionHandle
-from aionode.rclpy._impl.typesupport import service_support
-from aionode.rclpy._rosidl import action_class, message_class, service_class
-from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
-from aionode.rclpy.duration import Duration
-from aionode.rclpy.executors import SingleThreadedExecutor
-from aionode.rclpy.experimental.asyncio import AsyncNode
-from aionode.rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
-from aionode.rclpy.parameter import Parameter
-from aionode.rclpy.qos import QoSProfile
-from aionode.rclpy.serialization import serialize_message
-from aionode.rclpy.service_introspection import ServiceIntrospectionState
-from aionode.rclpy.subscription_content_filter_options import ContentFilterOptions
-from aionode.rclpy.task import Future
+from rclpy._impl.errors import RCLError
+from rclpy._impl.topics import SubscriptionHandle
+from rclpy._impl.typesupport import service_support
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.duration import Duration
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.experimental.asyncio import AsyncNode
+from rclpy.lifecycle import LifecycleNode, TransitionCallbackReturn
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from rclpy.serialization import serialize_message
+from rclpy.service_introspection import ServiceIntrospectionState
+from rclpy.subscription_content_filter_options import ContentFilterOptions
+from rclpy.task import Future
+from rosidl_generator_py import action_class, message_class, service_class
 from tests.support.fork_server import start
 from tests.support.peers import isolated_environment
 

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aionode.rclpy._cv_bridge import CvBridge, CvBridgeError, cvtColorForDisplay, getCvType
-from aionode.rclpy._cv_bridge.boost import cv_bridge_boost
-from aionode.rclpy._rosidl import message_class
+from cv_bridge import CvBridge, CvBridgeError, cvtColorForDisplay, getCvType
+from cv_bridge.boost import cv_bridge_boost
+from rosidl_generator_py import message_class
 
 Header = message_class("std_msgs/msg/Header")
 Image = message_class("sensor_msgs/msg/Image")

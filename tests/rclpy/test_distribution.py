@@ -4,42 +4,74 @@ from __future__ import annotations
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
+import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
 from aionode.interfaces import shipped_packages
-from aionode.rclpy._finder import ALIASES, rclpy_of_ros
+from aionode.rclpy._finder import FOLDER, SUPPLIED, rclpy_of_ros
 
 ROOT = Path(__file__).parents[2]
 DISTRIBUTION = ROOT / "packages" / "aionode-rclpy"
 
+pytestmark = pytest.mark.skipif(
+    find_spec("hatchling") is None, reason="hatchling, which builds it, is missing"
+)
+
 PROGRAM = """\
+import rclpy.node
 import std_msgs
 from std_msgs.msg import String
 from geometry_msgs.msg._twist import Twist
-import rclpy.{module}
 import rosidl_runtime_py
 
-import aionode.rclpy
-assert rclpy is aionode.rclpy
+assert ".whl" in rclpy.__file__
 assert type(Twist().linear).__module__ == "geometry_msgs.msg._vector3"
 print(rosidl_runtime_py.message_to_yaml(String(data="hi")), end="")
+
+import sys
+import aionode.rclpy
+aionode.rclpy.install()
+import rclpy.executors, tf2_ros.buffer
+for name in ("rclpy.node", "rclpy.executors", "tf2_ros.buffer"):
+    assert [each for each in sys.modules if each.endswith(name)] == [name], name
 """
 
 
-def test_it_has_every_package_that_aionode_supplies() -> None:
-    """A package without a line here could be imported only after another one."""
-    packages = {path.name for path in (DISTRIBUTION / "src").iterdir()}
+def built(target: str, source: Path, folder: Path) -> Path:
+    """Return the wheel or sdist that is built of a source."""
+    build = [sys.executable, "-m", "hatchling", "build", "-t", target, "-d", str(folder)]
+    subprocess.run(build, cwd=source, check=True, capture_output=True)
+    (file,) = folder.iterdir()
+    return file
 
-    assert packages == shipped_packages() | set(ALIASES)
+
+def files_in(wheel: Path) -> set[str]:
+    """Return the names of the files in Python."""
+    with zipfile.ZipFile(wheel) as archive:
+        return {name for name in archive.namelist() if name.endswith(".py")}
 
 
-def test_its_packages_do_one_thing() -> None:
-    """Everything else is in aionode, so that both need no release at the same time."""
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, built in the repository."""
+    return built("wheel", DISTRIBUTION, tmp_path_factory.mktemp("wheel"))
+
+
+def test_it_has_every_package_that_aionode_supplies(wheel: Path) -> None:
+    """A package that it lacks could be imported only after another one."""
+    packages = {name.partition("/")[0] for name in files_in(wheel)}
+
+    assert packages == shipped_packages() | SUPPLIED
+
+
+def test_its_message_packages_do_one_thing() -> None:
+    """What they have is in aionode, so that both need no release at the same time."""
     sources = {path.read_text() for path in (DISTRIBUTION / "src").glob("*/__init__.py")}
     codes = {"\n".join(map(ast.unparse, ast.parse(source).body[1:])) for source in sources}
 
@@ -47,14 +79,21 @@ def test_its_packages_do_one_thing() -> None:
 
 
 @pytest.mark.timeout(180)
-@pytest.mark.skipif(find_spec("hatchling") is None, reason="hatchling, which builds it, is missing")
-def test_a_program_runs_with_its_wheel(tmp_path: Path) -> None:
-    """By ``python program.py``, with nothing but the wheel on the path."""
-    build = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(tmp_path)]
-    subprocess.run(build, cwd=DISTRIBUTION, check=True, capture_output=True)
-    (wheel,) = tmp_path.glob("aionode_rclpy-*.whl")
+def test_a_wheel_of_its_sdist_has_the_same_files(wheel: Path, tmp_path: Path) -> None:
+    """The sdist is built elsewhere, where aionode's repository is not beside it."""
+    (tmp_path / "built").mkdir()
+    sdist = built("sdist", DISTRIBUTION, tmp_path / "built")
+    shutil.unpack_archive(sdist, tmp_path / "source", filter="data")
+    (source,) = (tmp_path / "source").iterdir()
+    (tmp_path / "again").mkdir()
+
+    assert files_in(built("wheel", source, tmp_path / "again")) == files_in(wheel)
+
+
+def test_a_program_runs_with_its_wheel(wheel: Path, tmp_path: Path) -> None:
+    """By ``python program.py``; with `install` besides, each module is still there once."""
     program = tmp_path / "program.py"
-    program.write_text(PROGRAM.format(module="_program"))
+    program.write_text(PROGRAM)
 
     done = subprocess.run(
         [sys.executable, str(program)],
@@ -69,6 +108,6 @@ def test_a_program_runs_with_its_wheel(tmp_path: Path) -> None:
 
 def test_it_is_not_taken_for_ros(monkeypatch: pytest.MonkeyPatch) -> None:
     """`install` says which rclpy is used only where there are two."""
-    monkeypatch.syspath_prepend(DISTRIBUTION / "src")
+    monkeypatch.syspath_prepend(FOLDER)
 
     assert rclpy_of_ros() is None

@@ -7,30 +7,30 @@ from typing import Any
 
 import pytest
 
-import aionode.rclpy
+import rclpy
 from aionode.clock import Duration
 from aionode.interfaces.std_msgs.msg import Int32, String
 from aionode.message import SerializedMessage
-from aionode.rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from aionode.rclpy.executors import SingleThreadedExecutor
-from aionode.rclpy.node import Node
-from aionode.rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
 from tests.support.peers import DOMAIN_ID, isolated_environment
 
 PATIENCE_S = 20.0
 
 
 @pytest.fixture
-def contexts(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[aionode.rclpy.Context]]:
+def contexts(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[rclpy.Context]]:
     """Two contexts that hear each other, and nothing else on the machine."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
-    contexts = [aionode.rclpy.Context(), aionode.rclpy.Context()]
+    contexts = [rclpy.Context(), rclpy.Context()]
     for context in contexts:
-        aionode.rclpy.init(args=[], context=context, domain_id=DOMAIN_ID)
+        rclpy.init(args=[], context=context, domain_id=DOMAIN_ID)
     yield contexts
     for context in contexts:
-        aionode.rclpy.shutdown(context=context)
+        rclpy.shutdown(context=context)
 
 
 def until(events: list[Any], count: int, *nodes: Node) -> None:
@@ -44,7 +44,7 @@ def until(events: list[Any], count: int, *nodes: Node) -> None:
 
 
 def test_another_context_whose_qos_does_not_fit_is_an_event(
-    contexts: list[aionode.rclpy.Context],
+    contexts: list[rclpy.Context],
 ) -> None:
     """The log leaves it to the callback, which was never called for another process."""
     here, there = (Node(f"node{number}", context=each) for number, each in enumerate(contexts))
@@ -67,7 +67,7 @@ def test_another_context_whose_qos_does_not_fit_is_an_event(
     assert str(offered[0].last_policy_kind) == "rmw_qos_policy_kind_t.RMW_QOS_POLICY_DURABILITY"
 
 
-def test_another_type_is_an_event_of_both_sides(contexts: list[aionode.rclpy.Context]) -> None:
+def test_another_type_is_an_event_of_both_sides(contexts: list[rclpy.Context]) -> None:
     """Each has its own callback for it."""
     node = Node("node", context=contexts[0])
     told: list[Any] = []
@@ -87,7 +87,7 @@ def test_another_type_is_an_event_of_both_sides(contexts: list[aionode.rclpy.Con
     assert [(each.total_count, each.total_count_change) for each in told] == [(1, 1)] * 2
 
 
-def test_changes_add_up_until_they_are_taken(contexts: list[aionode.rclpy.Context]) -> None:
+def test_changes_add_up_until_they_are_taken(contexts: list[rclpy.Context]) -> None:
     """An executor that was busy learns of all of them at once."""
     node = Node("node", context=contexts[0])
     matched: list[Any] = []
@@ -106,7 +106,7 @@ def test_changes_add_up_until_they_are_taken(contexts: list[aionode.rclpy.Contex
 
 
 def test_a_publisher_that_gives_no_sign_within_the_lease_is_not_alive(
-    contexts: list[aionode.rclpy.Context],
+    contexts: list[rclpy.Context],
 ) -> None:
     """The lease is the one that the subscription requests; a message renews it."""
     node = Node("node", context=contexts[0])
@@ -139,7 +139,7 @@ def test_a_publisher_that_gives_no_sign_within_the_lease_is_not_alive(
 
 
 def test_a_message_that_comes_late_makes_no_other_one_lost(
-    contexts: list[aionode.rclpy.Context],
+    contexts: list[rclpy.Context],
 ) -> None:
     """A message that was sent again comes behind newer ones; those were counted before."""
     node = Node("node", context=contexts[0])

@@ -15,7 +15,8 @@ import pytest
 import aionode.rclpy
 from aionode.errors import IdlError
 from aionode.rclpy import _finder
-from aionode.rclpy._rosidl import message_class
+from rosidl_generator_py import message_class
+from tests.support.without_ros import without_ros
 
 WORDS = """\
 uint8 MANY = 100
@@ -106,15 +107,23 @@ def test_messages_can_be_pickled() -> None:
 
 
 @pytest.mark.usefixtures("installed")
-def test_rclpy_is_one_module_under_two_names() -> None:
-    """An exception raised under one name has to be caught under the other."""
-    rclpy = importlib.import_module("rclpy")
-    program = importlib.import_module("rclpy._program")
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [("rclpy.node", "Node"), ("tf2_ros.buffer", "Buffer"), ("launch.event", "Event")],
+)
+def test_classes_are_defined_where_ros_has_them(module: str, name: str) -> None:
+    """Tracebacks show it, and pickles; no module has a second name."""
+    found = getattr(importlib.import_module(module), name)
 
-    assert rclpy is aionode.rclpy
-    assert program is importlib.import_module("aionode.rclpy._program")
-    assert rclpy.__spec__ is not None
-    assert rclpy.__spec__.name == "aionode.rclpy"
+    assert found.__module__ == module
+    assert [each for each in sys.modules if each.endswith(f".{module}")] == []
+
+
+@pytest.mark.parametrize("name", ["Node", "node", "init"])
+def test_the_names_of_rclpy_are_not_those_of_what_installs_it(name: str) -> None:
+    """`import aionode.rclpy as rclpy` has an error that says what to write."""
+    with pytest.raises(AttributeError, match=r"call aionode.rclpy.install\(\), then import"):
+        getattr(aionode.rclpy, name)
 
 
 @pytest.mark.usefixtures("installed")
@@ -294,8 +303,8 @@ def test_an_installed_rclpy_is_not_passed_over_in_silence(
     ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Users who have ROS 2 as well see which of the two runs."""
-    aionode.rclpy.install()
-    sys.meta_path.remove(_finder.FINDER)
+    with without_ros():
+        aionode.rclpy.install()
 
     assert f"the rclpy of aionode, not that of ROS ({ros})" in caplog.text + capsys.readouterr().err
 
@@ -304,10 +313,10 @@ def test_an_installed_rclpy_can_be_preferred(
     ros: Path, caplog: pytest.LogCaptureFixture, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Tests of a package run with ROS where it is, and with aionode elsewhere."""
-    with caplog.at_level(logging.INFO):
+    with without_ros(), caplog.at_level(logging.INFO):
         aionode.rclpy.install(prefer_ros=True)
+        assert _finder.FINDER not in sys.meta_path
 
-    assert _finder.FINDER not in sys.meta_path
     assert f"using the rclpy of ROS ({ros})" in caplog.text + capsys.readouterr().err
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from aionode.launch._evaluation import evaluate, new_context
-from aionode.launch._plan import Process
+from aionode.launch.plan import Process
 from tests.test_free_names import own_names, robots
 
 REAL: dict[tuple[str, str], dict[str, list[str]]] = {

@@ -12,14 +12,14 @@ from typing import Any
 
 import pytest
 
-from aionode import rclpy
+import rclpy
 from aionode.interfaces.rcl_interfaces.srv import ListParameters
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.message import SerializedMessage
-from aionode.rclpy._impl import destroyable
-from aionode.rclpy._impl.destroyable import Destroyable, Signal, Wakeup
-from aionode.rclpy._impl.errors import InvalidHandle
-from aionode.rclpy.qos import HistoryPolicy, QoSProfile
+from rclpy._impl import destroyable
+from rclpy._impl.destroyable import Destroyable, Signal, Wakeup
+from rclpy._impl.errors import InvalidHandle
+from rclpy.qos import HistoryPolicy, QoSProfile
 from tests.support.peers import isolated_environment
 
 TIMES = 20_000

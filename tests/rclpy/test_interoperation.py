@@ -13,20 +13,20 @@ from typing import Any
 
 import pytest
 
-import aionode.rclpy
+import rclpy
 from aionode import Context, Node
 from aionode.action import GoalRejectedError, GoalStatus
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
 from aionode.interfaces.std_msgs.msg import String
 from aionode.lifecycle import LifecycleManager, LifecycleNode, TransitionCallbackReturn
-from aionode.rclpy import lifecycle as rclpy_lifecycle
-from aionode.rclpy._rosidl import action_class, message_class, service_class
-from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
-from aionode.rclpy.callback_groups import ReentrantCallbackGroup
-from aionode.rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
-from aionode.rclpy.node import Node as RclpyNode
-from aionode.rclpy.qos import as_own
+from rclpy import lifecycle as rclpy_lifecycle
+from rclpy.action import ActionClient, ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node as RclpyNode
+from rclpy.qos import as_own
+from rosidl_generator_py import action_class, message_class, service_class
 from tests.support.peers import DOMAIN_ID, isolated_environment, kept, quiet_node
 from tests.support.waiting import until
 
@@ -58,8 +58,8 @@ class Side:
     """A context of rclpy's API whose nodes a thread spins."""
 
     def __init__(self) -> None:
-        self.context = aionode.rclpy.Context()
-        aionode.rclpy.init(args=[], context=self.context, domain_id=DOMAIN_ID)
+        self.context = rclpy.Context()
+        rclpy.init(args=[], context=self.context, domain_id=DOMAIN_ID)
         self.executor = MultiThreadedExecutor(4, context=self.context)
         self._thread = threading.Thread(target=self._spin)
         self._thread.start()
@@ -77,7 +77,7 @@ class Side:
         """End the thread."""
         self.executor.shutdown()
         self._thread.join(PATIENCE_S)
-        aionode.rclpy.shutdown(context=self.context)
+        rclpy.shutdown(context=self.context)
 
 
 @pytest.fixture

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from aionode.rclpy._impl import uninterrupted
+from rclpy._impl import uninterrupted
 from tests.support import fork_server
 from tests.support.peers import isolated_environment
 

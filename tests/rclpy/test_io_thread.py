@@ -9,7 +9,7 @@ from typing import Self
 import pytest
 
 from aionode import Context
-from aionode.rclpy._impl.io_thread import IoThread
+from rclpy._impl.io_thread import IoThread
 
 
 @pytest.mark.timeout(30)

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from aionode import rclpy
+import message_filters
+import rclpy
 from aionode.clock import ClockType
-from aionode.rclpy import _message_filters as message_filters
-from aionode.rclpy._rosidl import message_class
-from aionode.rclpy.time import Time
+from rclpy.time import Time
+from rosidl_generator_py import message_class
 from tests.support.peers import isolated_environment
 
 Header = message_class("std_msgs/msg/Header")

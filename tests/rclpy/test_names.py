@@ -18,7 +18,7 @@ from typing import Any
 
 import pytest
 
-from aionode.rclpy._rosidl import message_class
+from rosidl_generator_py import message_class
 
 HERE = Path(__file__).parent
 EXPECTED: dict[str, dict[str, list[str]]] = json.loads(
@@ -72,7 +72,7 @@ SHARED = {
     "aionode.logging": "one class for both APIs",
     "aionode.parameter": "one class for both APIs",
     "aionode.qos": "one class for both APIs",
-    "aionode.rclpy._type_names": "a name for annotations",
+    "rclpy._type_names": "a name for annotations",
     "typing": "a name for annotations",
 }
 """The modules whose classes keep their `__module__`, and why."""
@@ -204,7 +204,7 @@ def test_a_former_name_of_a_policy_warns_as_in_rclpy(policy: str, name: str) -> 
 @pytest.mark.usefixtures("installed")
 def test_the_former_module_of_events_warns_as_in_rclpy() -> None:
     """It has the names of `rclpy.event_handler`."""
-    sys.modules.pop("aionode.rclpy.qos_event", None)
+    sys.modules.pop("rclpy.qos_event", None)
 
     with pytest.warns(UserWarning, match="importing 'qos_event' is deprecated"):
         module = importlib.import_module("rclpy.qos_event")

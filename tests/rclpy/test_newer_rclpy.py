@@ -9,39 +9,39 @@ from typing import Any
 
 import pytest
 
-import aionode.rclpy
+import rclpy
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
-from aionode.rclpy.action import ActionClient, ActionServer, CancelResponse
-from aionode.rclpy.callback_groups import ReentrantCallbackGroup
-from aionode.rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from aionode.rclpy.node import Node
-from aionode.rclpy.service import Service
-from aionode.rclpy.task import Future
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.service import Service
+from rclpy.task import Future
 from tests.support.peers import isolated_environment
 
 PATIENCE_S = 20.0
 
 
 @pytest.fixture
-def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[aionode.rclpy.Context]:
+def context(monkeypatch: pytest.MonkeyPatch) -> Iterator[rclpy.Context]:
     """A context out of earshot."""
     for name, value in isolated_environment().items():
         monkeypatch.setenv(name, value)
-    context = aionode.rclpy.Context()
-    aionode.rclpy.init(args=[], context=context)
+    context = rclpy.Context()
+    rclpy.init(args=[], context=context)
     yield context
-    aionode.rclpy.shutdown(context=context)
+    rclpy.shutdown(context=context)
 
 
 @pytest.fixture
-def node(context: aionode.rclpy.Context) -> Node:
+def node(context: rclpy.Context) -> Node:
     """A node."""
     return Node("node", context=context)
 
 
 @pytest.fixture
-def wait(context: aionode.rclpy.Context, node: Node) -> Callable[[Future[Any]], Any]:
+def wait(context: rclpy.Context, node: Node) -> Callable[[Future[Any]], Any]:
     """Return a function that spins the node until a future is done, and returns its result."""
     executor = SingleThreadedExecutor(context=context)
     executor.add_node(node)
@@ -165,7 +165,7 @@ def test_a_request_may_be_answered_later_from_anywhere(
     ids=["once", "once until", "until"],
 )
 def test_an_executor_says_whether_it_spins(
-    context: aionode.rclpy.Context, node: Node, spin: Callable[[Any, Future[bool]], None]
+    context: rclpy.Context, node: Node, spin: Callable[[Any, Future[bool]], None]
 ) -> None:
     """Programs decide by it whether they may wait for a callback."""
     executor = SingleThreadedExecutor(context=context)
@@ -186,7 +186,7 @@ def test_an_executor_says_whether_it_spins(
 
 
 def test_the_end_of_the_program_ends_the_spin_of_several_threads(
-    context: aionode.rclpy.Context, node: Node
+    context: rclpy.Context, node: Node
 ) -> None:
     """As it ends that of one."""
 
@@ -204,7 +204,7 @@ def test_the_end_of_the_program_ends_the_spin_of_several_threads(
 
 @pytest.mark.parametrize("executor_class", [SingleThreadedExecutor, MultiThreadedExecutor])
 def test_the_end_of_the_program_is_no_exception_that_nobody_has_retrieved(
-    context: aionode.rclpy.Context,
+    context: rclpy.Context,
     executor_class: type[SingleThreadedExecutor | MultiThreadedExecutor],
     capfd: pytest.CaptureFixture[str],
 ) -> None:
@@ -224,9 +224,7 @@ def test_the_end_of_the_program_is_no_exception_that_nobody_has_retrieved(
     assert "never retrieved" not in capfd.readouterr().err
 
 
-def test_a_busy_pool_takes_nothing_that_it_cannot_call(
-    context: aionode.rclpy.Context, node: Node
-) -> None:
+def test_a_busy_pool_takes_nothing_that_it_cannot_call(context: rclpy.Context, node: Node) -> None:
     """Nobody could stop what queues up; a timer that is late runs once."""
     may_end, begun = threading.Event(), threading.Semaphore(0)
     calls: list[int] = []

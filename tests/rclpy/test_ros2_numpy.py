@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aionode.rclpy import _ros2_numpy as ros2_numpy
-from aionode.rclpy._ros2_numpy import point_cloud2, transformations
-from aionode.rclpy._rosidl import message_class
-from aionode.rclpy.serialization import serialize_message
+import ros2_numpy
+from rclpy.serialization import serialize_message
+from ros2_numpy import point_cloud2, transformations
+from rosidl_generator_py import message_class
 
 Image = message_class("sensor_msgs/msg/Image")
 MapMetaData = message_class("nav_msgs/msg/MapMetaData")

@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
+import rosbag2_py
 from aionode import Context, Node, bag
 from aionode.clock import Time
 from aionode.interfaces.std_msgs.msg import String
-from aionode.rclpy import _rosbag2_py as rosbag2_py
-from aionode.rclpy._rosbag2_live import LiveThread
+from rosbag2_py._live import LiveThread
 from tests.support.peers import isolated_environment, quiet_node
 from tests.support.waiting import until
 

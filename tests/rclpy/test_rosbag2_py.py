@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+import rosbag2_py
 from aionode import bag
 from aionode.engine.wire import cdr
 from aionode.interfaces.std_msgs.msg import Float64, String
-from aionode.rclpy import _rosbag2_py as rosbag2_py
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -13,7 +13,7 @@ import pytest
 
 from aionode.errors import InterfaceNotFoundError
 from aionode.interfaces.std_msgs.msg import String as OwnString
-from aionode.rclpy._rosidl import (
+from rosidl_generator_py import (
     action_class,
     aionode_class,
     from_aionode,
@@ -22,7 +22,7 @@ from aionode.rclpy._rosidl import (
     ros_type_name,
     service_class,
 )
-from aionode.rclpy._rosidl_parser.definition import BasicType, NamespacedType, UnboundedSequence
+from rosidl_parser.definition import BasicType, NamespacedType, UnboundedSequence
 
 String = message_class("std_msgs/msg/String")
 Header = message_class("std_msgs/msg/Header")

@@ -12,7 +12,7 @@ from hypothesis import given
 from aionode.engine.wire import cdr
 from aionode.errors import DecodeError, MessageError
 from aionode.message import Message, snapshot
-from aionode.rclpy._rosidl import (
+from rosidl_generator_py import (
     decode,
     encode,
     from_aionode,

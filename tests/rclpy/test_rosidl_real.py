@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from aionode.rclpy._rosidl import interface_class
+from rosidl_generator_py import interface_class
 from tests.support import rosidl_report
 from tests.support.strategies import shipped_types
 

@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 import aionode.rclpy
+import rosidl_runtime_py as runtime
 from aionode._packages import use
 from aionode.rclpy import _finder
-from aionode.rclpy import _rosidl_runtime_py as runtime
-from aionode.rclpy._ament_index_python import (
+from ament_index_python import (
     PackageNotFoundError,
     get_package_prefix,
     get_package_share_directory,
@@ -22,8 +22,8 @@ from aionode.rclpy._ament_index_python import (
     get_resources,
     has_resource,
 )
-from aionode.rclpy._rosidl import action_class, message_class, service_class
-from aionode.rclpy._rosidl_runtime_py.utilities import get_action, get_message, get_service
+from rosidl_generator_py import action_class, message_class, service_class
+from rosidl_runtime_py.utilities import get_action, get_message, get_service
 
 Header = message_class("std_msgs/msg/Header")
 Sequences = message_class("test_msgs/msg/UnboundedSequences")

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from aionode.rclpy._rosidl import message_class
-from aionode.rclpy._sensor_msgs_py import point_cloud2
+from rosidl_generator_py import message_class
+from sensor_msgs_py import point_cloud2
 
 Header = message_class("std_msgs/msg/Header")
 PointField = message_class("sensor_msgs/msg/PointField")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from aionode import rclpy
+import rclpy
 from aionode.clock import MachineTime
 from aionode.interfaces.std_msgs.msg import Int32
 from tests.support import fork_server

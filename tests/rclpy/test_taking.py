@@ -6,8 +6,8 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from aionode.rclpy._impl.destroyable import Arrivals, Signal
-from aionode.rclpy._taking import find_ready
+from rclpy._impl.destroyable import Arrivals, Signal
+from rclpy._taking import find_ready
 
 
 class Handles:

@@ -10,16 +10,19 @@ from typing import Any
 import numpy as np
 import pytest
 
+import tf2_geometry_msgs as _tf2_geometry_msgs
+import tf2_py as _tf2_py
+import tf2_ros as _tf2_ros
+import tf2_sensor_msgs as _tf2_sensor_msgs
 from aionode.errors import LookupException as OwnLookupException
-from aionode.rclpy import _tf2_geometry_msgs, _tf2_py, _tf2_ros, _tf2_sensor_msgs
-from aionode.rclpy._rosidl import message_class
-from aionode.rclpy._tf2_py import BufferCore, ExtrapolationException, LookupException
-from aionode.rclpy._tf2_ros import Buffer, TransformRegistration, TypeException, convert
-from aionode.rclpy.duration import Duration
-from aionode.rclpy.time import Time
 from aionode.tf.waiters import Waiter
+from rclpy.duration import Duration
+from rclpy.time import Time
+from rosidl_generator_py import message_class
 from tests.support import fork_server
 from tests.support.living import living
+from tf2_py import BufferCore, ExtrapolationException, LookupException
+from tf2_ros import Buffer, TransformRegistration, TypeException, convert
 
 TransformStamped = message_class("geometry_msgs/msg/TransformStamped")
 PointStamped = message_class("geometry_msgs/msg/PointStamped")

@@ -9,22 +9,22 @@ import pytest
 from aionode import Node
 from aionode.clock import Time
 from aionode.errors import LookupException
-from aionode.rclpy._rosidl import from_aionode
-from aionode.rclpy._tf2_ros import (
-    Buffer as ProgramsBuffer,
-)
-from aionode.rclpy._tf2_ros import BufferClient as ProgramsClient
-from aionode.rclpy._tf2_ros import (
-    StaticTransformBroadcaster as ProgramsStaticBroadcaster,
-)
-from aionode.rclpy._tf2_ros import TransformBroadcaster as ProgramsBroadcaster
-from aionode.rclpy._tf2_ros import TransformListener as ProgramsListener
-from aionode.rclpy.duration import Duration
-from aionode.rclpy.node import Node as RclpyNode
-from aionode.rclpy.time import Time as RclpyTime
 from aionode.tf import Buffer, BufferServer, StaticTransformBroadcaster, TransformBroadcaster
+from rclpy.duration import Duration
+from rclpy.node import Node as RclpyNode
+from rclpy.time import Time as RclpyTime
+from rosidl_generator_py import from_aionode
 from tests.rclpy.test_interoperation import Side, alone, native, side
 from tests.support.transforms import senders, transform
+from tf2_ros import (
+    Buffer as ProgramsBuffer,
+)
+from tf2_ros import BufferClient as ProgramsClient
+from tf2_ros import (
+    StaticTransformBroadcaster as ProgramsStaticBroadcaster,
+)
+from tf2_ros import TransformBroadcaster as ProgramsBroadcaster
+from tf2_ros import TransformListener as ProgramsListener
 
 __all__ = ["alone", "native", "side"]  # the fixtures
 

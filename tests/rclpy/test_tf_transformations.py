@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from aionode.rclpy import _tf_transformations as tf
+import tf_transformations as tf
 
 AXES = sorted(tf._AXES2TUPLE)
 ANGLES = 0.4, -1.1, 2.3

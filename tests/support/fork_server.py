@@ -61,13 +61,15 @@ PRELOADED_PACKAGES: Final = (
     "aionode.lifecycle",
     "aionode.logging",
     "aionode.parameter",
-    "aionode.rclpy._impl",
     "aionode.testing",
     "aionode.transport.link",
     "aionode.transport.zenoh",
     "aionode.wire",
 )
 """Packages of which each module is imported: programs import parts of them when they run."""
+
+OF_RCLPY: Final[dict[str, ModuleType]] = {}
+"""The modules that programs of rclpy import, which others must not find."""
 
 
 def start(
@@ -226,13 +228,24 @@ def preload() -> None:
     for name in PRELOADED:
         importlib.import_module(name)
     for name in PRELOADED_PACKAGES:
-        package = importlib.import_module(name)
-        for module in pkgutil.walk_packages(getattr(package, "__path__", ()), f"{name}."):
-            importlib.import_module(module.name)
+        import_all(name)
+    importlib.import_module("aionode.rclpy").install()
+    finder = importlib.import_module("aionode.rclpy._finder")
+    import_all("rclpy._impl")
+    sys.meta_path.remove(finder.FINDER)
+    for name in [name for name in sys.modules if name.partition(".")[0] in finder.SUPPLIED]:
+        OF_RCLPY[name] = sys.modules.pop(name)
     gc.collect()
     gc.freeze()  # a program that looks for garbage there would copy all of the server's memory
     threads = len(list(Path("/proc/self/task").iterdir()))
     assert threads == 1, f"{threads} threads: a forked program would have one of them"
+
+
+def import_all(name: str) -> None:
+    """Import a package and each of its modules."""
+    package = importlib.import_module(name)
+    for module in pkgutil.walk_packages(getattr(package, "__path__", ()), f"{name}."):
+        importlib.import_module(module.name)
 
 
 def serve(connection: socket.socket) -> dict[str, Any] | None:
@@ -284,6 +297,8 @@ def run_here(arguments: list[str]) -> None:
     if first == "-m":
         sys.argv[:] = rest
         sys.path[0] = str(Path.cwd())
+        if rest[0] == "aionode.rclpy":
+            sys.modules.update(OF_RCLPY)
         runpy.run_module(rest[0], run_name="__main__", alter_sys=True)
         return
     main = ModuleType("__main__")

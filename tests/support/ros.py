@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import functools
 import importlib.metadata
-import importlib.util
 import os
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.machinery import PathFinder
 
 __all__ = ["gids_of_a_client", "ros_domain", "ros_missing", "ros_peer"]
 
@@ -22,13 +22,13 @@ def ros_missing(*packages: str) -> str:
         packages: Which packages of a ROS 2 they need that have no wheels.
     """
     for package in ("rclpy", "std_msgs", "test_msgs"):
-        if importlib.util.find_spec(package) is None:
+        if PathFinder.find_spec(package) is None:
             return (
                 f"{package} is not installed: pip install 'aionode[ros]' (Linux x86-64), or source "
                 "a ROS 2; see CONTRIBUTING.md"
             )
     for package in packages:
-        if importlib.util.find_spec(package) is None:
+        if PathFinder.find_spec(package) is None:
             return f"{package} is not installed: it has no wheel; source a ROS 2 that has it"
     return ""
 

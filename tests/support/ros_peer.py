@@ -11,37 +11,38 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
-import rclpy  # noqa: TID251  # it plays the other process
-from rclpy.action import (  # noqa: TID251  # the same
-    ActionClient,
-    ActionServer,
-    CancelResponse,
-)
-from rclpy.callback_groups import ReentrantCallbackGroup  # noqa: TID251  # the same
-from rclpy.duration import Duration  # noqa: TID251  # the same
-from rclpy.event_handler import SubscriptionEventCallbacks  # noqa: TID251  # the same
-from rclpy.executors import (  # noqa: TID251  # the same
-    ExternalShutdownException,
-    MultiThreadedExecutor,
-)
-from rclpy.node import Node  # noqa: TID251  # the same
-from rclpy.parameter import Parameter  # noqa: TID251  # the same
-from rclpy.parameter_client import AsyncParameterClient  # noqa: TID251  # the same
-from rclpy.qos import (  # noqa: TID251  # the same
-    DurabilityPolicy,
-    LivelinessPolicy,
-    QoSProfile,
-)
-from rclpy.task import Future  # noqa: TID251  # the same
 from std_msgs.msg import String, UInt8MultiArray
 from test_msgs.action import Fibonacci
 from test_msgs.srv import BasicTypes
 from type_description_interfaces.srv import GetTypeDescription
 
+import rclpy  # it plays the other process
+from rclpy.action import (  # the same
+    ActionClient,
+    ActionServer,
+    CancelResponse,
+)
+from rclpy.callback_groups import ReentrantCallbackGroup  # the same
+from rclpy.duration import Duration  # the same
+from rclpy.event_handler import SubscriptionEventCallbacks  # the same
+from rclpy.executors import (  # the same
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+)
+from rclpy.node import Node  # the same
+from rclpy.parameter import Parameter  # the same
+from rclpy.parameter_client import AsyncParameterClient  # the same
+from rclpy.qos import (  # the same
+    DurabilityPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+)
+from rclpy.task import Future  # the same
+
 MOMENT = Duration(nanoseconds=100_000_000)
 
 
-class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
+class Peer(Node):
     """The node ``/peer``."""
 
     def __init__(self) -> None:

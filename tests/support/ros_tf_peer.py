@@ -12,19 +12,19 @@ from contextlib import suppress
 from functools import partial
 from typing import Any
 
-import rclpy  # noqa: TID251  # it plays the other process
 from geometry_msgs.msg import TransformStamped
-from rclpy.executors import ExternalShutdownException  # noqa: TID251  # the same
-from rclpy.node import Node  # noqa: TID251  # the same
-from rclpy.qos import DurabilityPolicy, QoSProfile  # noqa: TID251  # the same
 from tf2_msgs.msg import TFMessage
 
+import rclpy  # it plays the other process
+from rclpy.executors import ExternalShutdownException  # the same
+from rclpy.node import Node  # the same
+from rclpy.qos import DurabilityPolicy, QoSProfile  # the same
 from tests.support.ros_peer import shut_down_at_end
 
 TRANSIENT = DurabilityPolicy.TRANSIENT_LOCAL
 
 
-class Peer(Node):  # type: ignore[misc]  # rclpy has no types here
+class Peer(Node):
     """The node ``/tf_peer``."""
 
     def __init__(self) -> None:

@@ -13,13 +13,13 @@ from contextlib import suppress
 from typing import Any
 
 import msgspec
-import rclpy
 from geometry_msgs.msg import Twist
+from test_msgs.action import Fibonacci
+
+import rclpy
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
-from test_msgs.action import Fibonacci
-
 from tests.faults.motion.words import Handed, Mover, What, Wheel
 from tests.faults.roles import REPORTS_VARIABLE, Report, Role
 
@@ -101,7 +101,7 @@ class Program:
 
     def send_goal(self, mover: Mover) -> None:
         """Send a goal when there is a server."""
-        client = ActionClient(self.node, Fibonacci, mover.topic)
+        client: Any = ActionClient(self.node, Fibonacci, mover.topic)
 
         def send() -> None:
             if client.server_is_ready():
@@ -133,7 +133,7 @@ class Program:
             goal.canceled()
             return Fibonacci.Result()
 
-        self.servers = ActionServer(
+        self.servers: Any = ActionServer(
             self.node,
             Fibonacci,
             wheel.topic,

@@ -21,14 +21,15 @@ from aionode.rclpy import install
 install()
 sys.meta_path.insert(0, InstalledLaunch())
 
+from launch_ros.actions.load_composable_nodes import get_composable_node_load_request  # noqa: E402
+
 import launch  # noqa: E402
 import launch_ros.actions  # noqa: E402
 from launch.launch_description_sources import AnyLaunchDescriptionSource  # noqa: E402
-from launch_ros.actions.load_composable_nodes import get_composable_node_load_request  # noqa: E402
 
 if not hasattr(launch.substitutions, "PathSubstitution"):  # launch before 3.8
 
-    class PathSubstitution(launch.substitutions.PathJoinSubstitution):  # type: ignore[misc]  # not installed
+    class PathSubstitution(launch.substitutions.PathJoinSubstitution):
         """A path, to which parts are added with ``/``."""
 
         def __init__(self, path: Any) -> None:

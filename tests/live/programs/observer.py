@@ -16,9 +16,10 @@ import time
 from importlib import import_module
 from typing import Any
 
-import rclpy
 from rcl_interfaces.msg import Log
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters, SetParameters
+
+import rclpy
 from rclpy.action import ActionClient
 from rclpy.action.graph import (
     get_action_client_names_and_types_by_node,

@@ -25,6 +25,7 @@ from ctypes import (
     c_uint64,
     c_void_p,
 )
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import TransportError
@@ -254,7 +255,7 @@ def load() -> Rcl:
     Raises:
         TransportError: there is none, or one that is too old, or its middleware is missing.
     """
-    if getattr(sys.modules.get("rclpy"), "__name__", "rclpy") != "rclpy":
+    if is_in_python():
         raise TransportError(
             "transport=rcl: in this process, rclpy is aionode's; a program that imports rclpy runs "
             "over DDS with ROS's own, or uses aionode's names"
@@ -281,6 +282,17 @@ def load() -> Rcl:
         ) from error
     except Exception as error:  # rclpy's own kinds, of which none is public
         raise TransportError(middleware_problem(error)) from error
+
+
+def is_in_python() -> bool:
+    """Return whether the rclpy that programs of this process import is aionode's.
+
+    Its extension module is a module in Python.
+    """
+    loaded = sys.modules.get("rclpy")
+    spec = importlib.util.find_spec("rclpy") if loaded is None else None
+    file = getattr(loaded, "__file__", None) if spec is None else spec.origin
+    return file is not None and Path(file).with_name("_rclpy_pybind11.py").exists()
 
 
 def installed_version() -> str:

@@ -1,9 +1,0 @@
-"""`launch.frontend`: substitutions of a program's own in XML and YAML launch files."""
-
-from __future__ import annotations
-
-from aionode.launch._launch.frontend import expose as expose
-from aionode.launch._launch.frontend.expose import expose_action, expose_substitution
-from aionode.launch._launch.utilities import type_utils as type_utils
-
-__all__ = ["expose_action", "expose_substitution", "type_utils"]

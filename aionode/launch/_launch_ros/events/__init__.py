@@ -1,8 +1,0 @@
-"""`launch_ros.events`."""
-
-from __future__ import annotations
-
-from aionode.launch._launch_ros.events import lifecycle as lifecycle
-from aionode.launch._launch_ros.events.lifecycle import matches_node_name
-
-__all__ = ["lifecycle", "matches_node_name"]

@@ -1,7 +1,0 @@
-"""The package that launch files import as `launch_yaml`."""
-
-from __future__ import annotations
-
-from aionode.launch._launch_yaml import launch_description_sources as launch_description_sources
-
-__all__ = ["launch_description_sources"]

@@ -1,7 +1,0 @@
-"""`launch_yaml.launch_description_sources`."""
-
-from __future__ import annotations
-
-from aionode.launch._launch.launch_description_sources import YAMLLaunchDescriptionSource
-
-__all__ = ["YAMLLaunchDescriptionSource"]

@@ -1,5 +1,0 @@
-"""Types of clocks."""
-
-from aionode.clock import ClockType
-
-__all__ = ["ClockType"]

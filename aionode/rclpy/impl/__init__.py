@@ -1,1 +1,0 @@
-"""Modules that rclpy keeps for itself, and some programs use all the same."""

@@ -1,5 +1,0 @@
-"""Gives access to what rclpy has in its extension module."""
-
-from aionode.rclpy import _rclpy_pybind11 as rclpy_implementation
-
-__all__ = ["rclpy_implementation"]

@@ -1,5 +1,0 @@
-"""The severities of log messages."""
-
-from aionode.logging import LoggingSeverity
-
-__all__ = ["LoggingSeverity"]

@@ -1,5 +1,0 @@
-"""Loggers."""
-
-from aionode.logging import RcutilsLogger
-
-__all__ = ["RcutilsLogger"]

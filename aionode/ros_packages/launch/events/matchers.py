@@ -1,0 +1,12 @@
+"""`launch.events.matchers`: which processes a request concerns."""
+
+from __future__ import annotations
+
+from launch.events.process import (
+    matches_action,
+    matches_executable,
+    matches_name,
+    matches_pid,
+)
+
+__all__ = ["matches_action", "matches_executable", "matches_name", "matches_pid"]

@@ -1,0 +1,172 @@
+"""`launch.launch_context`: the state in which a description is evaluated."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Callable, Iterable, Mapping
+from types import SimpleNamespace
+from typing import Any, Self
+
+from aionode._packages import Packages
+from aionode.launch.plan import Emit, Step, Watch
+
+__all__ = ["KnownLater", "LaunchContext"]
+
+
+class KnownLater(Exception):  # noqa: N818  # no error
+    """A value is known only when the entity is really done: something may have changed by then."""
+
+
+def cannot_load(path: str, kind: str) -> Any:
+    """Refuse to load a file: only an evaluation can."""
+    raise NotImplementedError(f"{path}: this context does not read launch files")
+
+
+class Unknown:
+    """Stands for what is known only when it happens: an event, and what belongs to it."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def __getattr__(self, name: str) -> Unknown:
+        return Unknown(f"{self._name}.{name}")
+
+    def __str__(self) -> str:
+        return f"<{self._name}>"
+
+
+class LaunchContext:
+    """The launch configurations and the environment; and the steps that have been found.
+
+    The environment is a copy: nothing changes that of this process. Substitutions, events and
+    handlers know this class, so it does not know theirs.
+    """
+
+    def __init__(self, *, argv: Iterable[str] | None = None, noninteractive: bool = False) -> None:
+        self.argv = list(argv or ())
+        self.noninteractive = noninteractive
+        self.launch_configurations: dict[str, Any] = {}
+        self.environment: dict[str, str] = dict(os.environ)
+        self.locals = SimpleNamespace()
+        self.is_shutdown = False
+        self.steps: list[Step] = []
+        self.load_file: Callable[[str, str], Any] = cannot_load
+        """Returns the description in a file of this path and kind: python, xml, yaml or any."""
+        self.packages = Packages()
+        """The packages in which executables and files are looked up."""
+        self.declared: set[str] = set()
+        """The arguments that have been declared."""
+        self.ahead = False
+        """Whether what is evaluated is done later."""
+        self.names: dict[str, int] = {}
+        """The number of processes that each name had so far."""
+        self._configurations: list[dict[str, Any]] = []
+        self._environments: list[dict[str, str]] = []
+        self._locals: list[dict[str, Any]] = []
+
+    def fork(self, *, ahead: bool = False) -> Self:
+        """Return a context with no steps, for what is done later.
+
+        It has its state in common with this one, so that it sees what is declared and set in the
+        same scope meanwhile.
+
+        Args:
+            ahead: Whether that is evaluated before its time, to find what is wrong with it.
+        """
+        later = type(self)(argv=self.argv, noninteractive=self.noninteractive)
+        later.launch_configurations = self.launch_configurations
+        later.environment = self.environment
+        later.locals = SimpleNamespace(**vars(self.locals))
+        later.load_file = self.load_file
+        later.packages = self.packages
+        later.names = self.names  # one count for the whole description
+        later.declared = self.declared
+        later.ahead = ahead or self.ahead
+        if ahead:  # it changes nothing for those that are done
+            later.launch_configurations = dict(self.launch_configurations)
+            later.environment = dict(self.environment)
+            later.locals.event = Unknown("event")
+        return later
+
+    @property
+    def asyncio_loop(self) -> asyncio.AbstractEventLoop:
+        """The event loop.
+
+        Raises:
+            RuntimeError: The description is being evaluated, and nothing runs yet.
+        """
+        return asyncio.get_running_loop()
+
+    def perform_substitution(self, sub: Any) -> str:
+        """Return the text of a substitution."""
+        return str(sub.perform(self))
+
+    def extend_locals(self, extensions: Mapping[str, Any]) -> None:
+        """Add values that the following entities find in `locals`."""
+        vars(self.locals).update(extensions)
+
+    def need_present(self, what: str) -> None:
+        """Give up if this is evaluated before its time.
+
+        Raises:
+            KnownLater: It is.
+        """
+        if self.ahead:
+            raise KnownLater(what)
+
+    def get_locals_as_dict(self) -> dict[str, Any]:
+        """Return the values in `locals`."""
+        return dict(vars(self.locals))
+
+    def push_locals(self) -> None:
+        """Remember the values in `locals` until the matching pop."""
+        self._locals.append(self.get_locals_as_dict())
+
+    def pop_locals(self) -> None:
+        """Restore what the matching push remembered."""
+        self.locals = SimpleNamespace(**self._locals.pop())
+
+    def push_launch_configurations(self) -> None:
+        """Remember the launch configurations until the matching pop."""
+        self._configurations.append(self.launch_configurations)
+        self.launch_configurations = dict(self.launch_configurations)
+
+    def pop_launch_configurations(self) -> None:
+        """Restore what the matching push remembered."""
+        self.launch_configurations = self._configurations.pop()
+
+    def push_environment(self) -> None:
+        """Remember the environment until the matching pop."""
+        self._environments.append(self.environment)
+        self.environment = dict(self.environment)
+
+    def pop_environment(self) -> None:
+        """Restore what the matching push remembered."""
+        self.environment = self._environments.pop()
+
+    def reset_environment(self) -> None:
+        """Make the environment that of this process again."""
+        self.environment.clear()
+        self.environment.update(os.environ)
+
+    def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
+        """Have a handler called from now on."""
+        self.steps.append(Watch(handler=event_handler, context=self.fork()))
+
+    def unregister_event_handler(self, event_handler: Any) -> None:
+        """Have a handler called no more."""
+        self.steps.append(Watch(handler=event_handler, context=self.fork(), ends=True))
+
+    def emit_event_sync(self, event: Any) -> None:
+        """Hand an event to the handlers."""
+        self.steps.append(Emit(event=event))
+
+    async def emit_event(self, event: Any) -> None:
+        """Hand an event to the handlers."""
+        self.emit_event_sync(event)
+
+    def unique_name(self, name: str) -> str:
+        """Return the name of one more process: the name and a number, as ros2 launch does."""
+        number = self.names[""] = self.names.get("", 0) + 1
+        return f"{name}-{number}"

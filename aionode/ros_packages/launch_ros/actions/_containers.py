@@ -1,0 +1,90 @@
+"""Nodes that share one process."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from aionode.launch.plan import Component, LoadNodes
+from launch.action import Action
+from launch.launch_context import LaunchContext
+from launch.substitution import SomeSubstitutionsType
+from launch_ros.actions._node import Node
+from launch_ros.descriptions import ComposableNode
+from launch_ros.namespaces import text_or_none
+
+__all__ = ["ComposableNodeContainer", "LoadComposableNodes"]
+
+
+class ComposableNodeContainer(Node):
+    """Starts a container, and gives it nodes.
+
+    A container of which all nodes are classes of aionode needs no process: they run as tasks.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: SomeSubstitutionsType,
+        namespace: SomeSubstitutionsType,
+        composable_node_descriptions: Iterable[ComposableNode] | None = None,
+        package: SomeSubstitutionsType = "rclcpp_components",
+        executable: SomeSubstitutionsType = "component_container",
+        **options: Any,
+    ) -> None:
+        super().__init__(
+            name=name, namespace=namespace, package=package, executable=executable, **options
+        )
+        self._ComposableNodeContainer__composable_node_descriptions = list(
+            composable_node_descriptions or ()
+        )
+
+    def execute(self, context: LaunchContext) -> Any:
+        """Note the container, if it needs a process, and its nodes."""
+        components = components_of(
+            context, self._ComposableNodeContainer__composable_node_descriptions
+        )
+        if components and all(component.is_aionode for component in components):
+            self._ExecuteLocal__arguments_of_ros(context)  # which settles its name
+        else:
+            super().execute(context)
+        if components:
+            context.steps.append(
+                LoadNodes(self.node_name, components, self._LaunchDescriptionEntity__where)
+            )
+
+
+class LoadComposableNodes(Action):
+    """Gives nodes to a container that is started elsewhere."""
+
+    def __init__(
+        self,
+        *,
+        composable_node_descriptions: Iterable[ComposableNode],
+        target_container: SomeSubstitutionsType | ComposableNodeContainer,
+        **options: Any,
+    ) -> None:
+        super().__init__(**options)
+        self._LoadComposableNodes__composable_node_descriptions = list(composable_node_descriptions)
+        self._LoadComposableNodes__target_container = target_container
+
+    def execute(self, context: LaunchContext) -> None:
+        """Note the nodes."""
+        target = self._LoadComposableNodes__target_container
+        if isinstance(target, ComposableNodeContainer):
+            name: str | None = target.node_name
+        else:
+            name = text_or_none(context, target)
+        components = components_of(context, self._LoadComposableNodes__composable_node_descriptions)
+        if components:
+            context.steps.append(
+                LoadNodes(name or "", components, self._LaunchDescriptionEntity__where)
+            )
+
+
+def components_of(
+    context: LaunchContext, descriptions: Iterable[ComposableNode]
+) -> list[Component]:
+    """Return the nodes whose conditions hold."""
+    components = (description._ComposableNode__component(context) for description in descriptions)
+    return [component for component in components if component is not None]

@@ -1,0 +1,122 @@
+"""Actions that concern all nodes after them, to the end of their group."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from launch.action import Action
+from launch.actions import TimerAction
+from launch.launch_context import LaunchContext
+from launch.substitution import (
+    SomeSubstitutionsType,
+    normalize_to_list_of_substitutions,
+    perform_substitutions,
+)
+from launch_ros.namespaces import namespace_in
+from launch_ros.parameter_descriptions import evaluate_values
+
+__all__ = [
+    "PushROSNamespace",
+    "PushRosNamespace",
+    "ROSTimer",
+    "RosTimer",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetROSLogDir",
+    "SetRemap",
+    "SetUseSimTime",
+]
+
+
+def add(context: LaunchContext, key: str, values: list[Any]) -> None:
+    """Add to a list that ends with the group: the list of the outer group stays as it is."""
+    context.launch_configurations[key] = [*context.launch_configurations.get(key, ()), *values]
+
+
+class PushROSNamespace(Action):
+    """Puts nodes into a namespace."""
+
+    def __init__(self, namespace: SomeSubstitutionsType, **options: Any) -> None:
+        super().__init__(**options)
+        self.namespace = normalize_to_list_of_substitutions(namespace)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Push it."""
+        pushed = perform_substitutions(context, self.namespace)
+        context.launch_configurations["ros_namespace"] = namespace_in(context, pushed)
+
+
+PushRosNamespace = PushROSNamespace
+
+
+class SetParameter(Action):
+    """Gives a parameter to all nodes."""
+
+    def __init__(self, name: SomeSubstitutionsType, value: Any, **options: Any) -> None:
+        super().__init__(**options)
+        self.name = normalize_to_list_of_substitutions(name)
+        self.value = value
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add it."""
+        name = perform_substitutions(context, self.name)
+        add(context, "global_params", list(evaluate_values(context, {name: self.value}).items()))
+
+
+class SetParametersFromFile(Action):
+    """Gives a parameter file to all nodes."""
+
+    def __init__(self, filename: SomeSubstitutionsType, **options: Any) -> None:
+        super().__init__(**options)
+        self._SetParametersFromFile__filename = normalize_to_list_of_substitutions(filename)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add it."""
+        add(
+            context,
+            "global_params",
+            [perform_substitutions(context, self._SetParametersFromFile__filename)],
+        )
+
+
+class SetUseSimTime(Action):
+    """Says whether launch's own node uses simulated time; the others have a parameter for it."""
+
+    def __init__(self, value: Any, **options: Any) -> None:
+        super().__init__(**options)
+        self.value = value
+
+
+class SetRemap(Action):
+    """Gives a remapping rule to all nodes."""
+
+    def __init__(
+        self, src: SomeSubstitutionsType, dst: SomeSubstitutionsType, **options: Any
+    ) -> None:
+        super().__init__(**options)
+        self.src = normalize_to_list_of_substitutions(src)
+        self.dst = normalize_to_list_of_substitutions(dst)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Add it."""
+        pair = perform_substitutions(context, self.src), perform_substitutions(context, self.dst)
+        add(context, "ros_remaps", [pair])
+
+
+class SetROSLogDir(Action):
+    """Says where nodes write their logs."""
+
+    def __init__(self, new_log_dir: SomeSubstitutionsType, **options: Any) -> None:
+        super().__init__(**options)
+        self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
+
+    def execute(self, context: LaunchContext) -> None:
+        """Tell the nodes that start later."""
+        context.environment["ROS_LOG_DIR"] = perform_substitutions(context, self.log_dir)
+
+
+class ROSTimer(TimerAction):
+    """Does something later."""
+
+
+RosTimer = ROSTimer

@@ -1,0 +1,7 @@
+"""The package that launch files import as `launch_xml`."""
+
+from __future__ import annotations
+
+from launch_xml import launch_description_sources as launch_description_sources
+
+__all__ = ["launch_description_sources"]

@@ -1,0 +1,187 @@
+"""Handles that live as long as they are in use, and how threads learn that one is ready."""
+
+from __future__ import annotations
+
+from _thread import allocate_lock
+from contextlib import suppress
+from typing import TYPE_CHECKING, Protocol, Self
+
+from aionode.clock import MachineTime
+from rclpy._impl.errors import InvalidHandle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["LONGEST_WAIT_S", "Arrivals", "Destroyable", "Signal", "Wakeup"]
+
+LONGEST_WAIT_S = 3600.0
+"""Longest wait of one call of the system, in seconds, for a lock or for descriptors.
+
+Some systems refuse more than 24 days. A longer wait consists of several.
+"""
+
+steady_ns = MachineTime().steady_ns
+
+
+class Wakeup:
+    """Wakes one thread; a wake-up that comes before the wait is kept.
+
+    A single C call on each side, which a signal handler may interrupt anywhere.
+
+    Attributes:
+        rouse: Wakes the thread if it waits for something else meanwhile.
+        take: ``take(False)`` returns whether a wake-up has come, without waiting.
+    """
+
+    __slots__ = ("_lock", "rouse", "take")
+
+    def __init__(self) -> None:
+        self.rouse: Callable[[], None] | None = None
+        self._lock = allocate_lock()
+        self._lock.acquire()
+        self.take: Callable[[bool], bool] = self._lock.acquire
+
+    def wake(self) -> None:
+        """Wake the thread that waits, or the next one that will."""
+        try:
+            self._lock.release()
+        except RuntimeError:  # it is awake already
+            return
+        rouse = self.rouse
+        if rouse is not None:
+            rouse()
+
+    def wait(self, timeout_sec: float | None) -> bool:
+        """Wait for a wake-up; return whether one came within the limit. None waits for ever."""
+        if timeout_sec is None:
+            return self._lock.acquire()
+        ends_ns = steady_ns() + timeout_sec * 1e9
+        while timeout_sec > LONGEST_WAIT_S:
+            if self._lock.acquire(timeout=LONGEST_WAIT_S):
+                return True
+            timeout_sec = (ends_ns - steady_ns()) / 1e9
+        if timeout_sec <= 0:
+            return self._lock.acquire(blocking=False)
+        return self._lock.acquire(timeout=timeout_sec)
+
+
+class Wakeable(Protocol):
+    """An object that a `Signal` wakes."""
+
+    def wake(self) -> None:
+        """Look again."""
+
+
+class Signal:
+    """Tells the threads that wait for an entity, or for any entity of a node, to look again."""
+
+    __slots__ = ("_wakeups",)
+
+    def __init__(self) -> None:
+        # Changed by single calls of C only, which neither another thread nor a handler of a signal
+        # interrupts, and read as a copy.
+        self._wakeups: list[Wakeable] = []
+
+    def add(self, wakeup: Wakeable) -> None:
+        """Wake `wakeup` from now on, once more for each time it is added."""
+        self._wakeups.append(wakeup)
+
+    def remove(self, wakeup: Wakeable) -> None:
+        """Undo one `add`; without one nothing happens."""
+        with suppress(ValueError):
+            self._wakeups.remove(wakeup)
+
+    def notify(self) -> None:
+        """Wake all."""
+        for wakeup in tuple(self._wakeups):
+            wakeup.wake()
+
+
+class Arrivals:
+    """Whether anything has come for a node's handles of one kind since none of them was ready.
+
+    With it, an executor looks at the handles of those kinds only for which something has come.
+
+    Attributes:
+        last: Stands for what has come last.
+        seen: What had come last when an executor looked at all of them, and none was ready.
+    """
+
+    __slots__ = ("_signal", "last", "seen")
+
+    def __init__(self, signal: Signal) -> None:
+        self._signal = signal
+        self.last: object = None
+        self.seen: object = None
+
+    def note(self) -> None:
+        """Wake those who wait for the node, after something was put into a handle."""
+        # A new object each time, as threads would lose count: executors compare it with `seen`.
+        self.last = object()
+        for wakeup in tuple(self._signal._wakeups):
+            wakeup.wake()
+
+
+class Destroyable:
+    """A handle, as rclpy's extension module has them.
+
+    Inside ``with handle:`` it is not destroyed, however often that is asked for meanwhile; after
+    `destroy_when_not_in_use`, ``with`` raises InvalidHandle.
+
+    Attributes:
+        signal: Woken when the entity may have become ready.
+    """
+
+    def __init__(self, signal: Signal | None = None) -> None:
+        self.signal = Signal() if signal is None else signal
+        # Changed without a lock, which a handler of a signal, or a finalizer that the garbage
+        # collector calls, would wait for if this thread had it.
+        self._uses: list[None] = []
+        self._is_ended = allocate_lock()  # acquired by who destroys it, once
+        self._unwanted = False
+
+    def __enter__(self) -> Self:
+        self._uses.append(None)  # before the look: whoever destroys it looks in the other order
+        if self._unwanted:
+            self._leave()
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        return self
+
+    def __exit__(self, exc_type: object, exc: object, traceback: object) -> None:
+        self._leave()
+
+    def _leave(self) -> None:
+        self._uses.pop()
+        if self._unwanted:
+            self._destroy_if_unused()
+
+    def _destroy_if_unused(self) -> None:
+        if not self._uses and self._is_ended.acquire(blocking=False):
+            self._destroy()
+
+    def __del__(self) -> None:
+        if not getattr(self, "_unwanted", True):
+            self.destroy_when_not_in_use()
+
+    @property
+    def pointer(self) -> int:
+        """A number that no other living handle has."""
+        return id(self)
+
+    @property
+    def is_valid(self) -> bool:
+        """Whether ``with handle:`` is possible."""
+        return not self._unwanted
+
+    def destroy_when_not_in_use(self) -> None:
+        """Destroy it at the end of the last ``with``, or at once; again has no effect."""
+        if not self._unwanted:
+            self._unwanted = True
+            self._destroy_if_unused()
+
+    def _destroy(self) -> None:
+        """Release what it holds."""
+
+    def ready(self) -> bool:
+        """Return whether something can be taken, or done, now."""
+        return False

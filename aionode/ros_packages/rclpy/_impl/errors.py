@@ -1,0 +1,55 @@
+"""The exceptions that rclpy's extension module defines."""
+
+from __future__ import annotations
+
+__all__ = [
+    "InvalidHandle",
+    "NodeNameNonExistentError",
+    "RCLError",
+    "RCLInvalidROSArgsError",
+    "TimerCancelledError",
+    "UnknownROSArgsError",
+    "UnsupportedEventTypeError",
+]
+
+
+class RCLError(RuntimeError):
+    """An operation of the client library failed."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class InvalidHandle(RuntimeError):  # noqa: N818  # rclpy's name
+    """The entity, or what it belongs to, is destroyed."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class NodeNameNonExistentError(RCLError):
+    """There is no node of this name."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class UnsupportedEventTypeError(RCLError):
+    """The middleware does not report events of this type."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class TimerCancelledError(RCLError):
+    """A timer was to be called that is cancelled."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class UnknownROSArgsError(RuntimeError):
+    """An argument between ``--ros-args`` and ``--`` is unknown."""
+
+    __module__ = "rclpy._rclpy_pybind11"
+
+
+class RCLInvalidROSArgsError(RCLError):
+    """An argument between ``--ros-args`` and ``--`` is malformed."""
+
+    __module__ = "rclpy._rclpy_pybind11"

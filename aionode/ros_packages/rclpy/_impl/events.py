@@ -1,0 +1,331 @@
+"""The events of publishers and subscriptions: matches, missed deadlines, lost messages.
+
+The statuses are counted in the thread of the context, which also keeps the time of deadlines and
+leases; executors take them as those of other waitables.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from enum import IntEnum
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from aionode._process.recent import Recent
+from aionode.clock import SilenceAlarm
+from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS, missing_before
+from aionode.endpoints.events import (
+    IncompatibleTypeInfo,
+    MatchedInfo,
+    QoSLivelinessChangedInfo,
+    QoSLivelinessLostInfo,
+    QoSMessageLostInfo,
+    QoSOfferedDeadlineMissedInfo,
+    QoSRequestedDeadlineMissedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+)
+from aionode.engine.rules.liveliness import PublisherLiveliness
+from aionode.engine.rules.matching import Matching
+from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
+from rclpy._impl.destroyable import Destroyable
+from rclpy._impl.topics import PublisherHandle, SubscriptionHandle
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.clock import Duration
+    from aionode.engine.transport.base import SampleInfo
+    from aionode.graph import EndpointInfo
+
+__all__ = [
+    "PUBLISHER_WATCHES",
+    "SUBSCRIPTION_WATCHES",
+    "EventHandle",
+    "PublisherEventType",
+    "SubscriptionEventType",
+    "Watch",
+]
+
+
+class PublisherEventType(IntEnum):
+    """The kinds of events of a publisher."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class SubscriptionEventType(IntEnum):
+    """The kinds of events of a subscription."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+class EventHandle(Destroyable):
+    """One kind of event of a publisher or subscription."""
+
+    def __init__(self, parent: PublisherHandle | SubscriptionHandle, event_type: IntEnum) -> None:
+        super().__init__(parent.signal)
+        self._io = parent.io
+        watches = PUBLISHER_WATCHES if isinstance(parent, PublisherHandle) else SUBSCRIPTION_WATCHES
+        self._watch = watches[event_type](parent, self.signal.notify)
+        self._io.call(self._watch.start)
+
+    def ready(self) -> bool:
+        """Return whether something has happened that was not taken."""
+        return self._watch.changed and not self._unwanted
+
+    def take_event(self) -> Any:
+        """Return the status; its changes count from now on."""
+        return self._io.call(self._watch.take)
+
+    def _destroy(self) -> None:
+        if hasattr(self, "_watch"):
+            self._io.post(self._watch.stop)
+
+
+class rmw_qos_policy_kind_t(IntEnum):  # noqa: N801  # rmw's name, which its text shows
+    """The kinds of policies, as events name them."""
+
+    RMW_QOS_POLICY_INVALID = 1
+    RMW_QOS_POLICY_DURABILITY = 2
+    RMW_QOS_POLICY_DEADLINE = 4
+    RMW_QOS_POLICY_LIVELINESS = 8
+    RMW_QOS_POLICY_RELIABILITY = 16
+    RMW_QOS_POLICY_HISTORY = 32
+    RMW_QOS_POLICY_LIFESPAN = 64
+    RMW_QOS_POLICY_DEPTH = 128
+    RMW_QOS_POLICY_LIVELINESS_LEASE_DURATION = 256
+    RMW_QOS_POLICY_AVOID_ROS_NAMESPACE_CONVENTIONS = 512
+
+    def __str__(self) -> str:
+        return f"{type(self).__name__}.{self.name}"
+
+
+class Watch:
+    """Keeps the status of one kind of event; lives in the thread of the context.
+
+    Attributes:
+        name: The kind of event, as the arguments of event callbacks call it.
+        empty: The status before anything has happened.
+        aspects: The mismatches that its callback, or else the log, tells of.
+    """
+
+    name = ""
+    empty: Any = None
+    aspects: tuple[str, ...] = ()
+
+    def __init__(
+        self, parent: PublisherHandle | SubscriptionHandle, notify: Callable[[], None]
+    ) -> None:
+        # Not the handle itself, which is garbage once its user has dropped it.
+        self.feed = parent.feed
+        self.assertions = parent.assertions
+        self.graph = parent.io.context.graph
+        self.time_base = parent.io.context.time_base
+        self.endpoint = parent.endpoint
+        self.changed = False  # executors read it, to ask for the status in this thread
+        self.status = self.empty
+        self.ends: list[Callable[[], object]] = []
+        self._notify = notify
+
+    def start(self) -> None:
+        """Begin to watch, and add what ends that to `ends`."""
+
+    def stop(self) -> None:
+        """Watch no longer."""
+        for end in self.ends:
+            end()
+
+    def tell(self, event: Any) -> None:
+        """Take an event: the status has its counts; changes add up until they are taken."""
+        added = {
+            name: getattr(self.status, name) + getattr(event, name) for name in changes_in(event)
+        }
+        self.status = replace(event, **added)
+        self.changed = True
+        self._notify()
+
+    def count(self, more: int) -> None:
+        """Take an event of a status that counts one thing, of which there are `more` now."""
+        self.tell(type(self.empty)(self.status.total_count + more, more))
+
+    def take(self) -> Any:
+        """Return the status, and reset its changes."""
+        status = self.status
+        self.status = replace(status, **dict.fromkeys(changes_in(status), 0))
+        self.changed = False
+        return status
+
+    def alarm(self, longest: Duration, on_silence: Callable[[int], bool]) -> SilenceAlarm:
+        """Return an alarm that runs: `on_silence` gets the periods that have passed."""
+        alarm = SilenceAlarm(self.time_base, longest.nanoseconds, on_silence)
+        alarm.start()
+        self.ends.append(alarm.stop)
+        return alarm
+
+    def listen(self, listeners: list[Any], listener: Callable[[Any], None]) -> None:
+        """Have `listener` told of messages or assertions."""
+        listeners.append(listener)
+        self.ends.append(partial(listeners.remove, listener))
+
+    def watch_opposites(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
+        """Have `watcher` told of the endpoints of the opposite kind that come and go."""
+        endpoint = self.endpoint
+        self.ends.append(self.graph.watch(endpoint.kind.opposite, endpoint.name, watcher))
+
+
+def changes_in(status: Any) -> list[str]:
+    """Return the names of the fields of a status that tell of changes."""
+    return [field.name for field in fields(status) if field.name.endswith("_change")]
+
+
+class MatchedWatch(Watch):
+    """Counts the endpoints that are matched, or do not fit."""
+
+    name = "matched"
+    empty = MatchedInfo(0, 0, 0, 0)
+
+    def start(self) -> None:
+        """Begin to watch."""
+        if self.aspects:
+            unreported = self.graph.unreported
+            unreported[self.endpoint] = {*unreported.get(self.endpoint, ()), *self.aspects}
+            self.ends.append(lambda: unreported.pop(self.endpoint, None))
+        self.watch_opposites(Matching(self.endpoint, self._on_event).note)
+
+    def _on_event(self, name: str, event: Any) -> None:
+        if name == self.name:
+            self.tell(event)
+
+
+class IncompatibleQoSWatch(MatchedWatch):
+    """Counts endpoints whose QoS does not fit."""
+
+    name = "incompatible_qos"
+    empty: Any = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)
+    aspects = ("qos",)
+
+    def take(self) -> Any:
+        """Return the status, with the kind of policy as ROS 2 prints it."""
+        status = super().take()
+        return replace(status, last_policy_kind=rmw_qos_policy_kind_t(status.last_policy_kind))
+
+
+class IncompatibleTypeWatch(MatchedWatch):
+    """Counts endpoints of another type."""
+
+    name = "incompatible_type"
+    empty: Any = IncompatibleTypeInfo(0, 0)
+    aspects = ("type", "definition")
+
+
+class DeadlineWatch(Watch):
+    """Counts the periods without a message, from the first message on."""
+
+    name = "deadline"
+    empty: Any = QoSRequestedDeadlineMissedInfo(0, 0)
+
+    def start(self) -> None:
+        """Begin to watch."""
+        deadline = self.endpoint.qos.deadline
+        if not is_unlimited(deadline):
+            alarm = self.alarm(deadline, self._on_silence)
+            self.listen(self.feed, lambda _: alarm.note())
+
+    def _on_silence(self, periods: int) -> bool:
+        self.count(periods)
+        return True
+
+
+class OfferedDeadlineWatch(DeadlineWatch):
+    """Counts the periods in which nothing was published."""
+
+    empty = QoSOfferedDeadlineMissedInfo(0, 0)
+
+
+class LivelinessLostWatch(Watch):
+    """Counts the leases that a publisher has let pass; asserting or publishing renews them."""
+
+    name = "liveliness"
+    empty = QoSLivelinessLostInfo(0, 0)
+
+    def start(self) -> None:
+        """Begin to watch."""
+        qos = self.endpoint.qos
+        manual = qos.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC
+        if manual and not is_unlimited(qos.liveliness_lease_duration):
+            alarm = self.alarm(qos.liveliness_lease_duration, self._on_lapse)
+            alarm.note()
+            self.listen(self.feed, lambda _: alarm.note())
+
+    def _on_lapse(self, periods: int) -> bool:
+        self.count(1)
+        return False  # once, until the next sign
+
+
+class LivelinessChangedWatch(Watch):
+    """Counts the publishers that are alive, and those that let their lease pass."""
+
+    name = "liveliness"
+    empty = QoSLivelinessChangedInfo(0, 0, 0, 0)
+
+    def start(self) -> None:
+        """Begin to watch."""
+        liveliness = PublisherLiveliness(self.time_base, self.endpoint.qos, self.tell)
+        liveliness.start()
+        self.ends.append(liveliness.stop)
+
+        def note(publisher: EndpointInfo, present: bool) -> None:
+            if self.endpoint.matches(publisher):
+                (liveliness.add if present else liveliness.remove)(publisher)
+
+        def note_message(sample_info: SampleInfo) -> None:
+            liveliness.note_message(sample_info.gid)
+
+        self.listen(self.feed, note_message)
+        self.listen(self.assertions, liveliness.note_assertion)
+        self.watch_opposites(note)
+
+
+class MessageLostWatch(Watch):
+    """Counts the gaps in what each publisher has numbered."""
+
+    name = "message_lost"
+    empty = QoSMessageLostInfo(0, 0)
+
+    def start(self) -> None:
+        """Begin to watch."""
+        last: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
+
+        def note(sample_info: SampleInfo) -> None:
+            missing = missing_before(last, sample_info.gid, sample_info.sequence)
+            if missing:
+                self.count(missing)
+
+        self.listen(self.feed, note)
+
+
+# In the order in which rclpy makes the handlers of one endpoint.
+PUBLISHER_WATCHES: dict[IntEnum, type[Watch]] = {
+    PublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: OfferedDeadlineWatch,
+    PublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: LivelinessLostWatch,
+    PublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
+    PublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,
+    PublisherEventType.RCL_PUBLISHER_MATCHED: MatchedWatch,
+}
+SUBSCRIPTION_WATCHES: dict[IntEnum, type[Watch]] = {
+    SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: DeadlineWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: IncompatibleQoSWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: LivelinessChangedWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST: MessageLostWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: IncompatibleTypeWatch,
+    SubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: MatchedWatch,
+}

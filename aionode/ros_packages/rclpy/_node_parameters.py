@@ -1,0 +1,97 @@
+"""The parameters of a node: aionode's store, with the classes of rclpy.
+
+All of a change happens in the calling thread, its callbacks and its event included.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+from aionode.parameter import ParameterStore
+from aionode.parameter.methods import ParameterMethods
+from rclpy._impl import messages as msg
+from rclpy._impl.typesupport import type_of
+from rclpy.parameter import Parameter
+from rosidl_generator_py import decode, encode
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rclpy.clock import Clock
+    from rclpy.publisher import Publisher
+
+__all__ = ["NodeParameters", "ParameterEvents"]
+
+
+class Store(ParameterStore):
+    """The parameters of one node, as rclpy keeps them."""
+
+    parameter_class = Parameter
+    messages = msg
+    type_text = "{0:d}".format
+
+    def _own_descriptor(self, given: Any, index: int) -> Any:
+        """Return a copy of a descriptor, which may be of aionode's class."""
+        if type_of(given) == "rcl_interfaces/msg/ParameterDescriptor":
+            return decode(msg.ParameterDescriptor, encode(given))
+        return super()._own_descriptor(given, index)
+
+    def _prepared(self, parameters: list[Any], descriptors: Mapping[str, Any]) -> list[Any]:
+        """Return parameters as they are given: rclpy sets each of the same name."""
+        return parameters
+
+    def _checked_result(self, callback: Callable[..., Any], result: Any) -> Any:
+        """Return what an on-set callback has returned; anything unknown rejects the change."""
+        if isinstance(result, msg.SetParametersResult):
+            return result
+        warnings.warn(
+            "Callback returned an invalid type, it should return SetParameterResult.",
+            stacklevel=5,
+        )
+        return self._failure("Callback returned an invalid type")
+
+
+class ParameterEvents:
+    """Publishes what has changed.
+
+    Args:
+        publisher: Sends the events.
+        clock: Their stamps come from it.
+    """
+
+    def __init__(self, publisher: Publisher[Any], clock: Clock) -> None:
+        self._publisher = publisher
+        self._clock = clock
+
+    def __call__(self, event: Any) -> None:
+        """Publish one event.
+
+        Raises:
+            RCLError: the context is shut down.
+        """
+        event.stamp = self._clock.now().to_msg()
+        self._publisher.handle.refuse_after_shutdown("Failed to publish")
+        self._publisher.publish(event)
+
+
+class NodeParameters(ParameterMethods):
+    """The part of `Node` that has parameters."""
+
+    PARAM_REL_TOL = 1e-6
+    """How near to a limit or a step a float has to be, relative to it."""
+
+    def _Node__init_parameters(
+        self, full_name: str, overrides: Iterable[Parameter[Any]], *, allow_undeclared: bool
+    ) -> None:
+        """Begin without parameters; programs of rclpy look at the attributes besides the store."""
+        store = Store(full_name, overrides=overrides, allow_undeclared=allow_undeclared)
+        ParameterMethods.__init__(self, store)
+        self._Node__parameter_store = store
+        self._allow_undeclared_parameters = allow_undeclared
+        self._parameters = store._parameters
+        self._descriptors = store._descriptors
+        self._parameter_overrides = store.overrides
+        self._pre_set_parameters_callbacks = store._pre
+        self._on_set_parameters_callbacks = store._on
+        self._post_set_parameters_callbacks = store._post

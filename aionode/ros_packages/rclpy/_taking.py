@@ -1,0 +1,202 @@
+"""Finds the ready entities of an executor's nodes, takes their items and calls their callbacks.
+
+Each function takes, and returns what is to be called then, or None if there is nothing to do. The
+result of a call is awaited if it is a coroutine.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from rclpy._impl.errors import InvalidHandle, TimerCancelledError
+from rclpy._impl.wait_set import WaitSet
+from rclpy.subscription import Subscription
+
+if TYPE_CHECKING:
+    from rclpy._impl.destroyable import Arrivals
+    from rclpy._protocols import ExecutorLike, NodeLike
+    from rclpy.callback_groups import Entity
+
+
+__all__ = ["Ready", "Take", "await_or_execute", "find_ready", "wait_set_of"]
+
+
+Take = Callable[["ExecutorLike", Any], "Callable[[], Any] | None"]
+Ready = tuple["Entity", "NodeLike", Take]
+
+MESSAGE_ONLY = Subscription.CallbackType.MessageOnly
+
+
+def find_ready(
+    nodes: list[NodeLike], can_execute: Callable[[Entity], bool], context: Any
+) -> list[Ready]:
+    """Return what is ready now, in the order of a round."""
+    ready: list[Ready] = []
+    for node in nodes:
+        if node._Node__waitables:  # few have any
+            ready += [
+                (waitable, node, take_waitable)
+                for waitable in tuple(node._Node__waitables)
+                if can_execute(waitable) and is_ready(waitable, context)
+            ]
+    for node in nodes:
+        handle = node.handle
+        for entities, arrivals, take in (
+            (node._timers, None, take_timer),
+            (node._subscriptions, handle.messages, take_subscription),
+            (node._guards, None, take_guard_condition),
+            (node._clients, handle.responses, take_client),
+            (node._services, handle.requests, take_service),
+        ):
+            if entities and (arrivals is None or arrivals.last is not arrivals.seen):
+                for entity in ready_entities(entities, arrivals):
+                    if can_execute(entity):
+                        ready.append((entity, node, take))  # rarely any
+    return ready
+
+
+def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
+    """Return those that are ready; if none is, note in `arrivals` that all were looked at."""
+    last = None if arrivals is None else arrivals.last
+    ready = []
+    # A copy: another thread may destroy one meanwhile, and the one behind it would be left out.
+    for entity in tuple(entities):
+        if entity._handle.ready():
+            ready.append(entity)  # noqa: PERF401  # a comprehension is one more call
+    if arrivals is not None and not ready:
+        arrivals.seen = last
+    return ready
+
+
+def is_ready(waitable: Any, context: Any) -> bool:
+    """Whether something can be taken from a waitable."""
+    wait_set = wait_set_of([waitable], context)
+    wait_set.look()
+    ready: bool = waitable.is_ready(wait_set)
+    return ready
+
+
+def wait_set_of(waitables: list[Any], context: Any) -> WaitSet:
+    """Return a wait set with the handles of waitables, without those that are being destroyed."""
+    wait_set = WaitSet(0, 0, 0, 0, 0, 0, context)
+    for waitable in waitables:
+        try:
+            with waitable:
+                waitable.add_to_wait_set(wait_set)
+        except InvalidHandle:
+            continue
+    return wait_set
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call `callback`, and await it if it is a coroutine function."""
+    if inspect.iscoroutinefunction(callback):
+        return await callback(*args)
+    return callback(*args)
+
+
+def take_timer(executor: ExecutorLike, timer: Any) -> Callable[[], Any] | None:
+    """Take a call of a timer that is due."""
+    try:
+        with timer.handle:
+            called = timer.handle.call_timer_with_info()
+    except (InvalidHandle, TimerCancelledError):
+        return None
+    callback = timer.callback
+    if callback is None:
+        return None
+    name = timer.info_argument(callback)
+    if name is None:
+        return partial(run, callback)
+    return partial(run, partial(callback, **{name: timer.info(called)}))
+
+
+def take_subscription(executor: ExecutorLike, subscription: Any) -> Callable[[], Any] | None:
+    """Take the next message of a subscription."""
+    handle = subscription._handle
+    if handle._unwanted:
+        return None
+    taken = handle.take_sample(subscription.msg_type, subscription.raw)
+    if taken is None:
+        return None
+    if subscription._callback_type is MESSAGE_ONLY:
+        return partial(run, subscription._callback, taken[0])
+    return partial(run, subscription._callback, taken[0], handle.info_of(taken))
+
+
+def take_guard_condition(executor: ExecutorLike, guard: Any) -> Callable[[], Any] | None:
+    """Take the trigger of a guard condition."""
+    guard.handle.take()
+    return None if guard.callback is None else partial(run, guard.callback)
+
+
+def take_client(executor: ExecutorLike, client: Any) -> Callable[[], Any] | None:
+    """Take the next response of a client."""
+    try:
+        with client.handle:
+            header, response = client.handle.take_response(client.srv_type.Response)
+    except InvalidHandle:
+        return None
+    if header is None:
+        return None
+    try:
+        future = client.get_pending_request(header.request_id.sequence_number)
+    except KeyError:  # it was given up
+        return None
+
+    def complete() -> None:
+        future._set_executor(executor)
+        future.set_result(response)
+
+    return complete
+
+
+def take_service(executor: ExecutorLike, service: Any) -> Callable[[], Any] | None:
+    """Take the next request of a service."""
+    try:
+        with service.handle:
+            request, header = service.handle.service_take_request(service.srv_type.Request)
+    except InvalidHandle:
+        return None
+    if header is None:
+        return None
+
+    async def answer() -> None:
+        try:
+            response = await await_or_execute(
+                service.callback, request, service.srv_type.Response()
+            )
+        except BaseException:
+            service.handle.give_up(header.request_id)
+            raise
+        # A program may put a function of its own in this place, and answer later.
+        service.send_response(response, header)
+
+    return answer
+
+
+def take_waitable(executor: ExecutorLike, waitable: Any) -> Callable[[], Any] | None:
+    """Take the data of a waitable."""
+    data = waitable.take_data()
+
+    async def execute() -> None:
+        for future in waitable._futures:
+            future._set_executor(executor)
+        await waitable.execute(data)
+
+    return execute
+
+
+def run(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call `callback`; return a coroutine only if it is a coroutine function, as in rclpy."""
+    result = callback(*args)
+    if (
+        result is not None
+        and inspect.iscoroutine(result)
+        and not inspect.iscoroutinefunction(callback)
+    ):
+        return None
+    return result

@@ -1,0 +1,97 @@
+"""Callback groups decide which callbacks of a node may run at the same time."""
+
+from __future__ import annotations
+
+import threading
+import weakref
+from typing import Any
+
+from rclpy._reexports import add_names
+
+__all__ = [
+    "CallbackGroup",
+    "Entity",
+    "MutuallyExclusiveCallbackGroup",
+    "ReentrantCallbackGroup",
+]
+
+Entity = Any
+"""A subscription, timer, client, service, guard condition or waitable."""
+
+
+class CallbackGroup:
+    """Base of all groups. An executor asks `can_execute`, then calls the other two around a call.
+
+    Attributes:
+        entities: Weak references to its members.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.entities: set[weakref.ref[Any]] = set()
+
+    def add_entity(self, entity: Entity) -> None:
+        """Add an entity, which is in no other group."""
+        self.entities.add(weakref.ref(entity))
+
+    def has_entity(self, entity: Entity) -> bool:
+        """Return whether an entity is in this group."""
+        return weakref.ref(entity) in self.entities
+
+    def can_execute(self, entity: Entity) -> bool:
+        """Return whether a call of the entity's callback may begin now."""
+        raise NotImplementedError
+
+    def beginning_execution(self, entity: Entity) -> bool:
+        """Note that a call begins; return whether it may."""
+        raise NotImplementedError
+
+    def ending_execution(self, entity: Entity) -> None:
+        """Note that a call that began has ended, by return or exception."""
+        raise NotImplementedError
+
+
+class ReentrantCallbackGroup(CallbackGroup):
+    """Its callbacks may all run at the same time, each also beside itself."""
+
+    def can_execute(self, entity: Entity) -> bool:
+        """Return True."""
+        return True
+
+    def beginning_execution(self, entity: Entity) -> bool:
+        """Return True."""
+        return True
+
+    def ending_execution(self, entity: Entity) -> None:
+        """Do nothing."""
+
+
+class MutuallyExclusiveCallbackGroup(CallbackGroup):
+    """One of its callbacks runs at a time."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._active_entity: Entity | None = None
+        # Held while a call begins or ends, so that one thread begins. `can_execute` does without
+        # it, as executors ask `beginning_execution` before each call.
+        self._lock = threading.RLock()
+
+    def can_execute(self, entity: Entity) -> bool:
+        """Return whether none of its callbacks runs."""
+        return self._active_entity is None
+
+    def beginning_execution(self, entity: Entity) -> bool:
+        """Note that a call begins, if none runs."""
+        with self._lock:
+            if self._active_entity is None:
+                self._active_entity = entity
+                return True
+        return False
+
+    def ending_execution(self, entity: Entity) -> None:
+        """Note that the call has ended."""
+        with self._lock:
+            self._active_entity = None
+
+
+add_names(__name__)

@@ -1,0 +1,150 @@
+"""Service clients."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from rclpy._entities import ServiceEntity, in_use, wait_until
+from rclpy._impl.destroyable import Wakeup
+from rclpy._impl.services import ClientHandle
+from rclpy._impl.uninterrupted import refuse_to_wait
+from rclpy._reexports import add_names
+from rclpy.task import Future
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.context import Context
+    from rclpy.qos import QoSProfile
+
+__all__ = ["Client"]
+
+RequestT = TypeVar("RequestT")
+ResponseT = TypeVar("ResponseT")
+
+
+class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
+    """Calls a service. Made by `Node.create_client`.
+
+    Attributes:
+        context: Its context.
+        srv_type: The service class.
+        srv_name: The name it was made with.
+        qos_profile: Its profile.
+        callback_group: Its group.
+    """
+
+    def __init__(
+        self,
+        context: Context,
+        client_impl: ClientHandle,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+    ) -> None:
+        self.context = context
+        self._handle = client_impl
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.qos_profile = qos_profile
+        self._pending_requests: dict[int, Future[ResponseT]] = {}
+        self._sequences: dict[Future[ResponseT], int] = {}  # the same requests, by their futures
+        self.callback_group = callback_group
+        self._executor_event = False
+        # Held while numbers and futures of requests change: a response that comes at once waits
+        # until its future is here. A handler of a signal may call while this thread holds it.
+        self._lock = threading.RLock()
+
+    @property
+    def __client(self) -> ClientHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
+    def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT | None:
+        """Send a request and block the thread until the response is here.
+
+        It may be called in a callback: nobody needs to spin the client's node. The server must be
+        able to answer meanwhile, so it must not be served by the same single-threaded executor.
+
+        Args:
+            request: The request.
+            timeout_sec: The longest wait in seconds; None for ever.
+
+        Raises:
+            TypeError: `request` is of another class.
+            TimeoutError: no response came in time; a later one is dropped.
+            RCLError: a finalizer calls this where it cannot wait.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError
+        refuse_to_wait()
+        wakeup = Wakeup()
+        responses: list[bytes] = []
+
+        def take(data: bytes) -> None:
+            responses.append(data)
+            wakeup.wake()
+
+        with self._handle:
+            with self._lock:
+                sequence = self._handle.send_request(request, take)
+            if not wakeup.wait(timeout_sec):
+                self._handle.forget(sequence)
+                if not responses:
+                    raise TimeoutError
+            response: ResponseT = self._handle.receive(sequence, responses[0])
+        return response
+
+    def call_async(self, request: RequestT) -> Future[ResponseT]:
+        """Send a request, and return a future of the response; an executor completes it.
+
+        Raises:
+            TypeError: `request` is of another class.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError
+        future: Future[ResponseT] = Future()
+        with self._lock, self._handle:
+            sequence = self._handle.send_request(request)
+            self._sequences[future] = sequence
+            self._pending_requests[sequence] = future
+        future.add_done_callback(self.remove_pending_request)
+        return future
+
+    def get_pending_request(self, sequence_number: int) -> Future[ResponseT]:
+        """Return the future of a request.
+
+        Raises:
+            KeyError: it is answered, or was given up.
+        """
+        with self._lock:
+            return self._pending_requests[sequence_number]
+
+    def remove_pending_request(self, future: Future[ResponseT]) -> None:
+        """Give a request up; its future is never completed."""
+        with self._lock:
+            sequence = self._sequences.get(future)
+            if sequence is None:
+                return
+            self._pending_requests.pop(sequence, None)
+            self._sequences.pop(future, None)  # last: an interrupted removal can be done again
+            if not future.done():
+                self._handle.forget(sequence)
+
+    configure_introspection = in_use(ClientHandle.configure_introspection)
+    service_is_ready = in_use(ClientHandle.service_server_is_available)
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Block the thread until a server is there; nobody needs to spin.
+
+        Args:
+            timeout_sec: The longest wait in seconds; None for ever.
+
+        Returns:
+            Whether one is there.
+        """
+        return wait_until(self.service_is_ready, self.context, timeout_sec)
+
+
+add_names(__name__)

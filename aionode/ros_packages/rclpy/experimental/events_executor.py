@@ -1,0 +1,15 @@
+"""The events executor: here every executor waits for events, and collects no wait sets."""
+
+from __future__ import annotations
+
+from rclpy._reexports import add_names
+from rclpy.executors import SingleThreadedExecutor
+
+__all__ = ["EventsExecutor"]
+
+
+class EventsExecutor(SingleThreadedExecutor):
+    """Calls callbacks in the thread that spins, as `SingleThreadedExecutor` does."""
+
+
+add_names(__name__)

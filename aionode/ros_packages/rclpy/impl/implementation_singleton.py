@@ -1,0 +1,5 @@
+"""Gives access to what rclpy has in its extension module."""
+
+from rclpy import _rclpy_pybind11 as rclpy_implementation
+
+__all__ = ["rclpy_implementation"]

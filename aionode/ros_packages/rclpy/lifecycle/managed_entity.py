@@ -1,0 +1,46 @@
+"""Entities that follow the state of a managed node."""
+
+from __future__ import annotations
+
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+from aionode import lifecycle as core
+from aionode.lifecycle import ManagedEntity, TransitionCallbackReturn
+from rclpy._reexports import add_names
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["ManagedEntity", "SimpleManagedEntity", "TransitionCallbackReturn"]
+
+
+class SimpleManagedEntity(core.SimpleManagedEntity):
+    """Works only while its node is active."""
+
+    @staticmethod
+    def when_enabled(
+        wrapped: Callable[..., Any] | None = None,
+        *,
+        when_not_enabled: Callable[..., Any] | None = None,
+    ) -> Any:
+        """Return a method that does nothing, or calls `when_not_enabled`, while it does not work.
+
+        To be used as a decorator, with or without arguments. In rclpy, `when_not_enabled` gets no
+        arguments, and such a method returns nothing.
+        """
+
+        def decorate(method: Callable[..., Any]) -> Callable[..., None]:
+            @wraps(method)
+            def only_when_enabled(self: SimpleManagedEntity, *args: Any, **kwargs: Any) -> None:
+                if self.is_activated:
+                    method(self, *args, **kwargs)
+                elif when_not_enabled is not None:
+                    when_not_enabled()
+
+            return only_when_enabled
+
+        return decorate if wrapped is None else decorate(wrapped)
+
+
+add_names(__name__)

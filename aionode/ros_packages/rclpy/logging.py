@@ -1,0 +1,34 @@
+"""Loggers."""
+
+from aionode.logging import (
+    LoggingSeverity,
+    RcutilsLogger,
+    clear_config,
+    get_logger,
+    get_logger_effective_level,
+    get_logger_level,
+    get_logging_directory,
+    get_logging_severity_from_string,
+    initialize,
+    set_logger_level,
+    shutdown,
+)
+from rclpy._reexports import add_names
+
+__all__ = [
+    "LoggingSeverity",
+    "RcutilsLogger",
+    "clear_config",
+    "get_logger",
+    "get_logger_effective_level",
+    "get_logger_level",
+    "get_logging_directory",
+    "get_logging_severity_from_string",
+    "initialize",
+    "set_logger_level",
+    "shutdown",
+]
+
+_root_logger = RcutilsLogger()  # rclpy's; tests of users reach for it
+
+add_names(__name__)

@@ -1,0 +1,80 @@
+"""Publishers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from rclpy._entities import TopicEntity, in_use
+from rclpy._impl.topics import PublisherHandle
+from rclpy._reexports import add_names
+from rclpy.duration import Duration
+
+if TYPE_CHECKING:
+    from rclpy.callback_groups import CallbackGroup
+    from rclpy.event_handler import EventHandler, PublisherEventCallbacks
+    from rclpy.qos import QoSProfile
+
+__all__ = ["Publisher"]
+
+MsgT = TypeVar("MsgT")
+
+FOREVER = Duration(seconds=-1)
+
+
+class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
+    """Sends messages to a topic. Made by `Node.create_publisher`.
+
+    Attributes:
+        msg_type: The class of its messages.
+        topic: The name it was made with.
+        qos_profile: Its profile.
+        event_handlers: Its event handlers.
+    """
+
+    def __init__(
+        self,
+        publisher_impl: PublisherHandle,
+        msg_type: type[MsgT],
+        topic: str,
+        qos_profile: QoSProfile,
+        event_callbacks: PublisherEventCallbacks,
+        callback_group: CallbackGroup,
+    ) -> None:
+        self._handle = publisher_impl
+        self.msg_type = msg_type
+        self.topic = topic
+        self.qos_profile = qos_profile
+        self.event_handlers: list[EventHandler] = event_callbacks.create_event_handlers(
+            callback_group, publisher_impl, topic
+        )
+
+    @property
+    def __publisher(self) -> PublisherHandle:
+        """The handle, by the name that programs know it by."""
+        return self._handle
+
+    def publish(self, msg: MsgT | bytes) -> None:
+        """Send a message, or one that is encoded already. Nobody needs to spin for that.
+
+        Raises:
+            TypeError: it is of another class, or a value does not fit its field.
+            InvalidHandle: the publisher is destroyed.
+        """
+        with self._handle:
+            if isinstance(msg, self.msg_type):
+                self._handle.publish(msg)
+            elif isinstance(msg, bytes):
+                self._handle.publish_raw(msg)
+            else:
+                raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+
+    get_subscription_count = in_use(PublisherHandle.get_subscription_count)
+    assert_liveliness = in_use(PublisherHandle.assert_liveliness)
+
+    def wait_for_all_acked(self, timeout: Duration = FOREVER) -> bool:
+        """Wait until what was published is handed on; return whether that is so in time."""
+        with self.handle:
+            return self._handle.wait_for_all_acked(timeout)
+
+
+add_names(__name__)

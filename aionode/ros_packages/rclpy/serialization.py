@@ -1,0 +1,36 @@
+"""Messages as bytes (CDR), and back."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy._impl.typesupport import message_support
+from rclpy._reexports import add_names
+from rclpy.type_support import check_for_type_support
+
+__all__ = ["deserialize_message", "serialize_message"]
+
+
+def serialize_message(message: Any) -> bytes:
+    """Return a message as bytes.
+
+    Raises:
+        AttributeError: it is no message.
+    """
+    message_type: Any = type(message)
+    check_for_type_support(message_type)
+    return message_support(message_type).encode(message)
+
+
+def deserialize_message(serialized_message: bytes, message_type: Any) -> Any:
+    """Return the message of a class in bytes.
+
+    Raises:
+        AttributeError: `message_type` is no message class.
+        DecodeError: the bytes hold no such message (a ValueError).
+    """
+    check_for_type_support(message_type)
+    return message_support(message_type).decode(serialized_message)
+
+
+add_names(__name__)

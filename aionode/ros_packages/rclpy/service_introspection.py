@@ -1,0 +1,8 @@
+"""Publishes the calls of services on ``<service>/_service_event``."""
+
+from aionode.endpoints.service_introspection import ServiceIntrospectionState
+from rclpy._reexports import add_names
+
+__all__ = ["ServiceIntrospectionState"]
+
+add_names(__name__)

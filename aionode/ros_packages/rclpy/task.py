@@ -1,0 +1,276 @@
+"""Futures and tasks. They are rclpy's, not asyncio's: executors step them, in any thread."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import threading
+import warnings
+import weakref
+from enum import Enum
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from rclpy._reexports import add_names
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine, Generator
+
+    from rclpy._protocols import ExecutorLike
+
+__all__ = ["Future", "FutureState", "Task"]
+
+T = TypeVar("T")
+
+
+class Stepping(threading.local):
+    """The task of which this thread takes one step."""
+
+    task: Task[Any] | None = None
+
+
+stepping = Stepping()
+
+
+class FutureState(Enum):
+    """The state of a future."""
+
+    PENDING = "PENDING"
+    CANCELLED = "CANCELLED"
+    FINISHED = "FINISHED"
+
+
+class Future(Generic[T]):
+    """A result that comes later. Awaited in a callback, it lets the executor do other things.
+
+    Done callbacks run at once, in the thread that sets the result; with an executor they are tasks
+    of it.
+    """
+
+    def __init__(self, *, executor: ExecutorLike | None = None) -> None:
+        self._state = FutureState.PENDING
+        self._result: T | None = None
+        self._exception: BaseException | None = None
+        self._exception_fetched = False
+        self._callbacks: list[Callable[[Future[T]], object]] = []
+        self._wakers: list[Callable[[], None]] = []
+        # Guards that each callback is called once: it is added before the end, or called after it.
+        # A handler of a signal may complete the future while this thread holds it.
+        self._lock = threading.RLock()
+        self._executor: weakref.ref[ExecutorLike] | None = None
+        self._set_executor(executor)
+
+    def __del__(self) -> None:
+        if self._exception is not None and not self._exception_fetched:
+            print(  # noqa: T201  # as rclpy does
+                f"The following exception was never retrieved: {self._exception}",
+                file=sys.stderr,
+            )
+
+    def __await__(self) -> Generator[Any, None, T | None]:
+        while self._pending():
+            task = stepping.task
+            if task is not None:
+                task._awaited = self
+            yield  # whatever else steps coroutines, such as asyncio, comes back at once
+        return self.result()
+
+    def _pending(self) -> bool:
+        return self._state is FutureState.PENDING
+
+    def cancel(self) -> None:
+        """Cancel it, unless it is done."""
+        with self._lock:
+            if not self._pending():
+                return
+            self._state = FutureState.CANCELLED
+        self._schedule_or_invoke_done_callbacks()
+
+    def cancelled(self) -> bool:
+        """Return whether it was cancelled."""
+        return self._state is FutureState.CANCELLED
+
+    def done(self) -> bool:
+        """Return whether it has a result or an exception."""
+        return self._state is FutureState.FINISHED
+
+    def result(self) -> T | None:
+        """Return the result, None while there is none.
+
+        Raises:
+            Exception: the exception that was set instead.
+        """
+        exception = self.exception()
+        if exception is not None:
+            raise exception
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        """Return the exception that was set, or None."""
+        self._exception_fetched = True
+        return self._exception
+
+    def set_result(self, result: T) -> None:
+        """Set the result."""
+        with self._lock:
+            self._result = result
+            self._state = FutureState.FINISHED
+        self._schedule_or_invoke_done_callbacks()
+
+    def set_exception(self, exception: BaseException) -> None:
+        """Set an exception in place of a result."""
+        with self._lock:
+            self._exception = exception
+            self._exception_fetched = False
+            self._state = FutureState.FINISHED
+        self._schedule_or_invoke_done_callbacks()
+
+    def _schedule_or_invoke_done_callbacks(self) -> None:
+        with self._lock:
+            executor = self._get_executor()
+            callbacks, self._callbacks = self._callbacks, []
+            wakers, self._wakers = self._wakers, []
+        for waker in wakers:
+            waker()
+        for callback in callbacks:
+            if executor is not None:
+                executor.create_task(callback, self)
+                continue
+            try:
+                callback(self)
+            except Exception as error:  # noqa: BLE001  # others have to be called, too
+                warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
+
+    def _get_executor(self) -> ExecutorLike | None:
+        return None if self._executor is None else self._executor()
+
+    def _set_executor(self, executor: ExecutorLike | None) -> None:
+        """Set the executor whose tasks the done callbacks will be."""
+        self._executor = None if executor is None else weakref.ref(executor)
+
+    def _wake_when_done(self, waker: Callable[[], None]) -> None:
+        """Call `waker` in the thread that completes the future; at once if it is complete."""
+        with self._lock:
+            if self._pending():
+                if waker not in self._wakers:
+                    self._wakers.append(waker)
+                return
+        waker()
+
+    def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
+        """Call `callback` with this future when it is done; at once, if it is done already.
+
+        With an executor it becomes a task in either case.
+        """
+        with self._lock:
+            if self._pending():
+                self._callbacks.append(callback)
+                return
+            executor = self._get_executor()
+        if executor is not None:
+            executor.create_task(callback, self)
+        else:
+            callback(self)
+
+    def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> bool:
+        """Do not call `callback`; return whether it would have been called."""
+        with self._lock:
+            try:
+                self._callbacks.remove(callback)
+            except ValueError:
+                return False
+            return True
+
+
+class Task(Future[T]):
+    """A function or coroutine that an executor runs; calling it runs it, or takes it one step on.
+
+    Made by `Executor.create_task`.
+    """
+
+    def __init__(
+        self,
+        handler: Callable[..., Any] | Coroutine[Any, Any, Any],
+        args: tuple[Any, ...] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        executor: ExecutorLike | None = None,
+    ) -> None:
+        super().__init__(executor=executor)
+        self._args = args or ()
+        self._kwargs = kwargs or {}
+        self._handler: Any = handler
+        if not inspect.iscoroutine(handler) and inspect.iscoroutinefunction(handler):
+            self._handler = handler(*self._args, **self._kwargs)
+            self._args = ()
+            self._kwargs = {}
+        self._awaited: Future[Any] | None = None
+        self._executing = False
+        self._scheduled = False  # whether a thread of a pool is about to run it
+        self._task_lock = threading.Lock()  # held by the thread that runs a step; none waits
+
+    def __call__(self) -> None:
+        """Run the function, or the coroutine up to its next wait, unless that is under way."""
+        if not self._pending() or not self._task_lock.acquire(blocking=False):
+            return
+        try:
+            if not self._pending():
+                return
+            self._executing = True
+            try:
+                if inspect.iscoroutine(self._handler):
+                    self._step(self._handler)
+                    return
+                result = self._handler(*self._args, **self._kwargs)
+            except StopIteration as stop:
+                result = stop.value
+            except Exception as error:  # noqa: BLE001  # raised by `result`
+                self._finish()
+                self.set_exception(error)
+                return
+            except BaseException as error:  # the end of the program, which runs no step again
+                self._finish()
+                self.set_exception(error)
+                self._exception_fetched = True  # whoever has called this gets it
+                raise
+            self._finish()
+            self.set_result(result)
+        finally:
+            self._executing = False
+            self._task_lock.release()
+
+    def _step(self, coroutine: Coroutine[Any, Any, T]) -> None:
+        """Take a coroutine to its next wait, and have the executor come back when that is over."""
+        self._awaited = None
+        outer, stepping.task = stepping.task, self
+        try:
+            coroutine.send(None)
+        finally:
+            stepping.task = outer
+        self._have_executor_woken()
+
+    def _have_executor_woken(self) -> None:
+        executor = self._get_executor()
+        if self._awaited is not None and executor is not None:
+            self._awaited._wake_when_done(executor.wake)
+
+    def _can_go_on(self) -> bool:
+        """Whether a step would get the task on."""
+        return self._awaited is None or not self._awaited._pending()
+
+    def _finish(self) -> None:
+        self._handler = None
+        self._awaited = None
+        self._args = ()
+        self._kwargs = {}
+
+    def executing(self) -> bool:
+        """Return whether it runs right now."""
+        return self._executing
+
+    def cancel(self) -> None:
+        """Cancel it, unless it is done; a coroutine is closed."""
+        if self._pending() and inspect.iscoroutine(self._handler):
+            self._handler.close()
+        super().cancel()
+
+
+add_names(__name__)

@@ -1,0 +1,48 @@
+"""Maps of occupied cells as masked arrays."""
+
+from __future__ import annotations
+
+from array import array
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ros2_numpy.registry import converts_from_numpy, converts_to_numpy
+from rosidl_generator_py import message_class
+
+__all__ = ["numpy_to_occupancy_grid", "occupancygrid_to_numpy"]
+
+MapMetaData = message_class("nav_msgs/msg/MapMetaData")
+OccupancyGrid = message_class("nav_msgs/msg/OccupancyGrid")
+
+UNKNOWN = -1
+
+
+@converts_to_numpy(OccupancyGrid)
+def occupancygrid_to_numpy(msg: Any) -> npt.NDArray[np.int8]:
+    """Return the cells, of which those that are unknown, -1, are masked."""
+    cells = np.asarray(msg.data, dtype=np.int8).reshape(msg.info.height, msg.info.width)
+    return np.ma.array(cells, mask=cells == UNKNOWN, fill_value=UNKNOWN)
+
+
+@converts_from_numpy(OccupancyGrid)
+def numpy_to_occupancy_grid(arr: npt.NDArray[np.int8], info: Any = None) -> Any:
+    """Return a map of rows and columns of int8; masked cells are as they are stored.
+
+    Args:
+        arr: The cells.
+        info: What the map has besides; its width and height are set.
+
+    Raises:
+        TypeError: The array has another form or type.
+    """
+    if arr.ndim != 2:
+        raise TypeError(f"an array of {arr.ndim} dimensions; a map has two")
+    if arr.dtype != np.int8:
+        raise TypeError(f"an array of {arr.dtype}; a map has int8")
+    cells = arr.data if isinstance(arr, np.ma.MaskedArray) else arr
+    grid = OccupancyGrid(info=info or MapMetaData())
+    grid.data = array("b", np.asarray(cells).tobytes())
+    grid.info.height, grid.info.width = arr.shape
+    return grid

@@ -1,0 +1,32 @@
+"""The package that programs import as `tf2_geometry_msgs`: stamped messages in another frame."""
+
+from __future__ import annotations
+
+from rclpy._reexports import add_names
+from tf2_geometry_msgs.tf2_geometry_msgs import (
+    do_transform_point,
+    do_transform_polygon_stamped,
+    do_transform_pose,
+    do_transform_pose_stamped,
+    do_transform_pose_with_covariance_stamped,
+    do_transform_vector3,
+    do_transform_wrench_stamped,
+    from_msg_msg,
+    to_msg_msg,
+    transform_covariance,
+)
+
+__all__ = [
+    "do_transform_point",
+    "do_transform_polygon_stamped",
+    "do_transform_pose",
+    "do_transform_pose_stamped",
+    "do_transform_pose_with_covariance_stamped",
+    "do_transform_vector3",
+    "do_transform_wrench_stamped",
+    "from_msg_msg",
+    "to_msg_msg",
+    "transform_covariance",
+]
+
+add_names(__name__)

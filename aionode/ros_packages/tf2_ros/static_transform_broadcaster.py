@@ -1,0 +1,22 @@
+"""Publishing transforms that never change."""
+
+from __future__ import annotations
+
+from aionode import tf
+from rclpy._reexports import add_names
+from rosidl_generator_py import message_class
+
+__all__ = ["StaticTransformBroadcaster"]
+
+
+class StaticTransformBroadcaster(tf.StaticTransformBroadcaster):
+    """Publishes transforms on /tf_static, with a node of rclpy: all that were sent, each time.
+
+    A transform of the same child frame replaces the one before; tf2_ros's Python keeps the first,
+    its C++ the last.
+    """
+
+    _StaticTransformBroadcaster__message = message_class("tf2_msgs/msg/TFMessage")
+
+
+add_names(__name__)

@@ -1,5 +1,0 @@
-"""The package sensor_msgs_py of ROS 2, from aionode."""
-
-from aionode.rclpy._finder import provide
-
-provide(__name__)
