@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["crossings"]
 
 ROOT: Final = Path(__file__).parents[1] / "aionode"
+ROS_PACKAGES: Final = "ros_packages"
 OPEN: Final = frozenset({"_process", "_distribution", "_packages"})
 
 
@@ -36,7 +37,10 @@ def is_private(name: str) -> bool:
 
 
 def imported_by(path: Path) -> Iterator[tuple[str, ...]]:
-    """Yield each name of aionode that a module imports: its room, what is within, and the name."""
+    """Yield each name of aionode that a module imports: its room, what is within, and the name.
+
+    ROS's packages have their own names, and are one room.
+    """
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom):
             names = [f"{node.module}.{alias.name}" for alias in node.names]
@@ -48,6 +52,8 @@ def imported_by(path: Path) -> Iterator[tuple[str, ...]]:
             package, *inside = name.split(".")
             if package == "aionode" and inside:
                 yield tuple(inside)
+            elif (ROOT / ROS_PACKAGES / package).exists():
+                yield (ROS_PACKAGES, package, *inside)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,7 @@ MODULES = sorted(
     path for path in ROOT.rglob("*.py") if path.relative_to(ROOT).parts[0] != "interfaces"
 )
 
-MOST_CROSSINGS = 1
+MOST_CROSSINGS = 0
 """How many private names may cross; the number only falls."""
 
 MOST_PRIVATE_READS = 124
@@ -84,7 +84,7 @@ def test_no_private_name_crosses_a_room() -> None:
 def test_no_folder_has_more_than_twenty_modules() -> None:
     """A reader finds an idea by its folder; files that the names of ROS decide are free of it."""
     folders = Counter(path.parent.relative_to(ROOT).as_posix() for path in MODULES)
-    del folders["rclpy"]
+    del folders["ros_packages/rclpy"]
 
     assert [folder for folder, modules in folders.items() if modules > MOST_MODULES] == []
 

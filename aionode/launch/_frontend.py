@@ -12,7 +12,7 @@ import launch_ros
 from aionode.errors import LaunchFileError
 from aionode.launch._markup import Element
 from launch import actions, substitutions
-from launch.actions._loops import PopLocals, PushLocals
+from launch.actions.for_loop import PopLocals, PushLocals
 from launch.conditions import IfCondition, UnlessCondition
 from launch.frontend.expose import SUBSTITUTIONS
 from launch.frontend.parse_substitution import parse_words

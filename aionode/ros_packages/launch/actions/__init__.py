@@ -22,7 +22,6 @@ from launch.actions._events import (
 )
 from launch.actions._execute import ExecuteLocal, ExecuteProcess
 from launch.actions._include import IncludeLaunchDescription
-from launch.actions._loops import ForEach, ForLoop
 from launch.actions._scope import (
     DeclareLaunchArgument,
     GroupAction,
@@ -34,6 +33,7 @@ from launch.actions._scope import (
     SetLaunchConfiguration,
     UnsetLaunchConfiguration,
 )
+from launch.actions.for_loop import ForEach, ForLoop
 
 __all__ = [
     "Action",
