@@ -13,13 +13,12 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from aionode.rclpy.missing import advice
-
 from aionode._process.bounded_files import read_file
 from aionode.errors import AionodeError, LaunchFileError
 from aionode.launch._frontend import description_of
 from aionode.launch._markup import read_xml, read_yaml
 from aionode.launch.plan import Opaque, Step, Timer, Watch
+from aionode.rclpy.missing import advice
 from launch.actions import (
     DeclareLaunchArgument,
     GroupAction,

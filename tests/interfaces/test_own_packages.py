@@ -19,6 +19,7 @@ from aionode.cli._main import root
 from aionode.errors import IdlError
 from aionode.idl import definition_text, load_interfaces
 from aionode.interfaces import get_interface, interface_names
+from tests.support.without_ros import without_ros
 
 GO_TO = """\
 # Drive to a place.
@@ -219,7 +220,8 @@ def test_run_names_the_line_for_an_import_of_ros(
     program.write_text("from robot_interfaces.action import GoTo\nimport aionode\n")
     monkeypatch.setattr("sys.path", list(sys.path))
 
-    assert main(["run", str(program)]) == 1
+    with without_ros():
+        assert main(["run", str(program)]) == 1
 
     assert f"`{LINE}`" in capfd.readouterr().err
 
