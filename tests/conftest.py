@@ -16,6 +16,7 @@ import uvloop
 from hypothesis import HealthCheck, settings
 from hypothesis.internal.conjecture import providers
 
+from aionode import rclpy
 from aionode.node import Node
 from tests.bytecode import share_bytecode
 
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
     from collections.abc import Awaitable, Callable, Generator, Iterator
 
     from aionode.engine.context import Context
+
+# Tests import rclpy, launch and others of ROS's packages; tests.support.without_ros undoes this.
+rclpy.install()
 
 # How long an example takes depends on what else runs, such as the other workers.
 settings.register_profile(

@@ -7,7 +7,9 @@ import tempfile
 from collections.abc import Callable
 from contextlib import closing
 from functools import cache
+from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 from typing import Final
 
 from mcap.writer import CompressionType, IndexType
@@ -28,8 +30,8 @@ from aionode.errors import (
 from aionode.gateway import Policy
 from aionode.idl import define
 from aionode.interfaces.std_msgs.msg import String
-from aionode.launch._frontend import description_of
 from aionode.launch._markup import read_xml, read_yaml
+from aionode.rclpy import install
 
 __all__ = [
     "definition_seeds",
@@ -311,10 +313,17 @@ def definition_seeds() -> list[bytes]:
 # Launch files and policies
 
 
+@cache
+def frontend() -> ModuleType:
+    """Return the meaning of launch files, which is made of ROS's classes."""
+    install()
+    return import_module("aionode.launch._frontend")
+
+
 def run_launch_xml(data: bytes) -> object:
     """Read a launch file in XML; nothing of it is evaluated."""
     try:
-        return description_of("x.launch.xml", read_xml("x.launch.xml", data))
+        return frontend().description_of("x.launch.xml", read_xml("x.launch.xml", data))
     except LaunchFileError as error:
         return str(error)
 
@@ -322,7 +331,7 @@ def run_launch_xml(data: bytes) -> object:
 def run_launch_yaml(data: bytes) -> object:
     """Read a launch file in YAML; nothing of it is evaluated."""
     try:
-        return description_of("x.launch.yaml", read_yaml("x.launch.yaml", data))
+        return frontend().description_of("x.launch.yaml", read_yaml("x.launch.yaml", data))
     except LaunchFileError as error:
         return str(error)
 

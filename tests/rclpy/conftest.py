@@ -10,8 +10,6 @@ import pytest
 import aionode.rclpy
 from aionode.rclpy._finder import FINDER, EmptyLoader, InterfaceLoader, KindLoader
 
-aionode.rclpy.install()  # the tests import rclpy
-
 
 @pytest.fixture
 def installed() -> Iterator[None]:
