@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import sysconfig
 from functools import cache
@@ -10,10 +11,16 @@ from pathlib import Path
 from aionode._packages._packages import Packages
 from aionode._packages._workspace import workspace_of
 
-__all__ = ["around", "here", "use"]
+__all__ = ["around", "here", "package_of_stand_in", "stand_in", "use", "use_stand_ins"]
 
 GIVEN: list[Path] = []
 """The workspace that was named, if one was."""
+
+NOWHERE = Path("/package-not-found")
+"""Where stand-ins for folders of packages lie; there is no such folder."""
+
+STAND_INS: list[bool] = [False]
+"""Whether a package that is not there has a stand-in for its folder."""
 
 TOOLS = (
     Path(__file__).parents[1],
@@ -30,6 +37,25 @@ def use(folder: str | Path) -> None:
     """
     Packages(Path(folder))  # refuses what is no folder, before anything runs
     GIVEN[:] = [Path(folder)]
+
+
+def use_stand_ins(*, wanted: bool) -> None:
+    """Say whether a package that is not there has a stand-in for its folder.
+
+    A launch file asks for folders of packages at its top; what comes of it need not be started.
+    """
+    STAND_INS[:] = [wanted]
+
+
+def stand_in(package: str) -> Path | None:
+    """Return the stand-in for the folder of a package that is not there, if it has one."""
+    return NOWHERE / package if STAND_INS[0] else None
+
+
+def package_of_stand_in(text: str) -> str | None:
+    """Return the package whose stand-in a text names, if it names one."""
+    match = re.search(rf"{NOWHERE}/([\w-]+)", text)
+    return None if match is None else match[1]
 
 
 def here() -> Packages:

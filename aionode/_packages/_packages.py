@@ -15,7 +15,7 @@ from aionode._packages._executables import (
     runs_in_this_python,
 )
 from aionode._packages._share import share_of
-from aionode._packages._standard import standard_executables
+from aionode._packages._standard import remark_on, standard_executables
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
@@ -156,7 +156,7 @@ class Packages:
         """Return the error for a package that is not there."""
         places = [] if self.workspace is None else [str(self.workspace)]
         places += map(str, prefixes())
-        return PackageNotFoundError(name, tuple(places), self.names())
+        return PackageNotFoundError(name, tuple(places), self.names(), remark_on(name))
 
 
 def source_folder(workspace: Path) -> Path:

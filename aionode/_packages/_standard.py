@@ -6,14 +6,67 @@ from typing import Final
 
 from aionode._packages._executables import Executable
 
-__all__ = ["program_module", "standard_executables"]
+__all__ = ["program_module", "remark_on", "standard_executables"]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
     "tf2_ros": {"static_transform_publisher": "_static_transform_publisher"},
+    "topic_tools": {
+        name: f"_{name}" for name in ("delay", "drop", "mux", "relay", "throttle", "transform")
+    },
+    "twist_mux": {"twist_mux": "_twist_mux"},
 }
 """The module of `aionode.programs` that is an executable, by package and name."""
+
+REMARKS: Final[dict[str, str]] = {
+    **dict.fromkeys(
+        ("rviz2", "rviz_common", "rqt_gui", "rqt_graph", "rqt_image_view", "rqt_robot_steering"),
+        "a window of ROS's in C++ and Qt; the page of `aionode gateway`, and Foxglove by it, show "
+        "and steer the robot",
+    ),
+    **dict.fromkeys(
+        ("gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "gz_sim", "ignition_gazebo"),
+        "the simulator Gazebo in C++; a node that integrates commands, as the examples have one, "
+        "stands in for a base",
+    ),
+    **dict.fromkeys(
+        ("ros_gz_bridge", "ros_ign_bridge"),
+        "the bridge to the simulator Gazebo, in C++; without Gazebo nothing needs it",
+    ),
+    **dict.fromkeys(
+        ("slam_toolbox", "cartographer_ros"),
+        "a mapper in C++; a ROS 2 with rmw_zenoh can run it beside aionode",
+    ),
+    **dict.fromkeys(
+        (
+            *(
+                "nav2_controller",
+                "nav2_planner",
+                "nav2_behaviors",
+                "nav2_bt_navigator",
+                "nav2_amcl",
+            ),
+            *("nav2_map_server", "nav2_smoother", "nav2_waypoint_follower", "nav2_bringup"),
+            *("nav2_velocity_smoother", "nav2_collision_monitor", "nav2_route", "nav2_costmap_2d"),
+        ),
+        "a server of Nav2 in C++; a ROS 2 with rmw_zenoh can run it beside aionode",
+    ),
+    **dict.fromkeys(
+        ("controller_manager", "ros2_control", "moveit_ros_move_group", "moveit_servo"),
+        "a program in C++ that loads plugins; a ROS 2 with rmw_zenoh can run it beside aionode",
+    ),
+    "rclcpp_components": (
+        "the container for nodes in C++; node classes of aionode need none: "
+        "ComposableNode(plugin='my_robot.nodes:Driver')"
+    ),
+}
+"""What packages are that aionode cannot have, and what to use instead."""
+
+
+def remark_on(package: str) -> str:
+    """Return what a package is, if it cannot be had without ROS 2, and what to use instead."""
+    return REMARKS.get(package, "")
 
 
 def program_module(package: str, name: str) -> str | None:

@@ -22,12 +22,18 @@ class PackageNotFoundError(AionodeError, LookupError):
         name: The name that was looked up.
         places: The workspace and the folders of installed packages that were looked at.
         suggestions: Names of packages that are similar.
+        remark: What it is, and what to use instead, if aionode cannot have it.
     """
 
-    def __init__(self, name: str, places: tuple[str, ...], known: Sequence[str]) -> None:
+    def __init__(
+        self, name: str, places: tuple[str, ...], known: Sequence[str], remark: str = ""
+    ) -> None:
         self.name = name
         self.places = places
+        self.remark = remark
         self.suggestions, hint = offered(name, "packages there", known)
+        if remark:
+            hint = f"it is {remark}"
         super().__init__(
             f"package {name!r}: not found in {', '.join(places) or 'any folder'}; {hint}; "
             "--workspace FOLDER names the folder that holds it"

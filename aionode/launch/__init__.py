@@ -15,9 +15,9 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from aionode._packages import Packages, workspace_of
+from aionode._packages import Packages, remark_on, use_stand_ins, workspace_of
 from aionode.launch._watch import restart_changed
-from aionode.launch.plan import Log, Step
+from aionode.launch.plan import Log, Step, Watch
 from aionode.rclpy import install
 
 if TYPE_CHECKING:
@@ -56,6 +56,7 @@ class Plan:
         arguments: Values for its arguments.
         workspace: The folder with the packages that it names, which need no build; the workspace
             around the file by default. Installed packages are known in any case.
+        skip_missing: Whether what needs a package that is not there is left out, with a warning.
 
     Attributes:
         path: The launch file.
@@ -73,6 +74,7 @@ class Plan:
         arguments: Mapping[str, str] | None = None,
         *,
         workspace: str | Path | None = None,
+        skip_missing: bool = False,
     ) -> None:
         self._before = dict(os.environ)  # a file of Python may change it
         around = workspace_of(Path(path)) if workspace is None else Path(workspace)
@@ -81,6 +83,8 @@ class Plan:
 
         self._packages = Packages(around)
         self.path = path
+        self._skip_missing = skip_missing
+        use_stand_ins(wanted=skip_missing)
         self.description, self.main = load_file(path)
         self._arguments = dict(arguments or {})
         self._steps: list[Step] | None = None
@@ -112,11 +116,17 @@ class Plan:
 
             context = new_context(self.path, self._arguments)
             context.packages = self._packages
+            context.left_out = {} if self._skip_missing else None
             steps = evaluate([self.description], context)
             self._names, self._names_before = context.names, dict(context.names)
             check_later_steps(steps, set())
             self._forget_names()
-            self._steps = [*self._misspelt(context.declared), *steps]
+            warnings = left_out_texts(context.left_out or {}, steps)
+            self._steps = [
+                *self._misspelt(context.declared),
+                *(Log(text, "WARN") for text in warnings),
+                *steps,
+            ]
         return self._steps
 
     def _forget_names(self) -> None:
@@ -147,6 +157,26 @@ class Plan:
         from aionode.launch._preview import text_of
 
         return (text_of(record) for record in self.records())
+
+
+def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iterator[str]:
+    """Yield what is left out, by the package that is not there, and which handlers never react."""
+    for package, entities in left_out.items():
+        name, _, executable = package.partition(" ")
+        what = f"package '{name}' is not there"
+        if executable:
+            what = f"package '{name}' has no executable '{executable}' here"
+        remark = remark_on(name)
+        places = ", ".join(
+            f"{entity.describe()} ({entity._LaunchDescriptionEntity__where})" for entity in entities
+        )
+        yield f"{what}{remark and f': it is {remark}'}; left out: {places}"
+    ids = {id(entity) for entities in left_out.values() for entity in entities}
+    for step in steps:
+        if isinstance(step, Watch) and not step.ends:
+            target = getattr(step.handler, "_OnActionEventBase__action_matcher", None)
+            if id(target) in ids:
+                yield f"the {step.handler.describe()} never comes: that is left out"
 
 
 async def run_plan(

@@ -13,8 +13,14 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from aionode._packages import package_of_stand_in
 from aionode._process.bounded_files import read_file
-from aionode.errors import AionodeError, LaunchFileError
+from aionode.errors import (
+    AionodeError,
+    ExecutableNotFoundError,
+    LaunchFileError,
+    PackageNotFoundError,
+)
 from aionode.launch._frontend import description_of
 from aionode.launch._markup import read_xml, read_yaml
 from aionode.launch.plan import Opaque, Step, Timer, Watch
@@ -293,16 +299,48 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
         inner = entities_of(entity.visit(context))
     except KnownLater:
         raise
-    except LaunchFileError as error:
+    except Exception as error:
+        if not is_left_out(entity, error, context):
+            raise failed(entity, error) from error
+        return
+    for child in inner:
+        visit(child, context, depth + 1)
+
+
+def failed(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:
+    """Return the error of an entity: that of the file, with the place of what includes it."""
+    if isinstance(error, LaunchFileError):
         if error.line is None and isinstance(entity, IncludeLaunchDescription):
             path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
             problem = f"includes {error.path}, which {error.problem}"
-            raise LaunchFileError(path, problem, line=int(line)) from error
-        raise
-    except Exception as error:
-        raise failure_of(entity, error) from error
-    for child in inner:
-        visit(child, context, depth + 1)
+            return LaunchFileError(path, problem, line=int(line))
+        return error
+    return failure_of(entity, error)
+
+
+def is_left_out(entity: LaunchDescriptionEntity, error: Exception, context: LaunchContext) -> bool:
+    """Return whether an entity needs a package that is not there, and note it if that is wanted."""
+    package = None if context.left_out is None else missing_package(error)
+    if context.left_out is None or package is None:
+        return False
+    entities = context.left_out.setdefault(package, [])
+    if not any(entity is known for known in entities):  # timers are evaluated twice
+        entities.append(entity)
+    return True
+
+
+def missing_package(error: BaseException | None) -> str | None:
+    """Return the package, with its executable if that is missing, for lack of which this failed."""
+    while error is not None:
+        if isinstance(error, PackageNotFoundError):
+            return error.name
+        if isinstance(error, ExecutableNotFoundError):
+            return f"{error.package} {error.name}"
+        package = package_of_stand_in(str(error))
+        if package is not None:
+            return package
+        error = error.__cause__ or error.__context__
+    return None
 
 
 def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:

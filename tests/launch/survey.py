@@ -28,9 +28,9 @@ def files_in(workspace: Path) -> Iterator[Path]:
             yield file
 
 
-def outcome_of(file: Path, workspace: Path) -> tuple[str, str]:
+def outcome_of(file: Path, workspace: Path, options: list[str]) -> tuple[str, str]:
     """Return what becomes of a launch file, and the last line that says why."""
-    command = [sys.executable, "-m", "aionode", "launch", "--print"]
+    command = [sys.executable, "-m", "aionode", "launch", "--print", *options]
     try:
         done = subprocess.run(
             [*command, "--workspace", str(workspace), str(file)],
@@ -54,11 +54,15 @@ def main() -> int:
     """Print what becomes of each file, and how many there are of each outcome."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path)
+    parser.add_argument("--skip-missing", action="store_true", help="as that of aionode launch")
     total: Counter[str] = Counter()
-    for workspace in sorted(parser.parse_args().folder.resolve().iterdir()):
+    arguments = parser.parse_args()
+    options = ["--skip-missing"] if arguments.skip_missing else []
+    for workspace in sorted(arguments.folder.resolve().iterdir()):
         files = list(files_in(workspace)) if workspace.is_dir() else []
+        outcome_in = partial(outcome_of, workspace=workspace, options=options)
         with ThreadPoolExecutor(2) as threads:
-            outcomes = list(threads.map(partial(outcome_of, workspace=workspace), files))
+            outcomes = list(threads.map(outcome_in, files))
         for file, (outcome, reason) in zip(files, outcomes, strict=True):
             print(f"{file.relative_to(workspace.parent)}: {outcome}{reason and ': '}{reason}")  # noqa: T201  # a program prints
         counts = Counter(outcome for outcome, _ in outcomes)

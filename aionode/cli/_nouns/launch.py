@@ -45,6 +45,11 @@ __all__ = ["launch_command"]
     "--watch", is_flag=True, help="Restart a process when the file of its program changes."
 )
 @click.option("--once-ready", metavar="CMD", help="Run a command when all nodes are in the graph.")
+@click.option(
+    "--skip-missing",
+    is_flag=True,
+    help="Leave out what needs a package that is not there, with one warning for each package.",
+)
 @click.option("--real", is_flag=True, help="Run the file with ROS 2's launch, if it is installed.")
 @click.option(
     "--workspace",
@@ -69,6 +74,7 @@ def launch_command(
     log_folder: str | None,
     watch: bool,
     once_ready: str | None,
+    skip_missing: bool,
     real: bool,
     workspace: str | None,
     debug: bool,
@@ -85,7 +91,7 @@ def launch_command(
     path, values = file_and_values(file, arguments, workspace)
     if real:
         run_real(path, values)
-    plan = Plan(path, values, workspace=workspace)
+    plan = Plan(path, values, workspace=workspace, skip_missing=skip_missing)
     if show_args:
         for line in map(argument_text, plan.declared):
             click.echo(escaped(line))

@@ -9,7 +9,7 @@ import warnings
 from pathlib import Path
 
 from aionode import errors
-from aionode._packages import Packages, here
+from aionode._packages import Packages, here, stand_in
 from ament_index_python.resources import PACKAGES, get_resources
 from ament_index_python.resources import get_resource as get_resource
 from ament_index_python.search_paths import get_search_paths as get_search_paths
@@ -59,7 +59,7 @@ def get_package_share_directory(package_name: str, print_warning: bool = True) -
         if is_source
         else installed(package_name) / "share" / package_name
     )
-    if print_warning and not path.exists():
+    if print_warning and stand_in(package_name) is None and not path.exists():
         warning = f"Share directory for {package_name} ({path}) does not exist."
         warnings.warn(warning, stacklevel=2)
     return str(path)
@@ -85,6 +85,9 @@ def installed(package_name: str) -> Path:
     try:
         return here().prefix(package_name)
     except errors.PackageNotFoundError as error:
+        other = stand_in(package_name)
+        if other is not None:
+            return other
         problem = f"package '{package_name}' not found, searching: {list(error.places)}"
         hint = f"; did you mean {error.suggestions[0]}?" if error.suggestions else ""
         raise PackageNotFoundError(problem + hint) from None

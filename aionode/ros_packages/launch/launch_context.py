@@ -57,6 +57,8 @@ class LaunchContext:
         """The packages in which executables and files are looked up."""
         self.declared: set[str] = set()
         """The arguments that have been declared."""
+        self.left_out: dict[str, list[Any]] | None = None
+        """The entities that were left out, by the package that is not there; None if an error."""
         self.ahead = False
         """Whether what is evaluated is done later."""
         self.names: dict[str, int] = {}
@@ -82,6 +84,7 @@ class LaunchContext:
         later.packages = self.packages
         later.names = self.names  # one count for the whole description
         later.declared = self.declared
+        later.left_out = self.left_out
         later.ahead = ahead or self.ahead
         if ahead:  # it changes nothing for those that are done
             later.launch_configurations = dict(self.launch_configurations)

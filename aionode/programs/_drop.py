@@ -1,0 +1,48 @@
+"""``topic_tools drop``: of each Y messages, the first X are left out."""
+
+from __future__ import annotations
+
+import sys
+
+import aionode
+from aionode import Parameter
+from aionode.arguments import remove_ros_args
+from aionode.programs._any_type import AnyTypeNode, given_number
+
+__all__ = ["Drop", "main"]
+
+
+class Drop(AnyTypeNode):
+    """Publishes some of the messages again.
+
+    Args:
+        *words: The input topic, X, Y, and the output topic; fewer than three say nothing.
+    """
+
+    def __init__(self, *words: str) -> None:
+        given: dict[str, str | float] = {}
+        if len(words) > 2:
+            given = {
+                "input_topic": words[0],
+                "X": given_number(words[1], int, "X"),
+                "Y": given_number(words[2], int, "Y"),
+            }
+            given |= dict(zip(("output_topic",), words[3:], strict=False))
+        super().__init__("drop", given)
+        self.declare_topics("_drop")
+        self.left_out: int = self.needed("X", Parameter.Type.INTEGER)
+        self.total: int = self.needed("Y", Parameter.Type.INTEGER)
+        self.count = 0
+
+    def process(self, data: bytes) -> None:
+        """Publish a message, unless it is one of the first X."""
+        if self.count >= self.left_out:
+            self.send(data)
+        self.count += 1
+        if self.count >= self.total:
+            self.count = 0
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(lambda: Drop(*remove_ros_args(sys.argv)[1:]))

@@ -1,0 +1,28 @@
+"""``topic_tools relay``: what is published on a topic is published on another one, too."""
+
+from __future__ import annotations
+
+import sys
+
+import aionode
+from aionode.arguments import remove_ros_args
+from aionode.programs._any_type import AnyTypeNode
+
+__all__ = ["Relay", "main"]
+
+
+class Relay(AnyTypeNode):
+    """Publishes each message again.
+
+    Args:
+        *words: The input topic, and the output topic; parameters say what is left out.
+    """
+
+    def __init__(self, *words: str) -> None:
+        super().__init__("relay", dict(zip(("input_topic", "output_topic"), words, strict=False)))
+        self.declare_topics("_relay")
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(lambda: Relay(*remove_ros_args(sys.argv)[1:]))

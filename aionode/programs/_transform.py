@@ -1,0 +1,132 @@
+"""``topic_tools transform``: a Python expression of each message is published on another topic."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from importlib import import_module
+from typing import Any
+
+import aionode
+from aionode import DurabilityPolicy, Node, Publisher, QoSProfile, ReliabilityPolicy
+from aionode.arguments import remove_ros_args
+from aionode.errors import AionodeError, CommandError
+from aionode.interfaces import get_message
+from aionode.qos import qos_profile_sensor_data
+
+__all__ = ["Transform", "main", "parser"]
+
+SEARCH_SEC = 0.1
+"""How often the type of the input is asked for."""
+
+
+class Transform(Node):
+    """Publishes what an expression makes of each message, or of one of its fields, ``m``.
+
+    Args:
+        arguments: What `parser` returns.
+
+    Raises:
+        CommandError: The expression, a module or a type is none.
+    """
+
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        super().__init__(f"transform_{os.getpid()}")
+        self.arguments = arguments
+        self.fields = [part for part in (arguments.field or "").split(".") if part]
+        if arguments.field is not None and not self.fields:
+            raise CommandError(f"Invalid field value '{arguments.field}'")
+        names: dict[str, Any] = {}
+        for module in arguments.modules:
+            try:
+                names[module.partition(".")[0]] = module_named(module)
+            except ImportError as error:
+                raise CommandError(f"Failed to import module: {module}: {error}") from None
+        try:
+            code = compile(f"lambda m: ({arguments.expression})", "<expression>", "eval")
+        except SyntaxError as error:
+            raise CommandError(f"Wrong expression: {arguments.expression}: {error.msg}") from None
+        self.function = eval(code, names)  # noqa: S307  # the user's own program
+        self.type = get_message(arguments.output_type)
+        self.output: Publisher[Any] | None = None
+        self.timer = self.create_timer(SEARCH_SEC, self.begin)
+
+    async def begin(self) -> None:
+        """Subscribe as soon as the type of the input is known."""
+        publishers = self.get_publishers_info_by_topic(self.arguments.input)
+        if self.output is not None or not publishers:
+            return
+        try:
+            message = await self.find_type(publishers[0].topic_type)
+        except (AionodeError, LookupError) as error:
+            raise CommandError(f"Wrong input topic: {self.arguments.input}: {error}") from None
+        self.timer.cancel()
+        offered = [each.qos_profile for each in publishers]
+        reliable = all(each.reliability is ReliabilityPolicy.RELIABLE for each in offered)
+        latched = all(each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offered)
+        given = self.arguments
+        qos = QoSProfile(
+            depth=given.qos_depth or qos_profile_sensor_data.depth,
+            reliability=ReliabilityPolicy[
+                (given.qos_reliability or ("reliable" if reliable else "best_effort")).upper()
+            ],
+            durability=DurabilityPolicy[
+                (given.qos_durability or ("transient_local" if latched else "volatile")).upper()
+            ],
+        )
+        self.output = self.create_publisher(self.type, given.output_topic, qos)
+        self.create_subscription(message, given.input, self.on_message, qos)
+
+    def on_message(self, message: Any) -> None:
+        """Publish what the expression makes of a message."""
+        for field in self.fields:
+            try:
+                message = getattr(message, field)
+            except AttributeError as error:
+                raise CommandError(f"Invalid field '{'.'.join(self.fields)}': {error}") from None
+        result = self.function(message)
+        assert self.output is not None  # noqa: S101  # it is made before the subscription
+        for each in result if isinstance(result, list | tuple) else [result]:
+            self.output.publish(each)
+
+
+def module_named(name: str) -> Any:
+    """Return the module that an expression finds under the first part of a name.
+
+    ``std_msgs`` is aionode's package of messages; its ``msg`` is imported with it.
+    """
+    try:
+        message_module = import_module(f"aionode.interfaces.{name.partition('.')[0]}.msg")
+    except ImportError:
+        import_module(name)
+        return sys.modules[name.partition(".")[0]]
+    return import_module(message_module.__name__.rpartition(".")[0])
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return what parses the arguments."""
+    found = argparse.ArgumentParser(
+        prog="transform", description="Apply a Python operation to a topic."
+    )
+    found.add_argument("input", help="Input topic.")
+    found.add_argument("output_topic", help="Output topic.")
+    found.add_argument("output_type", help="Output topic type.")
+    found.add_argument(
+        "expression", nargs="?", default="m", help="Python expression of the message m."
+    )
+    found.add_argument("-i", "--import", dest="modules", nargs="+", default=["numpy"])
+    found.add_argument(
+        "--wait-for-start", action="store_true", help="Accepted: the input is always waited for."
+    )
+    found.add_argument("--field", help="A field of the message, such as orientation.x.")
+    found.add_argument("--qos-depth", type=int, metavar="N")
+    found.add_argument("--qos-reliability", choices=["reliable", "best_effort"])
+    found.add_argument("--qos-durability", choices=["volatile", "transient_local"])
+    return found
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    arguments = parser().parse_args(remove_ros_args(sys.argv)[1:])
+    aionode.run(lambda: Transform(arguments))

@@ -1,0 +1,183 @@
+"""``twist_mux``: of several who command a base, the one with the highest priority is heard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import aionode
+from aionode import Node
+from aionode.errors import CommandError
+from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
+from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
+from aionode.interfaces.std_msgs.msg import Bool
+
+__all__ = ["Source", "TwistMux", "main"]
+
+DIAGNOSTICS_SEC: Final = 1.0
+
+
+class Source:
+    """A topic of commands, or one that locks those of lower priority.
+
+    Args:
+        name: Its name in the parameters.
+        topic: The topic.
+        timeout: For how long a message counts, in seconds; 0 for ever.
+        priority: From 0 to 255.
+        now: Returns the time in nanoseconds.
+    """
+
+    def __init__(
+        self, name: str, topic: str, timeout: float, priority: int, now: Callable[[], int]
+    ) -> None:
+        self.name = name
+        self.topic = topic
+        self.timeout = timeout
+        self.priority = max(0, min(255, priority))
+        self.is_set = False
+        self.stamp_ns = 0
+        self._now = now
+
+    def hear(self, *, is_set: bool) -> None:
+        """Note that a message came."""
+        self.stamp_ns = self._now()
+        self.is_set = is_set
+
+    @property
+    def has_expired(self) -> bool:
+        """Whether the last message is too old, or none came."""
+        return self.timeout > 0 and (self._now() - self.stamp_ns) / 1e9 > self.timeout
+
+    @property
+    def is_locked(self) -> bool:
+        """Whether it locks: it says so, or it has fallen silent."""
+        return self.has_expired or self.is_set
+
+
+class TwistMux(Node):
+    """Publishes the commands of whoever has the highest priority on `cmd_vel_out`.
+
+    The parameters ``topics.NAME.topic``, ``.timeout`` and ``.priority`` name who commands, those
+    below ``locks`` who stops others.
+
+    Raises:
+        CommandError: A parameter is missing or does not fit.
+    """
+
+    def __init__(self) -> None:
+        super().__init__(
+            "twist_mux",
+            allow_undeclared_parameters=True,
+            automatically_declare_parameters_from_overrides=True,
+        )
+        if not self.has_parameter("use_stamped"):
+            self.declare_parameter("use_stamped", False, ParameterDescriptor())
+        kind: Any = TwistStamped if self.get_parameter("use_stamped").value else Twist
+        self.commands = self.sources("topics")
+        self.locks = self.sources("locks")
+        self.output = self.create_publisher(kind, "cmd_vel_out", 1)
+        self.diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 1)
+        for source in self.commands:
+            self.create_subscription(kind, source.topic, self.commanding(source), 10)
+        for source in self.locks:
+            self.create_subscription(Bool, source.topic, self.locking(source), 10)
+        self.create_timer(DIAGNOSTICS_SEC, self.tell)
+
+    def sources(self, prefix: str) -> list[Source]:
+        """Return the topics below a prefix of parameters, and say which they are."""
+        given = self.get_parameters_by_prefix(prefix)
+        found = []
+        for name in sorted({key.rpartition(".")[0] for key in given}):
+            values: list[Any] = []
+            for part, kind in (("topic", str), ("timeout", float), ("priority", int)):
+                parameter = given.get(f"{name}.{part}")
+                if parameter is None:
+                    raise CommandError(
+                        f"Error parsing params '{prefix}': could not load parameter "
+                        f"'{prefix}.{name}.{part}'. (namespace: {self.get_namespace()})"
+                    )
+                value = parameter.value
+                if kind is float and type(value) is int:
+                    value = float(value)
+                if type(value) is not kind:
+                    raise CommandError(
+                        f"parameter '{prefix}.{name}.{part}' is {value!r}; a {kind.__name__} fits"
+                    )
+                values.append(value)
+            topic, timeout, priority = values
+            found.append(Source(f"{prefix}.{name}", topic, timeout, priority, self.now_ns))
+            lasts = f"{timeout:f}s" if timeout > 0 else "None"
+            self.get_logger().info(
+                f"Topic handler '{prefix}.{name}' subscribed to topic '{topic}': timeout = {lasts} "
+                f", priority = {found[-1].priority}."
+            )
+        return found
+
+    def now_ns(self) -> int:
+        """Return the time in nanoseconds."""
+        return self.get_clock().now().nanoseconds
+
+    def commanding(self, source: Source) -> Callable[[Any], None]:
+        """Return what is called with the commands of a source."""
+
+        def on_command(twist: Any) -> None:
+            source.hear(is_set=True)
+            if self.leader() is source:
+                self.output.publish(twist)
+
+        return on_command
+
+    def locking(self, source: Source) -> Callable[[Bool], None]:
+        """Return what is called with what a lock says."""
+        return lambda msg: source.hear(is_set=msg.data)
+
+    def lock_priority(self) -> int:
+        """Return the highest priority of those who lock."""
+        return max((lock.priority for lock in self.locks if lock.is_locked), default=0)
+
+    def leader(self) -> Source | None:
+        """Return whose commands count: the highest priority, the first of several."""
+        lowest = self.lock_priority()
+        heard = [
+            source
+            for source in self.commands
+            if not source.has_expired and source.priority >= lowest and source.priority > 0
+        ]
+        return max(heard, key=lambda source: source.priority, default=None)
+
+    def tell(self) -> None:
+        """Publish who is heard, and who locks."""
+        leader, lowest = self.leader(), self.lock_priority()
+        values = {
+            f"velocity {source.name}": (
+                f"{'masked' if source.has_expired or source.priority < lowest else 'unmasked'} "
+                f"(listening to {source.topic} @ {source.timeout:f}s with priority "
+                f"#{source.priority})"
+            )
+            for source in self.commands
+        } | {
+            f"lock {source.name}": (
+                f"{'locked' if source.is_locked else 'free'} (listening to {source.topic} @ "
+                f"{source.timeout:f}s with priority #{source.priority})"
+            )
+            for source in self.locks
+        }
+        values["current priority"] = str(lowest)
+        values["current source"] = "none" if leader is None else leader.name
+        status = DiagnosticStatus(
+            level=DiagnosticStatus.OK,
+            name=f"{self.get_name()}: Twist mux status",
+            message="ok",
+            hardware_id="none",
+            values=[KeyValue(key=key, value=value) for key, value in values.items()],
+        )
+        msg = DiagnosticArray(status=[status])
+        msg.header.stamp = self.get_clock().now().to_msg()
+        self.diagnostics.publish(msg)
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(TwistMux)

@@ -1,0 +1,95 @@
+"""Launch files that name packages which are not there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from aionode._packages import use_stand_ins
+from aionode.errors import LaunchFileError
+from aionode.launch import Plan
+
+if TYPE_CHECKING:
+    from tests.launch.conftest import Files
+
+FILE = """
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import *
+from launch.event_handlers import OnProcessExit
+from launch_ros.actions import ComposableNodeContainer, Node
+from launch_ros.descriptions import ComposableNode
+from launch_ros.substitutions import FindPackageShare
+
+def generate_launch_description():
+    share = get_package_share_directory("tb3_sim")
+    rviz = Node(package="rviz2", executable="rviz2", arguments=["-d", share + "/x.rviz"])
+    return LaunchDescription([
+        rviz,
+        IncludeLaunchDescription(os.path.join(share, "launch", "sim.launch.py")),
+        IncludeLaunchDescription([FindPackageShare("tb3_sim"), "/launch/other.launch.py"]),
+        RegisterEventHandler(OnProcessExit(target_action=rviz, on_exit=[LogInfo(msg="over")])),
+        ComposableNodeContainer(
+            name="c", namespace="", package="rclcpp_components", executable="component_container",
+            composable_node_descriptions=[ComposableNode(package="x", plugin="x::Y")]),
+        TimerAction(period=1.0, actions=[Node(package="tf2_ros", executable="tf2_monitor")]),
+        Node(package="rviz2", executable="rviz2"),
+        ExecuteProcess(cmd=["echo", "started"]),
+    ])
+"""
+
+
+@pytest.fixture(autouse=True)
+def without_stand_ins(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Nothing of a ROS 2 that is sourced, and no stand-ins afterwards."""
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    yield
+    use_stand_ins(wanted=False)
+
+
+def records(files: Files, text: str = FILE) -> list[dict[str, Any]]:
+    """Return what a file starts without what is missing."""
+    return list(Plan(files.write("a.launch.py", text), skip_missing=True).records())
+
+
+def test_what_needs_a_missing_package_is_left_out_and_the_rest_is_started(files: Files) -> None:
+    """A robot drives also where nobody watches it in RViz."""
+    found = records(files)
+
+    assert [each["argv"] for each in found if "argv" in each] == [["echo", "started"]]
+
+
+def test_each_missing_package_is_one_warning_with_what_was_left_out(files: Files) -> None:
+    """And with what it is, if aionode knows that."""
+    logs = [each["log"] for each in records(files) if "log" in each and not each["when"]]
+
+    assert len([text for text in logs if "'rviz2'" in text]) == 1
+    rviz, sim, container, monitor, waiting = logs
+    assert rviz.startswith("package 'rviz2' is not there: it is a window of ROS's in C++ and Qt")
+    assert rviz.count("a.launch.py:") == 2
+    assert sim.startswith("package 'tb3_sim' is not there; left out: IncludeLaunchDescription (")
+    assert sim.count("a.launch.py:") == 2
+    assert "ComposableNode(plugin='my_robot.nodes:Driver')" in container
+    assert monitor.startswith("package 'tf2_ros' has no executable 'tf2_monitor' here; left out:")
+    assert waiting == "the exit of rviz2 never comes: that is left out"
+
+
+def test_without_the_option_the_first_of_them_is_an_error_that_says_what_it_is(
+    files: Files,
+) -> None:
+    """Nothing starts then, as for all that is wrong with a file."""
+    text = FILE.replace('get_package_share_directory("tb3_sim")', '"/share"')
+
+    with pytest.raises(LaunchFileError, match=r"'rviz2': not found in .* it is a window of ROS's"):
+        _ = Plan(files.write("a.launch.py", text)).steps
+
+
+def test_what_is_wrong_otherwise_stays_an_error(files: Files) -> None:
+    """A misspelt option is no missing package."""
+    text = FILE.replace('"echo", "started"', '"echo"], shel=["x"')
+
+    with pytest.raises(LaunchFileError, match="has no 'shel'"):
+        records(files, text)
