@@ -70,6 +70,8 @@ if TYPE_CHECKING:
     from aionode.runner import freeze_objects, run
     from aionode.supervisor import Health, Supervisor
 
+__version__ = "0.1.0"
+
 __all__ = [
     "ActionClient",
     "ActionResult",

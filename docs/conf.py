@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import sys
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 sys.path.insert(0, str(Path(__file__).parent.parent))
+import aionode
 from docs.contents import without_contents
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 project = "aionode"
 author = "The aionode authors"
 project_copyright = "2026, The aionode authors"
-release = metadata.version("aionode")
+release = aionode.__version__
 version = release
 
 extensions = [
