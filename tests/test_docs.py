@@ -96,8 +96,18 @@ def test_the_reference_lists_what_sphinx_shows() -> None:
 
         assert with_contents(text) == text, page
     node = (ROOT / "docs" / "reference" / "node.md").read_text(encoding="utf-8")
-    assert "  - `create_publisher`: Return a publisher" in node
+    assert "  - `create_publisher(msg_type: type[MsgT], topic: str, " in node
     assert "create_publisher" not in without_contents(node)
+
+
+def test_the_reference_has_signatures_for_those_who_read_the_files() -> None:
+    """Methods have their arguments, properties their types, and what nodes return has neither."""
+    page = (ROOT / "docs" / "reference" / "node.md").read_text(encoding="utf-8")
+
+    assert "`create_rate(frequency: float, clock: Clock | None = None) -> Rate`" in page
+    assert "`async until_destroyed() -> None`" in page
+    assert "`is_running: bool`" in page
+    assert "`aionode.NodeEnd`" in page
 
 
 @pytest.mark.parametrize("page", [page for page in PAGES if blocks(page, "python")])
