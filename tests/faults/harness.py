@@ -66,8 +66,8 @@ AFTER_S = 1.5
 QUIET_LIMIT_S = 10.0
 """How long what is under way may take to arrive when nothing more is sent."""
 
-END_LIMIT_S = 10.0
-"""How long a process may take to end; then it is killed."""
+END_LIMIT_S = 30.0
+"""How long a process may take to end on a busy machine; then it is killed."""
 
 
 END_S = 3.0
