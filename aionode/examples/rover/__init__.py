@@ -1,0 +1,7 @@
+"""A rover to try everything on: four nodes in a simulated room, and a page to drive it by.
+
+``python -m aionode.examples.rover`` runs all of it in one process; ``aionode launch`` of the file
+`rover.launch.py` beside this one starts a process for each part.
+"""
+
+__all__: list[str] = []

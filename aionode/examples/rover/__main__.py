@@ -1,0 +1,33 @@
+"""The whole rover in one process: ``python -m aionode.examples.rover``.
+
+With ``--ros-args -p use_sim_time:=true -p rate:=5.0`` its time is that of /clock, and passes five
+times as fast as that of the day.
+"""
+
+from __future__ import annotations
+
+import asyncio
+
+import aionode
+from aionode.examples.rover.battery import Battery
+from aionode.examples.rover.description import Description
+from aionode.examples.rover.driver import Driver
+from aionode.examples.rover.simulator import Simulator
+
+__all__ = ["main"]
+
+
+async def main() -> None:
+    """Run the rover and its page until Ctrl-C."""
+    async with Simulator() as simulator, Description(), Battery(), Driver():
+        try:
+            from aionode.examples.rover import page
+        except ModuleNotFoundError as missing:  # the text says what to install
+            simulator.get_logger().warning(f"The rover has no page: {missing}")
+            await asyncio.Event().wait()
+        else:
+            await page.main()
+
+
+if __name__ == "__main__":
+    aionode.run(main)

@@ -1,0 +1,28 @@
+"""The rover's own action type; an ``DriveTo.action`` file with these fields is the same type."""
+
+from __future__ import annotations
+
+from aionode.message import ActionType, Message, float64
+
+__all__ = ["DriveTo"]
+
+
+class DriveTo(ActionType, typename="rover_interfaces/action/DriveTo"):
+    """Drives to a place on the floor, in a straight line; all lengths are in metres."""
+
+    class Goal(Message):
+        """The destination, in the frame `odom`."""
+
+        x: float64 = 0.0
+        y: float64 = 0.0
+
+    class Result(Message):
+        """How far the rover drove, and how far from the destination it stands."""
+
+        driven: float64 = 0.0
+        distance_left: float64 = 0.0
+
+    class Feedback(Message):
+        """How far it still is."""
+
+        distance_left: float64 = 0.0
