@@ -290,6 +290,30 @@ def test_the_share_folder_shows_files_where_they_are_installed(
     assert files["config/a.yaml"] == "config/a.yaml"
 
 
+def test_folders_that_a_package_adds_install_into_the_same_share_folder(bot: Path) -> None:
+    """Packages of many examples do, with a launch and a config folder in each."""
+    (bot / "CMakeLists.txt").write_text(
+        "project(bot)\nadd_subdirectory(doc/one)\nadd_subdirectory(${CMAKE_SOURCE_DIR}/doc/two)\n"
+        "add_subdirectory(doc/one)\nadd_subdirectory(.)\nadd_subdirectory(doc/../../other)\n"
+    )
+    for name in ("one", "two"):
+        inner = bot / "doc" / name
+        (inner / "config").mkdir(parents=True)
+        (inner / "config" / f"{name}.yaml").write_text(name)
+        (inner / "CMakeLists.txt").write_text(
+            "install(DIRECTORY config DESTINATION share/${PROJECT_NAME})\n"
+            f"install(PROGRAMS ${{CMAKE_CURRENT_SOURCE_DIR}}/{name}.py DESTINATION lib/bot)\n"
+        )
+        (inner / f"{name}.py").touch()
+
+    files = shown(bot.parents[1])
+
+    assert files["config/one.yaml"] == "one"
+    assert files["config/two.yaml"] == "two"
+    assert files["config/a.yaml"] == "config/a.yaml"
+    assert set(Packages(bot.parents[1]).executables("bot")) == {"one.py", "two.py"}
+
+
 @pytest.mark.parametrize(
     ("rule", "place"),
     [

@@ -13,6 +13,9 @@ __all__ = ["MAX_FILES", "Install", "installs_of", "matching"]
 MAX_FILES: Final = 10_000
 """Most files and words of one rule that are looked at."""
 
+MAX_FOLDERS: Final = 300
+"""Most folders of a package whose CMakeLists.txt are read."""
+
 MAX_BYTES: Final = 1_000_000
 """Most bytes of a CMakeLists.txt that are read."""
 
@@ -52,22 +55,31 @@ class Install(NamedTuple):
 def installs_of(folder: Path, package: str) -> Iterator[Install]:
     """Yield what the CMakeLists.txt of a package installs as files and folders.
 
-    Variables are followed that it sets by lists of words and patterns of files.
+    Variables are followed that it sets by lists of words and patterns of files, and the folders of
+    the package that it adds by ``add_subdirectory``.
     """
-    try:
-        with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
-            text = re.sub(r"#[^\n]*", "", file.read(MAX_BYTES))
-    except OSError:
-        return
     variables = {
         "PROJECT_NAME": [package],
         "CMAKE_INSTALL_PREFIX": ["."],
         "CMAKE_INSTALL_DATADIR": ["share"],
         "CMAKE_INSTALL_DATAROOTDIR": ["share"],
-        "CMAKE_CURRENT_SOURCE_DIR": [str(folder)],
         "CMAKE_SOURCE_DIR": [str(folder)],
         "PROJECT_SOURCE_DIR": [str(folder)],
     }
+    yield from installs_in(folder, variables, set())
+
+
+def installs_in(
+    folder: Path, variables: dict[str, list[str]], seen: set[Path]
+) -> Iterator[Install]:
+    """Yield what the CMakeLists.txt of one folder installs, and those of folders that it adds."""
+    seen.add(folder)
+    try:
+        with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
+            text = re.sub(r"#[^\n]*", "", file.read(MAX_BYTES))
+    except OSError:
+        return
+    variables["CMAKE_CURRENT_SOURCE_DIR"] = [str(folder)]
     for command, rest in COMMAND.findall(text):
         words = list(islice(words_of(rest, variables), MAX_FILES))
         match command.lower(), words:
@@ -79,6 +91,11 @@ def installs_of(folder: Path, package: str) -> Iterator[Install]:
                 variables[name] = globbed(folder, patterns, deep=kind == "GLOB_RECURSE")
             case "install", [kind, *given] if kind in KINDS:
                 yield from install_of(kind, given, folder)
+            case "add_subdirectory", [name, *_] if ".." not in Path(name).parts:
+                inner = folder / name
+                is_new = inner not in seen and len(seen) < MAX_FOLDERS
+                if is_new and inner != folder and inner.is_relative_to(folder):
+                    yield from installs_in(inner, dict(variables), seen)
 
 
 def words_of(text: str, variables: dict[str, list[str]]) -> Iterator[str]:

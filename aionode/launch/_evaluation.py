@@ -6,6 +6,7 @@ import difflib
 import importlib.machinery
 import importlib.util
 import inspect
+import os
 import re
 import sys
 import traceback
@@ -237,10 +238,23 @@ def problem_of(error: Exception) -> str:
     text = str(error) or type(error).__name__
     if isinstance(error, KeyError) and type(error) is not KeyError:
         return str(error.args[0])  # its text, and not a key
+    if is_of_environment(error):
+        name = error.args[0]
+        return (
+            f"the environment has no {name!r}, which the file reads; give it a value: "
+            f"{name}=VALUE aionode launch …"
+        )
     plain = (AionodeError, TypeError, ValueError, RuntimeError, OSError)
     if isinstance(error, plain):
         return text
     return f"{type(error).__name__}: {text}"
+
+
+def is_of_environment(error: Exception) -> bool:
+    """Return whether an error is that of ``os.environ[name]``."""
+    frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
+    reads = type(os.environ).__getitem__
+    return bool(frames) and frames[-1].f_code is reads.__code__
 
 
 def is_own(module: str) -> bool:

@@ -384,7 +384,11 @@ def test_the_arguments_of_a_file_can_be_listed(files: Files) -> None:
 
 BAD = {
     "from launch.actions import Nonsense": (1, "launch.actions has no Nonsense; it has: Action"),
-    "import os\nos.environ['NOT_THERE']": (2, "KeyError: 'NOT_THERE'"),
+    "import os\nos.environ['NOT_THERE']": (
+        2,
+        "the environment has no 'NOT_THERE', which the file ",
+    ),
+    "{}['not_there']": (1, "KeyError: 'not_there'"),
     "import not_there_at_all": (1, "no module not_there_at_all"),
     "import launch.nothing": (1, "launch is from aionode here, which does not have launch.nothin"),
     "def generate_launch_description(:": (1, "not valid Python"),
