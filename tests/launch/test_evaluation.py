@@ -518,6 +518,19 @@ def test_a_missing_xacro_has_its_remedy(
         files.python(f"LogInfo(msg={action})")
 
 
+def test_a_xacro_of_another_python_has_its_remedy(
+    files: Files, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That Python has no packages of ROS, and xacro's error does not say whose it is."""
+    xacro = tmp_path / "xacro"
+    xacro.write_text("#!/bin/sh\necho \"No module named 'ament_index_python'\" >&2; exit 2\n")
+    xacro.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+
+    with pytest.raises(LaunchFileError, match=r"another Python: pip install 'aionode\[xacro\]'"):
+        files.python("LogInfo(msg=Command(['xacro ', 'a']))")
+
+
 def test_an_event_handler_that_registers_itself_is_checked_once(files: Files) -> None:
     """Whatever it does, it does again at the next event."""
     plan = Plan(

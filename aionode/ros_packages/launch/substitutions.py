@@ -344,8 +344,11 @@ class Command(Substitution):
         except OSError as error:
             raise SubstitutionFailure(f"command {line!r} cannot be run: {error}") from error
         if done.returncode != 0:
+            said = (done.stderr or "").rstrip()
+            if "No module named 'ament_index_python'" in said:
+                said += f"; {program} runs in another Python: pip install 'aionode[xacro]'"
             raise SubstitutionFailure(
-                f"command {line!r} ended with status {done.returncode}: {done.stderr or ''}"
+                f"command {line!r} ended with status {done.returncode}: {said}"
             )
         if done.stderr and on_stderr == "fail":
             raise SubstitutionFailure(
