@@ -654,6 +654,8 @@ def test_ci_runs_every_example() -> None:
 async def web(aionode_context: Context) -> AsyncIterator[httpx.AsyncClient]:
     """An HTTP client of the web application."""
     listening = socket.create_server(("127.0.0.1", 0))
+    # asyncio does not take it for one of TCP: answers in two parts would wait 40 ms each.
+    listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     config = uvicorn.Config(make_app(aionode_context), log_level="warning", loop="none")
     server = uvicorn.Server(config)
     port = listening.getsockname()[1]
@@ -680,6 +682,13 @@ async def test_the_web_application_awaits_a_service(
     response = await web.get("/add", params={"a": 10, "b": 25})
 
     assert response.json() == {"sum": 35}
+
+
+async def test_the_web_application_answers_at_once(web: httpx.AsyncClient) -> None:
+    """A socket that waits for acknowledgements costs each request of a test 44 ms."""
+    taken_s = [(await web.get("/openapi.json")).elapsed.total_seconds() for _ in range(9)]
+
+    assert sorted(taken_s)[4] < 0.03
 
 
 async def test_the_web_application_streams_a_topic(

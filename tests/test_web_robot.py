@@ -128,6 +128,8 @@ def app(context: Context) -> FastAPI:
 async def web(app: FastAPI, robots: Robots, wheels: Wheels) -> AsyncIterator[httpx.AsyncClient]:
     """An HTTP client of the application, which has discovered the robot."""
     listening = socket.create_server(("127.0.0.1", 0))
+    # asyncio does not take it for one of TCP: answers in two parts would wait 40 ms each.
+    listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     config = uvicorn.Config(app, log_level="warning", loop="none", timeout_graceful_shutdown=5)
     server = uvicorn.Server(config)
     port = listening.getsockname()[1]

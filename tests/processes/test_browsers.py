@@ -107,6 +107,8 @@ async def server(app: FastAPI, request: pytest.FixtureRequest) -> AsyncIterator[
     if getattr(request, "param", "") == "middleware":
         app.add_middleware(BaseHTTPMiddleware, dispatch=pass_on)
     listening = socket.create_server(("127.0.0.1", 0))
+    # asyncio does not take it for one of TCP: answers in two parts would wait 40 ms each.
+    listening.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     config = uvicorn.Config(app, log_level="warning", loop="none", timeout_graceful_shutdown=1)
     server = uvicorn.Server(config)
     async with asyncio.TaskGroup() as tasks:
