@@ -272,7 +272,7 @@ async def test_a_value_that_no_parameter_has_is_an_answer(bench: Bench, value: A
     bench.node.declare_parameter("speed", 1)
     async with bench.session() as session:
         with pytest.raises(MessageError, match="speed"):
-            await session.set_parameters("/robot", {"speed": value})
+            await session.set_json_parameter("/robot", "speed", value)
 
 
 @pytest.mark.parametrize("value", ["[" * 100_000, "1" * 100, "{}"])

@@ -364,6 +364,52 @@ async def test_a_parameter_that_is_refused_leaves_the_others_to_be_set(
     assert "/nobody" in refused["message"]
 
 
+@pytest.mark.parametrize("strange", ["speed", "/driver.", ".speed", "/driver.secret"])
+async def test_a_parameter_that_cannot_be_named_or_seen_leaves_the_others(
+    node: Node, node_factory: Callable[..., Node], strange: str
+) -> None:
+    """By each request with several names; a status says which one, and why."""
+    policy = """
+    [[allow]]
+    see = "/**"
+    parameter = "/**"
+    [[refuse]]
+    see = "/driver:secret"
+    """
+    driver = node_factory("driver")
+    driver.declare_parameter("speed", 0.5)
+    driver.declare_parameter("secret", "x")
+    wishes = [{"name": strange, "value": 1.5}, {"name": "/driver.speed", "value": 2.5}]
+    async with client_of(node, Policy.parse(policy)) as client:
+        client.send("getParameters", parameterNames=[strange, "/driver.speed"], id="a")
+        told = [await client.op("parameterValues")]
+        refused = [await client.op("status")]
+        client.send("setParameters", parameters=wishes, id="b")
+        told.append(await client.op("parameterValues"))
+        refused.append(await client.op("status"))
+
+    assert [[each["value"] for each in one["parameters"]] for one in told] == [[0.5], [2.5]]
+    assert all(strange in one["message"] for one in refused)
+
+
+async def test_names_that_cannot_be_followed_are_told(
+    node: Node, node_factory: Callable[..., Node]
+) -> None:
+    """Their changes would never come; those of the others do."""
+    driver = node_factory("driver")
+    driver.declare_parameter("speed", 0.5)
+    async with client_of(node) as client:
+        client.send("subscribeParameterUpdates", parameterNames=["speed", "/driver.speed"])
+        refused = await client.op("status")
+        while not driver.count_subscribers("/parameter_events"):
+            await node.graph.changed()
+        driver.set_parameters([Parameter("speed", value=1.0)])
+        told = await client.op("parameterValues")
+
+    assert "'speed'" in refused["message"]
+    assert told["parameters"][0]["value"] == 1.0
+
+
 async def test_parameters_are_read_though_one_node_does_not_answer(
     node: Node, node_factory: Callable[..., Node]
 ) -> None:

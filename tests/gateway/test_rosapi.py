@@ -215,6 +215,8 @@ async def test_a_parameter_is_set_and_deleted(client: RosbridgeClient, node: Nod
         ([1.5], "[3.5, 4]", [3.5, 4.0]),
         (1, "2", 2),
         ([1], "[2, 3]", [2, 3]),
+        (["left"], "[]", []),
+        ([1.5], "[]", []),
     ],
 )
 async def test_a_double_may_be_written_as_a_whole_number(

@@ -73,7 +73,7 @@ async def send_goal(session: Session) -> None:
 
 async def set_parameter(session: Session) -> None:
     """Set a parameter of the robot."""
-    await session.set_parameters("/robot", {"speed": 2.0})
+    await session.set_parameter("/robot", Parameter("speed", value=2.0))
 
 
 async def serve(session: Session) -> None:
@@ -212,7 +212,7 @@ async def test_the_name_of_a_node_is_taken_as_it_is(furnished: Bench, node: str)
     """What is expanded later would be another node than the one that the policy was asked about."""
     async with furnished.session() as session:
         with pytest.raises(ValueError, match="name"):
-            await session.set_parameters(node, {"speed": 2.0})
+            await session.set_parameter(node, Parameter("speed", value=2.0))
         with pytest.raises(ValueError, match="name"):
             await session.parameter_names(node)
 
@@ -250,8 +250,9 @@ async def test_a_parameter_is_clamped(furnished: Bench) -> None:
     limit = FieldLimit(max=1.5, outside="clamp")
     furnished.robot.policy = Policy(allow=[Rule(parameter="/robot", fields={"value": limit})])
     async with furnished.session() as session:
-        await session.set_parameters("/robot", {"speed": 2.0})
-        assert await session.get_parameters("/robot", ["speed", "none"]) == {"speed": 1.5}
+        await session.set_parameter("/robot", Parameter("speed", value=2.0))
+        found = await session.get_parameters("/robot", ["speed", "none"])
+        assert found == {"speed": Parameter("speed", value=1.5)}
 
 
 async def test_a_rate_and_a_size_are_limited(bench: Bench) -> None:

@@ -6,14 +6,13 @@ Nothing here does input or output. All numbers are little endian.
 from __future__ import annotations
 
 import base64
-import binascii
 import struct
 from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, TypeAlias
 
 import msgspec
 
 from aionode.errors import MessageError
-from aionode.gateway.session.encoding.client_json import check_items, check_parts
+from aionode.gateway.session.encoding.client_json import check_parts
 from aionode.gateway.session.outbox import LongFrame, binary_frame
 from aionode.parameter import Parameter, ParameterType
 
@@ -43,7 +42,6 @@ __all__ = [
     "message_frame",
     "op_frame",
     "op_of",
-    "parameter_of",
     "playback_frame",
     "response_frame",
     "shown_parameter",
@@ -308,41 +306,3 @@ def shown_parameter(name: str, parameter: Parameter) -> dict[str, Any]:
     hints = {ParameterType.DOUBLE: "float64", ParameterType.DOUBLE_ARRAY: "float64_array"}
     hint = {"type": hints[kind]} if kind in hints else {}
     return {"name": name, "value": value, **hint}
-
-
-def parameter_of(name: str, given: FoxgloveParameter, now: ParameterType) -> Parameter:
-    """Return the parameter that a client has given.
-
-    Args:
-        name: Its name at its node.
-        given: The parameter as the client has sent it.
-        now: Its type now: JSON tells no float from an integer, and says nothing of empty arrays.
-
-    Raises:
-        MessageError: a node can have no such value.
-    """
-    value = given.value
-    check_items(value, name)
-    try:
-        if value is None:
-            return Parameter(name)
-        if given.type == "byte_array":
-            data = base64.b64decode(value, validate=True)
-            return Parameter(name, ParameterType.BYTE_ARRAY, [bytes([byte]) for byte in data])
-        if given.type == "float64" or (now is ParameterType.DOUBLE and is_number(value)):
-            return Parameter(name, ParameterType.DOUBLE, float(value))
-        if isinstance(value, list) and (
-            given.type == "float64_array"
-            or (now is ParameterType.DOUBLE_ARRAY and all(map(is_number, value)))
-        ):
-            return Parameter(name, ParameterType.DOUBLE_ARRAY, [float(number) for number in value])
-        if value == [] and now is not ParameterType.NOT_SET:
-            return Parameter(name, now, [])
-        return Parameter(name, value=value)
-    except (TypeError, ValueError, OverflowError, binascii.Error) as error:
-        raise MessageError(given.name, f"{error}") from None
-
-
-def is_number(value: object) -> bool:
-    """Return whether a value of JSON is a number."""
-    return isinstance(value, int | float) and not isinstance(value, bool)

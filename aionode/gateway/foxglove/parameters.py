@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway.foxglove import frames
-from aionode.parameter import Parameter
+from aionode.gateway.session.encoding.parameters import parameter_of
+from aionode.parameter import Parameter, ParameterType
 
 if TYPE_CHECKING:
     from aionode.gateway.session.feed import Received
@@ -47,21 +48,31 @@ class Parameters:
         """Send parameters; without names those of all nodes.
 
         Raises:
-            MessageError: a name is not that of a node, a dot, and a parameter; or a node does not
-                tell its parameters, and those of the others are sent.
+            MessageError: a name is not that of a node, a dot, and a parameter; or a node, or the
+                policy, does not tell some of them. The others are sent.
         """
-        wanted = by_node(names) if names else await self._session.all_parameter_names()
         failures = Failures()
+        wanted = by_node(names, failures) if names else await self._session.all_parameter_names()
         shown: list[dict[str, Any]] = []
         for node, own in wanted.items():
+            seen = self._seen(node, own, failures)
             with failures.of(node, TimeoutError):
-                values = await self._session.get_parameters(node, own)
+                found = await self._session.get_parameters(node, seen) if seen else {}
                 shown += [
-                    frames.shown_parameter(f"{node}.{name}", Parameter(name, value=value))
-                    for name, value in values.items()
+                    frames.shown_parameter(f"{node}.{name}", parameter)
+                    for name, parameter in found.items()
                 ]
         self._send(shown, request_id)
         failures.tell("getParameters")
+
+    def _seen(self, node: str, names: Iterable[str], failures: Failures) -> list[str]:
+        """Return the names of those parameters that the client may see."""
+        seen = []
+        for name in names:
+            with failures.of(f"{node}.{name}"):
+                self._session._check_seen(node, [name])
+                seen.append(name)
+        return seen
 
     async def set(
         self, parameters: Sequence[frames.FoxgloveParameter], request_id: str | None
@@ -70,27 +81,28 @@ class Parameters:
 
         Raises:
             MessageError: a name is not that of a node, a dot, and a parameter; or some parameters
-                cannot be set, and the others are.
+                cannot be set. The others are.
         """
         arrived_ns = self._session.arrival_ns()
         given = {parameter.name: parameter for parameter in parameters}
         failures = Failures()
         told: list[str] = []
-        for node, own in by_node(given).items():
+        for node, own in by_node(given, failures).items():
             allowed = []
             for name in own:  # before anything is read
                 with failures.of(f"{node}.{name}"):
                     self._session.decide("parameter", f"{node}:{name}", "")
-                    if not self._session._sees(f"{node}:{name}", []):
-                        raise MessageError(name, "the policy does not show it")
                     allowed.append(name)
+            allowed = self._seen(node, allowed, failures)
+            if not allowed:
+                continue
             with failures.of(node, TimeoutError):  # then the node is not asked again
-                now = await self._session.get_parameters(node, allowed)
+                found = await self._session.get_parameters(node, allowed)
                 told += [f"{node}.{name}" for name in allowed]
                 for name in allowed:
                     with failures.of(f"{node}.{name}"):
                         wish = given[f"{node}.{name}"]
-                        await self._set_one(node, wish, name, now.get(name), arrived_ns)
+                        await self._set_one(node, wish, name, found.get(name), arrived_ns)
         if request_id is not None:
             if told:
                 with failures.of("getParameters"):
@@ -104,12 +116,12 @@ class Parameters:
         node: str,
         given: frames.FoxgloveParameter,
         name: str,
-        now: object,
+        now: Parameter | None,
         arrived_ns: int,
     ) -> None:
-        type_ = Parameter(name, value=now).type_
-        value = frames.parameter_of(name, given, type_).value
-        (result,) = await self._session.set_parameters(node, {name: value}, arrived_ns=arrived_ns)
+        type_ = ParameterType.NOT_SET if now is None else now.type_
+        parameter = parameter_of(name, given.value, type_, given.type)
+        result = await self._session.set_parameter(node, parameter, arrived_ns=arrived_ns)
         if not result.successful:
             raise MessageError(name, result.reason)
 
@@ -118,6 +130,8 @@ class Parameters:
 
         Raises:
             RefusedError: the policy refuses to subscribe to the events of parameters.
+            MessageError: there are too many names; or some are not those of a node, a dot, and a
+                parameter, and the others are followed.
         """
         if len(self._followed) + len(names) > MOST_FOLLOWED or any(
             len(name) > MOST_CHARACTERS for name in names
@@ -129,6 +143,9 @@ class Parameters:
             )
         self._follows_all = self._follows_all or not names
         self._followed.update(names)
+        failures = Failures()
+        by_node(names, failures)
+        failures.tell("subscribeParameterUpdates")
 
     def unfollow(self, names: Iterable[str]) -> None:
         """Send these no more; without names none."""
@@ -176,7 +193,11 @@ class Failures:
         try:
             yield
         except kinds as error:
-            self._texts.append(f"{subject}: {str(error) or 'no answer in time'}")
+            self.add(subject, str(error) or "no answer in time")
+
+    def add(self, subject: str, reason: str) -> None:
+        """Note that something has failed."""
+        self._texts.append(f"{subject}: {reason}")
 
     def tell(self, request: str) -> None:
         """Raise if anything has failed.
@@ -188,16 +209,13 @@ class Failures:
             raise MessageError(request, "; ".join(self._texts))
 
 
-def by_node(names: Iterable[str]) -> dict[str, list[str]]:
-    """Return the names of parameters by their nodes.
-
-    Raises:
-        MessageError: a name has no dot.
-    """
+def by_node(names: Iterable[str], failures: Failures) -> dict[str, list[str]]:
+    """Return the names of parameters by their nodes; one that has no dot is a failure."""
     names_of: dict[str, list[str]] = defaultdict(list)
     for name in names:
         node, dot, own = name.partition(".")
-        if not dot or not own:
-            raise MessageError("parameters", f"{name!r} is not of the form /node.parameter")
-        names_of[node].append(own)
+        if dot and own:
+            names_of[node].append(own)
+        else:
+            failures.add(repr(name[:MOST_CHARACTERS]), "it is not of the form /node.parameter")
     return names_of

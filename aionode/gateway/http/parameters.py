@@ -32,7 +32,8 @@ async def show_parameters(asked: Asked) -> Response:
     """Return the parameters of a node, or the value of one."""
     node, parameter = node_and_parameter(asked)
     names = [parameter] if parameter else await asked.session.parameter_names(node)
-    values = await asked.session.get_parameters(node, names)
+    found = await asked.session.get_parameters(node, names)
+    values = {each.name: each.value for each in found.values()}
     if parameter and parameter not in values:
         raise HTTPException(404, f"{node}: parameter {parameter[:200]!r} is not declared")
     return json_response(plain(values[parameter] if parameter else values))

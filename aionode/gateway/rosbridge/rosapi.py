@@ -20,6 +20,7 @@ from aionode.gateway.session.encoding.client_json import decoded, shown
 from aionode.gateway.session.encoding.values import stamp
 from aionode.graph import EndpointKind
 from aionode.interfaces import interface_names
+from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
     from aionode.gateway.session.base import Kind
@@ -294,7 +295,8 @@ async def parameter_json(session: Session, name: str) -> str:
 async def parameter_value(session: Session, name: str) -> Any:
     """Return the value of a parameter; None if its node has none of this name."""
     node, parameter = parameter_name(name)
-    return (await session.get_parameters(node, [parameter])).get(parameter)
+    found = (await session.get_parameters(node, [parameter])).get(parameter)
+    return None if found is None else found.value
 
 
 def plain(value: Any) -> Any:
@@ -331,7 +333,7 @@ async def has_param(session: Session, args: Args) -> dict[str, Any]:
 async def delete_param(session: Session, args: Args) -> dict[str, Any]:
     try:
         node, parameter = parameter_name(args["name"])
-        (result,) = await session.set_parameters(node, {parameter: None})
+        result = await session.set_parameter(node, Parameter(parameter))
     except (AionodeError, TimeoutError) as error:
         return failed(session, error)
     return {"successful": result.successful, "reason": result.reason}

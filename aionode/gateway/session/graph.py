@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import asyncio
 from collections import defaultdict
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from aionode.errors import AionodeError, MessageError, NodeNameNonExistentError, ServiceError
+from aionode.errors import AionodeError, NodeNameNonExistentError, ServiceError
 from aionode.gateway.session.base import SessionBase
 from aionode.gateway.session.encoding.client_json import check_items
+from aionode.gateway.session.encoding.parameters import depends_on_type, parameter_of
 from aionode.graph import TOPIC_KINDS, EndpointKind
 from aionode.parameter import Parameter, ParameterType
 from aionode.parameter_client import AsyncParameterClient
@@ -171,8 +172,8 @@ class SessionGraph(SessionBase):
                 tasks.create_task(ask(node))
         return dict(sorted(names_of.items()))
 
-    async def get_parameters(self, node: str, names: list[str]) -> dict[str, Any]:
-        """Return the values of parameters; those that are not declared are left out.
+    async def get_parameters(self, node: str, names: list[str]) -> dict[str, Parameter]:
+        """Return parameters by name; those that are not declared are left out.
 
         Raises:
             RefusedError: the client may not see one of them.
@@ -187,7 +188,7 @@ class SessionGraph(SessionBase):
                 declared = set((await client.list_parameters()).names)
                 names = [name for name in names if name in declared]
                 parameters = await client.get_parameters(names)
-        return {parameter.name: parameter.value for parameter in parameters}
+        return {parameter.name: parameter for parameter in parameters}
 
     async def set_json_parameter(self, node: str, name: str, value: Any) -> SetParametersResult:
         """Set a parameter to a value in JSON, where a double may be written as 2.
@@ -206,72 +207,39 @@ class SessionGraph(SessionBase):
         arrived_ns = self.arrival_ns()
         check_items(value, name)
         self.decide("parameter", f"{node}:{name}", "")  # before anything is read
-        if holds_whole(value):
-            present = (await self.get_parameters(node, [name])).get(name)
-            value = as_real(value, Parameter(name, value=present).type_)
-        (result,) = await self.set_parameters(node, {name: value}, arrived_ns=arrived_ns)
-        return result
+        now: Parameter | None = None
+        if depends_on_type(value):
+            now = (await self.get_parameters(node, [name])).get(name)
+        parameter = parameter_of(name, value, now.type_ if now else ParameterType.NOT_SET)
+        return await self.set_parameter(node, parameter, arrived_ns=arrived_ns)
 
-    async def set_parameters(
-        self, node: str, values: Mapping[str, Any], *, arrived_ns: int | None = None
-    ) -> list[SetParametersResult]:
-        """Set parameters one by one, and return a result for each.
+    async def set_parameter(
+        self, node: str, given: Parameter, *, arrived_ns: int | None = None
+    ) -> SetParametersResult:
+        """Set a parameter.
 
         Args:
             node: The full name of the node.
-            values: The values by name; None undeclares a parameter.
+            given: The parameter; one that is not set is undeclared.
             arrived_ns: As for `publish`.
 
         Raises:
-            RefusedError: the policy does not allow one of them, or they may have waited while the
-                gateway stood still; none was set.
+            RefusedError: the policy does not allow it, or it may have waited while the gateway
+                stood still.
             ServiceError: the node offers no parameters.
             TimeoutError: the node has not answered within 5 s.
-            MessageError: a value is none that parameters have (a ValueError).
         """
         arrived_ns = self.arrival_ns() if arrived_ns is None else arrived_ns
         node, began_ns = self.node_name(node), self.steady_ns()
-        changed = []
-        for name, value in values.items():
-            parameter = self._decide_parameter(node, parameter_of(name, value))
-            await self._allow("parameter", f"{node}:{name}", "", {"value": parameter.value})
-            changed.append(parameter)
+        parameter = self._decide_parameter(node, given)
+        await self._allow("parameter", f"{node}:{given.name}", "", {"value": parameter.value})
         async with self._parameters(node) as client:
             self._check_waited("parameter", node, arrived_ns)
-            results = await client.set_parameters(changed)
-        reasons = "; ".join(result.reason for result in results if not result.successful)
+            (result,) = await client.set_parameters([parameter])
         self._robot.audit.note(
             self.identity, "parameter", node,
-            arguments={parameter.name: parameter.value for parameter in changed},
-            result=f"failed: {reasons}" if reasons else "ok",
+            arguments={parameter.name: parameter.value},
+            result="ok" if result.successful else f"failed: {result.reason}",
             duration_ns=self.steady_ns() - began_ns, way=self.kind,
         )  # fmt: skip
-        return results
-
-
-def holds_whole(value: Any) -> bool:
-    """Return whether a value in JSON is or has a whole number."""
-    return any(type(item) is int for item in (value if isinstance(value, list) else [value]))
-
-
-def as_real(value: Any, type_: ParameterType) -> Any:
-    """Return whole numbers as doubles where the parameter has them, or the list mixes both."""
-    if isinstance(value, list):
-        is_mixed = any(isinstance(item, float) for item in value)
-        if is_mixed or type_ is ParameterType.DOUBLE_ARRAY:
-            return [as_real(item, ParameterType.DOUBLE) for item in value]
-        return value
-    return float(value) if type_ is ParameterType.DOUBLE and type(value) is int else value
-
-
-def parameter_of(name: str, value: Any) -> Parameter:
-    """Return a parameter with the value that a client gives it.
-
-    Raises:
-        MessageError: parameters have no such value.
-    """
-    check_items(value, name)
-    try:
-        return Parameter(name, value=value)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise MessageError(name[:200], str(error)) from None
+        return result
