@@ -58,7 +58,7 @@ def test_every_reference_leads_to_a_schema() -> None:
 
     references = set(values(whole, "$ref"))
 
-    assert "#/components/schemas/geometry_msgs.msg.Twist" in references
+    assert "#/components/schemas/geometry_msgs.msg.Twist.sent" in references
     assert {each.removeprefix("#/components/schemas/") for each in references} <= set(schemas)
     assert all(re.fullmatch(r"[a-zA-Z0-9._-]+", name) for name in schemas)
 
@@ -89,6 +89,20 @@ def test_a_body_has_the_json_form_of_the_gateway() -> None:
     assert covariance["items"] == {"type": ["number", "null"]}
     assert covariance["maxItems"] == 36
     assert vector["x"]["type"] == ["number", "null"]
+
+
+def test_a_body_that_is_sent_has_no_null() -> None:
+    """The gateway refuses it, as JavaScript writes it for a NaN that nobody meant."""
+    whole = document()
+    schemas = whole["components"]["schemas"]
+    pose = schemas["geometry_msgs.msg.PoseWithCovarianceStamped.sent"]["properties"]
+    sent = [schema for name, schema in schemas.items() if name.endswith(".sent")]
+
+    body = whole["paths"]["/topics/pose"]["post"]["requestBody"]["content"]["application/json"]
+    assert body["schema"]["$ref"].endswith("PoseWithCovarianceStamped.sent")
+    assert pose["header"]["$ref"].endswith("std_msgs.msg.Header")  # which has no such number
+    assert not [type_ for type_ in values(sent, "type") if type_ == ["number", "null"]]
+    assert len({schema["title"] for schema in sent}) == len(sent)
 
 
 def test_an_image_is_also_a_picture() -> None:

@@ -30,6 +30,11 @@ def test_the_types_are_those_of_the_json_that_the_gateway_writes() -> None:
     assert "export type Real = number | null;" in scan
 
 
+def test_a_message_to_send_has_no_null() -> None:
+    """The gateway refuses it in place of a number."""
+    assert "export type Outgoing<T> = T extends null\n  ? never\n" in typescript([Twist])
+
+
 def test_a_service_and_an_action_are_maps_of_their_parts() -> None:
     """A program names the type by the name that the robot has for it."""
     text = typescript(

@@ -22,6 +22,9 @@ Kind: TypeAlias = Literal["topic", "service", "action", "node"]
 
 Schema = dict[str, Any]
 
+SENT: Final = ".sent"
+"""Ends the name of the schema of a message as clients send it, where that differs."""
+
 LISTS: Final = {
     "topics": "The topics that the caller sees, with their types.",
     "services": "The services that the caller sees, with their types.",
@@ -220,7 +223,7 @@ def topic_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
             f"Publish a message on {offer.name}.",
             done,
             parameters=[CLIENT],
-            **body(message),
+            **body(component(offer.cls, schemas, is_sent=True)),
         )
     return operations
 
@@ -230,7 +233,7 @@ def service_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
     if "call" not in offer.verbs:
         return {}
     request, response = (
-        component(offer.cls and getattr(offer.cls, part), schemas)
+        component(offer.cls and getattr(offer.cls, part), schemas, is_sent=part == "Request")
         for part in ("Request", "Response")
     )
     called = operation(
@@ -248,7 +251,7 @@ def action_operations(offer: Offer, schemas: dict[str, Schema]) -> Schema:
     if "goal" not in offer.verbs:
         return {}
     goal, result, feedback = (
-        component(offer.cls and getattr(offer.cls, part), schemas)
+        component(offer.cls and getattr(offer.cls, part), schemas, is_sent=part == "Goal")
         for part in ("Goal", "Result", "Feedback")
     )
     outcome: Schema = {
@@ -296,32 +299,58 @@ def ref(name: str) -> Schema:
     return {"$ref": f"#/components/schemas/{name}"}
 
 
-def component(cls: type[Message] | None, schemas: dict[str, Schema]) -> Schema:
-    """Return a reference to the schema of a message, which is added with those nested in it."""
+def component(
+    cls: type[Message] | None, schemas: dict[str, Schema], *, is_sent: bool = False
+) -> Schema:
+    """Return a reference to the schema of a message, which is added with those nested in it.
+
+    Args:
+        cls: The class of the message; None if nobody knows it.
+        schemas: The schemas that there are.
+        is_sent: Whether clients send the message: their numbers are none for which null stands.
+    """
     if cls is None:
         return {"type": "object", "description": "No node describes this type."}
-    name = type_name(cls).replace("/", ".")
+    is_sent = is_sent and has_real(cls)
+    name = type_name(cls).replace("/", ".") + (SENT if is_sent else "")
     if name not in schemas:
         schema = schemas[name] = json_schema(cls)
+        schema["title"] += SENT if is_sent else ""  # generators make names of it
         for field in fields(cls):
             shown = schema["properties"][field.name]
-            schema["properties"][field.name] = in_json(field.type, shown, schemas)
+            schema["properties"][field.name] = in_json(field.type, shown, schemas, is_sent=is_sent)
     return ref(name)
 
 
-def in_json(type_: FieldType, shown: Schema, schemas: dict[str, Schema]) -> Schema:
+def in_json(
+    type_: FieldType, shown: Schema, schemas: dict[str, Schema], *, is_sent: bool
+) -> Schema:
     """Return the schema of a field in the JSON form of the gateway.
 
     It differs from `json_schema` in three points: nested messages are references, the bytes of an
-    array are a text in Base64, and null stands for NaN and for the infinities.
+    array are a text in Base64, and null stands for the NaN and the infinities of the robot.
     """
     notes = {key: shown[key] for key in ("description",) if key in shown}
     if type_.container != "single":
         if type_.kind in {"uint8", "char"}:
             return {**notes, "type": "string", "contentEncoding": "base64"}
-        return {**shown, "items": in_json(type_.element, shown["items"], schemas)}
+        items = in_json(type_.element, shown["items"], schemas, is_sent=is_sent)
+        return {**shown, "items": items}
     if type_.nested is not None:
-        return {**component(type_.nested, schemas), **notes}
-    if type_.kind in {"float32", "float64"}:
+        return {**component(type_.nested, schemas, is_sent=is_sent), **notes}
+    if is_real(type_) and not is_sent:
         return {**shown, "type": ["number", "null"]}
     return shown
+
+
+def is_real(type_: FieldType) -> bool:
+    """Return whether a field has floating-point numbers."""
+    return type_.kind in {"float32", "float64"}
+
+
+def has_real(cls: type[Message]) -> bool:
+    """Return whether a message has floating-point numbers, itself or in those nested in it."""
+    return any(
+        is_real(field.type) or (field.type.nested is not None and has_real(field.type.nested))
+        for field in fields(cls)
+    )

@@ -37,12 +37,14 @@ export type Real = number | null;
 /** The bytes of an array, in Base64. */
 export type Base64 = string;
 
-/** A message to send: every field may be left out, and then has its default. */
-export type Outgoing<T> = T extends readonly (infer Item)[]
-  ? Outgoing<Item>[]
-  : T extends object
-    ? { [Name in keyof T]?: Outgoing<T[Name]> }
-    : T;
+/** A message to send: every field may be left out, and then has its default; null is refused. */
+export type Outgoing<T> = T extends null
+  ? never
+  : T extends readonly (infer Item)[]
+    ? Outgoing<Item>[]
+    : T extends object
+      ? { [Name in keyof T]?: Outgoing<T[Name]> }
+      : T;
 """
 
 PARTS: Final = {
