@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import io
 import re
-from typing import TYPE_CHECKING, Any
+import struct
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -33,6 +34,9 @@ __all__ = [
     "to_numpy",
     "to_pil",
 ]
+
+DEPTH_HEAD: Final = struct.Struct("<iff")
+"""What compressedDepth has before its picture: a format, and how metres became numbers."""
 
 COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
 """The channels of encodings with colours, one letter each."""
@@ -312,6 +316,9 @@ def compress(image: Image, format: str = "jpeg", **options: Any) -> CompressedIm
 def decompress(image: CompressedImage) -> Image:
     """Return a compressed image as mono8, rgb8, rgba8 or mono16, with its header.
 
+    Depth of image_transport's ``compressedDepth`` is 16UC1 or 32FC1, as it was; where it was not
+    known, it is 0 or NaN.
+
     Raises:
         TypeError: `image` is not a CompressedImage.
         MessageError: Pillow cannot read its data (a ValueError).
@@ -321,12 +328,36 @@ def decompress(image: CompressedImage) -> Image:
         raise TypeError(
             f"decompress: {type(image).__name__} given; a sensor_msgs/msg/CompressedImage is needed"
         )
+    is_depth = "compressedDepth" in image.format
+    data = memoryview(image.data)
     try:
-        picture = pillow().open(io.BytesIO(image.data))
+        picture = pillow().open(io.BytesIO(data[DEPTH_HEAD.size :] if is_depth else data))
         picture.load()
-    except (OSError, SyntaxError) as error:
+    except (OSError, SyntaxError, pillow().DecompressionBombError) as error:
         raise MessageError(
             "sensor_msgs/msg/CompressedImage.data",
             f"no image that can be read ({error}); its format is given as {image.format!r}",
         ) from error
-    return from_pil(picture, image.header)
+    message = from_pil(picture, image.header)
+    return depth_of(message, DEPTH_HEAD.unpack_from(data), image.format) if is_depth else message
+
+
+def depth_of(picture: Image, head: tuple[int, float, float], format: str) -> Image:  # noqa: A002  # the field's name
+    """Return the depth of a picture by compressedDepth: of 16 bits, or of the inverse of metres.
+
+    Raises:
+        MessageError: the picture has no 16 bits.
+    """
+    if picture.encoding != "mono16":
+        raise MessageError(
+            "sensor_msgs/msg/CompressedImage.data",
+            f"depth of 16 bits was expected, and its picture is {picture.encoding}",
+        )
+    pixels = to_numpy(picture)
+    if not format.startswith("32FC1"):
+        return from_numpy(pixels, "16UC1", picture.header)
+    _, numerator, offset = head
+    inverse = pixels.astype(np.float32) - np.float32(offset)
+    with np.errstate(divide="ignore"):
+        depth = np.where(pixels == 0, np.float32(np.nan), np.float32(numerator) / inverse)
+    return from_numpy(depth.astype(np.float32), "32FC1", picture.header)

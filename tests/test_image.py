@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import sys
 from typing import Any
 
@@ -229,3 +230,44 @@ def test_without_pillow_the_error_says_how_to_get_it(monkeypatch: pytest.MonkeyP
 
     with pytest.raises(ModuleNotFoundError, match="pip install pillow"):
         to_pil(image)
+
+
+@pytest.mark.parametrize("encoding", ["16UC1", "32FC1"])
+def test_compressed_depth_is_read(encoding: str) -> None:
+    """As image_transport writes it: millimetres, or the inverse of metres, behind 12 bytes."""
+    pixels = np.array([[0, 500], [1000, 2000]], np.uint16)
+    file = compress(from_numpy(pixels, "mono16"), "png")
+    head = struct.pack("<iff", 0, 4000.0, -500.0)
+    message = CompressedImage(format=f"{encoding}; compressedDepth png", data=head + file.data)
+
+    depth = decompress(message)
+
+    expected = pixels if encoding == "16UC1" else [[np.nan, 4.0], [4000 / 1500, 1.6]]
+    assert depth.encoding == encoding
+    np.testing.assert_allclose(to_numpy(depth), expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("data", [b"", b"short", bytes(12), bytes(12) + b"RVL"])
+def test_compressed_depth_without_a_picture_is_an_error(data: bytes) -> None:
+    """RVL is none that Pillow reads; the error has the format that the message gives."""
+    with pytest.raises(MessageError, match="compressedDepth rvl"):
+        decompress(CompressedImage(format="16UC1; compressedDepth rvl", data=data))
+
+
+def test_depth_of_eight_bits_is_an_error() -> None:
+    """It would be a guess in which unit it is."""
+    file = compress(from_numpy(np.zeros((2, 2), np.uint8), "mono8"), "png")
+
+    with pytest.raises(MessageError, match="16 bits"):
+        decompress(CompressedImage(format="16UC1; compressedDepth", data=bytes(12) + file.data))
+
+
+def test_a_picture_that_is_too_large_to_be_meant_is_an_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """A small file can have any number of pixels: Pillow's limit holds."""
+    file = compress(from_numpy(np.zeros((9, 9), np.uint8), "mono8"), "png")
+    monkeypatch.setattr(PIL.Image, "MAX_IMAGE_PIXELS", 40)
+
+    with pytest.raises(MessageError, match="decompression bomb"):
+        decompress(file)

@@ -409,6 +409,20 @@ async def test_a_picture_has_the_width_and_quality_that_are_asked_for(
     assert image.decompress(CompressedImage(data=png.content)).width == 100
 
 
+async def test_compressed_depth_is_shown(client: httpx.AsyncClient, robot: Node) -> None:
+    """Scaled by its range, as depth that is not compressed."""
+    pixels = np.linspace(500, 2500, 40 * 30).reshape(30, 40).astype(np.uint16)
+    file = image.compress(image.from_numpy(pixels, "mono16"), "png")
+    depth = CompressedImage(format="16UC1; compressedDepth png", data=bytes(12) + bytes(file.data))
+    robot.create_publisher(CompressedImage, "/depth", LATCHED).publish(depth)
+
+    answer = await client.get("/topics/depth.png")
+
+    shown = image.to_numpy(image.decompress(CompressedImage(data=answer.content)))
+    assert (shown.min(), shown.max()) == (0, 255)
+    assert shown.shape == pixels.shape
+
+
 @pytest.mark.parametrize("query", ["?width=-1", "?width=x", "?quality=101", ".png?quality=5"])
 async def test_a_size_or_quality_that_does_not_fit_is_refused(
     client: httpx.AsyncClient, robot: Node, query: str

@@ -82,12 +82,11 @@ def encoded(message: Image | CompressedImage, form: Form) -> Picture | Exception
     """Return the picture of an image, or why there is none."""
     try:
         if isinstance(message, CompressedImage):
-            picture = passed(message)
-            if form == Form(media_type=form.media_type) and form.media_type in {
-                None,
-                picture.media_type,
-            }:
-                return picture
+            if "compressedDepth" not in message.format:  # a head before its file, and 16 bits
+                picture = passed(message)
+                as_it_is = (Form(), Form(media_type=picture.media_type))
+                if form in as_it_is:
+                    return picture
             message = image.decompress(message)
         if not (message.width and message.height):
             raise MessageError("sensor_msgs/msg/Image", "there are no pixels in it")
