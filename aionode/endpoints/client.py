@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 from aionode.clock import perf_ns
 from aionode.endpoints.core.entity import EndStage
 from aionode.endpoints.core.future import Futures, asks
-from aionode.endpoints.service_introspection import (
-    REQUEST_SENT,
-    RESPONSE_RECEIVED,
-    IntrospectedEntity,
-)
+from aionode.endpoints.service_introspection import IntrospectedEntity
 from aionode.endpoints.stats import ClientStats
+from aionode.engine.rules.service_events import REQUEST_SENT, RESPONSE_RECEIVED
 from aionode.engine.transport.base import SampleInfo
 from aionode.errors import (
     AionodeError,

@@ -16,12 +16,9 @@ from aionode.endpoints.core.callback_runner import (
 )
 from aionode.endpoints.core.endpoint import report_heavy
 from aionode.endpoints.core.message_queue import MessageQueue
-from aionode.endpoints.service_introspection import (
-    REQUEST_RECEIVED,
-    RESPONSE_SENT,
-    IntrospectedEntity,
-)
+from aionode.endpoints.service_introspection import IntrospectedEntity
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.rules.service_events import REQUEST_RECEIVED, RESPONSE_SENT
 from aionode.message import Message, type_name
 from aionode.message.memory_size import memory_size
 

@@ -30,7 +30,8 @@ from aionode.endpoints.core.subscription_reader import (
 )
 from aionode.endpoints.stats import CallbackStats
 from aionode.engine.transport.base import ReaderRegistration
-from aionode.errors import DecodeError, EntityDestroyedError
+from aionode.engine.wire.byte_filter import decoding
+from aionode.errors import EntityDestroyedError
 from aionode.message import Message
 from aionode.message.memory_size import memory_size
 
@@ -327,18 +328,3 @@ class Subscription(Endpoint, Generic[ItemT]):
         for registration in self._registrations:
             registration.close()
         self._reader.close(discard=self._runner is not None)
-
-
-def decoding(msg_type: type[Message], accepts: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    """Return a filter for messages that are delivered as CDR bytes."""
-    from aionode.engine.wire import cdr  # few subscriptions are raw
-
-    decode = cdr.decoder(msg_type)
-
-    def accepts_bytes(data: Any) -> bool:
-        try:
-            return accepts(decode(data))
-        except DecodeError:
-            return True  # a raw subscription gets malformed messages, too
-
-    return accepts_bytes

@@ -19,13 +19,9 @@ and `LifecycleManager` from a program.
 from __future__ import annotations
 
 from aionode.engine.rules.lifecycle_states import State, TransitionCallbackReturn
+from aionode.engine.rules.managed_entity import ManagedEntity, SimpleManagedEntity
 from aionode.errors import EntityInactiveError, TransitionError
-from aionode.lifecycle._entities import (
-    LifecyclePublisher,
-    LifecycleTimer,
-    ManagedEntity,
-    SimpleManagedEntity,
-)
+from aionode.lifecycle._entities import LifecyclePublisher, LifecycleTimer
 from aionode.lifecycle._manager import LifecycleManager
 from aionode.lifecycle._node import LifecycleNode
 from aionode.lifecycle._node_watch import ManagedNodeEvent

@@ -12,6 +12,7 @@ from aionode.engine.rules.lifecycle_states import (
     TRANSITIONS,
     TransitionCallbackReturn,
 )
+from aionode.engine.rules.managed_entity import ManagedEntity
 from aionode.errors import brief
 from aionode.interfaces.lifecycle_msgs import msg
 from aionode.interfaces.lifecycle_msgs.srv import (
@@ -20,7 +21,7 @@ from aionode.interfaces.lifecycle_msgs.srv import (
     GetAvailableTransitions,
     GetState,
 )
-from aionode.lifecycle._entities import Gate, LifecyclePublisher, LifecycleTimer, ManagedEntity
+from aionode.lifecycle._entities import Gate, LifecyclePublisher, LifecycleTimer
 from aionode.lifecycle._events import EventSource
 from aionode.lifecycle._runner import SUCCESS, TransitionRunner
 from aionode.message import Message

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.engine.rules.lifecycle_states import State, Transition
-    from aionode.lifecycle._entities import ManagedEntity
+    from aionode.engine.rules.managed_entity import ManagedEntity
     from aionode.lifecycle._events import EventSource
     from aionode.logging import RcutilsLogger
 

@@ -17,7 +17,7 @@ import pytest
 import rclpy
 from aionode._process.recent import Recent
 from aionode.clock import perf_ns
-from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 from aionode.engine.transport.base import SampleInfo
 from aionode.interfaces.example_interfaces.srv import AddTwoInts as OwnAddTwoInts
 from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor

@@ -6,7 +6,7 @@ import asyncio
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.bag._selection import kind_of
-from aionode.endpoints.service_introspection import REQUEST_RECEIVED, REQUEST_SENT
+from aionode.engine.rules.service_events import REQUEST_RECEIVED, REQUEST_SENT
 from aionode.errors import AionodeError, InterfaceNotFoundError
 from aionode.interfaces import get_interface
 

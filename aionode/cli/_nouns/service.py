@@ -156,7 +156,7 @@ async def echo(
         CommandError: the type cannot be determined.
     """
     # Imported when it runs; the other commands of services do not need them.
-    from aionode.endpoints.service_introspection import TOPIC_SUFFIX
+    from aionode.engine.rules.service_events import TOPIC_SUFFIX
     from aionode.qos import qos_profile_services_default
 
     name = SERVICE.resolve(node, service_name)

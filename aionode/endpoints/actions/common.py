@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from aionode.endpoints.client import Client
 from aionode.endpoints.core.entity import EndStage, Entity
 from aionode.endpoints.service import Service
+from aionode.engine.reports.limits import REJECTED_SEC
 from aionode.engine.rules.goal import is_sign
 from aionode.errors import brief, shortened
 from aionode.interfaces import fitting
@@ -30,16 +31,12 @@ __all__ = [
     "pass_reason",
     "seconds_to_ns",
     "stamp_ns",
-    "tell_full",
     "tell_rejected",
     "uuid_message",
 ]
 
 
 SHORTEST_LOSS_NS = 30_000_000
-
-REJECTED_SEC = 1.0
-"""The shortest time between two reports of rejected goals, in seconds."""
 
 
 class ActionEntity(Entity):
@@ -106,14 +103,6 @@ def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: AR
 def tell_rejected(logger: RcutilsLogger, subject: str) -> None:
     """Log that a server rejected a goal; once a second at most, whatever clients send."""
     logger.info(f"{subject}: goal_callback rejected a goal", throttle_duration_sec=REJECTED_SEC)
-
-
-def tell_full(logger: RcutilsLogger, subject: str, why: str) -> None:
-    """Log that a server rejected a goal, as it has as many as it takes; once a second at most."""
-    logger.warning(
-        f"{subject}: rejected a goal, as {why}",
-        throttle_duration_sec=REJECTED_SEC,
-    )
 
 
 # Arguments

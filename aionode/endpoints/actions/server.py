@@ -20,7 +20,6 @@ from aionode.endpoints.actions.common import (
     pass_reason,
     seconds_to_ns,
     stamp_ns,
-    tell_full,
     tell_rejected,
 )
 from aionode.endpoints.actions.server_goal import ServerGoalHandle
@@ -29,6 +28,7 @@ from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.core.node_core import core_of, in_thread_of_node
 from aionode.endpoints.core.node_tasks import create_own_task
 from aionode.endpoints.stats import CallbackStats
+from aionode.engine.reports.limits import tell_full
 from aionode.engine.rules.early_cancels import EarlyCancels
 from aionode.engine.rules.goal import (
     CancelCode,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from aionode.endpoints.core.entity import EndStage, Entity
+from aionode.engine.reports.limits import heavy_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from aionode.engine.loop_affinity import LoopAffinity
     from aionode.graph import EndpointInfo, Graph
 
-__all__ = ["Endpoint", "EndpointSetup", "heavy_text", "report_heavy"]
+__all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
 
 
 class EndpointSetup(NamedTuple):
@@ -39,20 +40,6 @@ def report_heavy(setup: EndpointSetup, what: str) -> None:
     """Log that messages or requests were dropped or refused since they have too many bytes."""
     what = f"{what}, and only counted from now on, in stats.dropped"
     setup.callbacks.logger.warning(heavy_text(setup.endpoint.name, setup.queue_bytes, what))
-
-
-def heavy_text(name: str, limit_bytes: int, what: str) -> str:
-    """Return what the log says of an endpoint for which messages or requests wait.
-
-    Args:
-        name: Its topic or service.
-        limit_bytes: How many bytes may wait.
-        what: What happens to more.
-    """
-    return (
-        f"{name}: more than {limit_bytes / 2**20:.3g} MiB wait here for their callback; what is "
-        f"more is {what}. AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
-    )
 
 
 class Endpoint(Entity):

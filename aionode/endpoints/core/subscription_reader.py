@@ -10,6 +10,7 @@ from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.stats import NOTED_CALLS, CallbackStats
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS, missing_before
 from aionode.engine.transport.base import SampleInfo
 from aionode.qos import HistoryPolicy, depth_of
 
@@ -23,13 +24,11 @@ if TYPE_CHECKING:
     from aionode.graph import EndpointInfo
 
 __all__ = [
-    "REMEMBERED_PUBLISHERS",
     "DirectReader",
     "MessageInfo",
     "Parts",
     "SubscriptionReader",
     "Take",
-    "missing_before",
 ]
 
 Parts = bytes | list[bytes | memoryview]
@@ -38,9 +37,6 @@ Parts = bytes | list[bytes | memoryview]
 Take = Callable[[Parts, int, int, int], None]
 """Takes a message, its number by its publisher, and when it was published and received, in
 nanoseconds since 1970."""
-
-REMEMBERED_PUBLISHERS = 1024
-"""For how many publishers a subscription keeps the last sequence number."""
 
 
 class MessageInfo(TypedDict):
@@ -362,25 +358,6 @@ class DirectReader(SubscriptionReader):
             return
         self.stats.received += 1
         self._take(msg, sequence, source_ns, arrived_ns or self._now_ns())
-
-
-def missing_before(last_sequences: Recent[bytes, int], gid: bytes, sequence: int) -> int:
-    """Take the number of a message; return how many before it are missing from its publisher.
-
-    Args:
-        last_sequences: The last number of each publisher, by gid; messages may carry any number of
-            invented gids.
-        gid: The publisher.
-        sequence: The number. One that is not newer than the last counts for nothing.
-    """
-    last = last_sequences.get(gid)
-    if last is None:
-        last_sequences.put(gid, sequence)
-        return 0
-    if sequence <= last:
-        return 0
-    last_sequences[gid] = sequence
-    return sequence - last - 1
 
 
 def admit(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`

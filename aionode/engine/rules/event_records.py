@@ -7,13 +7,18 @@ endpoint was created.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from aionode.qos import QoSPolicyKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 __all__ = [
     "IncompatibleTypeInfo",
     "MatchedInfo",
     "PublisherEvent",
+    "PublisherEventCallbacks",
     "QoSLivelinessChangedInfo",
     "QoSLivelinessLostInfo",
     "QoSMessageLostInfo",
@@ -24,6 +29,7 @@ __all__ = [
     "QoSRequestedIncompatibleQoSInfo",
     "QoSSubscriptionMatchedInfo",
     "SubscriptionEvent",
+    "SubscriptionEventCallbacks",
 ]
 
 
@@ -165,3 +171,75 @@ SubscriptionEvent = (
     | MatchedInfo
 )
 """The events that `Subscription.events` yields."""
+
+
+# Callbacks, which a face calls
+
+
+class PublisherEventCallbacks:
+    """Functions that a publisher calls with its events, sync or async, each of one argument.
+
+    An exception in one ends the node, as in the callback of a subscription.
+
+    Args:
+        deadline: Called when nothing was published for as long as the deadline.
+        liveliness: Called when the publisher gave no sign of life within its lease.
+        incompatible_qos: Called when a subscription requests more than the publisher offers.
+        incompatible_type: Called when a subscription of the topic has another type.
+        matched: Called when a subscription is matched, or has gone.
+        use_default_callbacks: Whether the log gets a warning for each incompatible subscription
+            that no callback is given for.
+    """
+
+    def __init__(
+        self,
+        *,
+        deadline: Callable[[QoSOfferedDeadlineMissedInfo], object] | None = None,
+        liveliness: Callable[[QoSLivelinessLostInfo], object] | None = None,
+        incompatible_qos: Callable[[QoSOfferedIncompatibleQoSInfo], object] | None = None,
+        incompatible_type: Callable[[IncompatibleTypeInfo], object] | None = None,
+        matched: Callable[[QoSPublisherMatchedInfo], object] | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        self.deadline = deadline
+        self.liveliness = liveliness
+        self.incompatible_qos = incompatible_qos
+        self.incompatible_type = incompatible_type
+        self.matched = matched
+        self.use_default_callbacks = use_default_callbacks
+
+
+class SubscriptionEventCallbacks:
+    """Functions that a subscription calls with its events, sync or async, each of one argument.
+
+    An exception in one ends the node, as in the callback of the subscription itself.
+
+    Args:
+        deadline: Called when nothing was received for as long as the deadline.
+        incompatible_qos: Called when a publisher offers less than the subscription requests.
+        liveliness: Called when a publisher comes to life, loses its liveliness, or goes.
+        message_lost: Called when messages are missing in the numbers of a publisher.
+        incompatible_type: Called when a publisher of the topic has another type.
+        matched: Called when a publisher is matched, or has gone.
+        use_default_callbacks: Whether the log gets a warning for each incompatible publisher that
+            no callback is given for.
+    """
+
+    def __init__(
+        self,
+        *,
+        deadline: Callable[[QoSRequestedDeadlineMissedInfo], object] | None = None,
+        incompatible_qos: Callable[[QoSRequestedIncompatibleQoSInfo], object] | None = None,
+        liveliness: Callable[[QoSLivelinessChangedInfo], object] | None = None,
+        message_lost: Callable[[QoSMessageLostInfo], object] | None = None,
+        incompatible_type: Callable[[IncompatibleTypeInfo], object] | None = None,
+        matched: Callable[[QoSSubscriptionMatchedInfo], object] | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        self.deadline = deadline
+        self.incompatible_qos = incompatible_qos
+        self.liveliness = liveliness
+        self.message_lost = message_lost
+        self.incompatible_type = incompatible_type
+        self.matched = matched
+        self.use_default_callbacks = use_default_callbacks

@@ -5,8 +5,8 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints import events
-from aionode.endpoints.events import (
+from aionode.engine.rules import event_records as events
+from aionode.engine.rules.event_records import (
     IncompatibleTypeInfo,
     QoSLivelinessChangedInfo,
     QoSLivelinessLostInfo,

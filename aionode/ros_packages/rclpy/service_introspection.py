@@ -1,6 +1,6 @@
 """Publishes the calls of services on ``<service>/_service_event``."""
 
-from aionode.endpoints.service_introspection import ServiceIntrospectionState
+from aionode.engine.rules.service_events import ServiceIntrospectionState
 from rclpy._reexports import add_names
 
 __all__ = ["ServiceIntrospectionState"]

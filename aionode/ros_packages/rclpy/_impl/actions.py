@@ -20,7 +20,7 @@ from rosidl_generator_py import aionode_class
 
 if TYPE_CHECKING:
     from aionode.clock import Clock
-    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.engine.rules.service_events import ServiceIntrospectionState
     from aionode.qos import QoSProfile
     from rclpy._impl.node import NodeHandle
     from rclpy._impl.timers import ClockHandle

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from aionode._process.recent import Recent
 from aionode.clock import SilenceAlarm
-from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS, missing_before
-from aionode.endpoints.events import (
+from aionode.engine.rules.event_records import (
     IncompatibleTypeInfo,
     MatchedInfo,
     QoSLivelinessChangedInfo,
@@ -26,6 +25,7 @@ from aionode.endpoints.events import (
 )
 from aionode.engine.rules.liveliness import PublisherLiveliness
 from aionode.engine.rules.matching import Matching
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS, missing_before
 from aionode.qos import LivelinessPolicy, QoSPolicyKind, is_unlimited
 from rclpy._impl.destroyable import Destroyable
 from rclpy._impl.topics import PublisherHandle, SubscriptionHandle

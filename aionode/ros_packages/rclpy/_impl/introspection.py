@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from aionode.endpoints import service_introspection as core
+from aionode.engine.rules import service_events as core
 from aionode.engine.transport.base import SampleInfo
 from rclpy._impl.topics import PublisherHandle
 

@@ -9,14 +9,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from aionode.clock import MachineTime
-from aionode.endpoints.core.endpoint import heavy_text
-from aionode.endpoints.service_introspection import (
+from aionode.engine.bare_node import BareClient, BareEndpoint
+from aionode.engine.reports.limits import heavy_text
+from aionode.engine.rules.service_events import (
     REQUEST_RECEIVED,
     REQUEST_SENT,
     RESPONSE_RECEIVED,
     RESPONSE_SENT,
 )
-from aionode.engine.bare_node import BareClient, BareEndpoint
 from aionode.engine.transport.drops import Drop
 from aionode.errors import DecodeError
 from rclpy._impl.endpoint import BareT, EndpointHandle
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from aionode.clock import Clock
-    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.engine.rules.service_events import ServiceIntrospectionState
     from aionode.engine.transport.base import Request
     from aionode.errors import ServiceError
     from aionode.qos import QoSProfile

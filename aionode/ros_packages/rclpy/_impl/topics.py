@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from aionode._process.recent import Recent
 from aionode.clock import MachineTime
-from aionode.endpoints.core.endpoint import heavy_text
-from aionode.endpoints.core.subscription_reader import REMEMBERED_PUBLISHERS
 from aionode.engine.bare_node import BareEndpoint, BarePublisher
+from aionode.engine.reports.limits import heavy_text
 from aionode.engine.rules.lifespan import expires_ns
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 from aionode.engine.transport.base import SampleInfo
 from aionode.engine.transport.drops import Drop
 from aionode.errors import DecodeError, MessageError, QueueFullError
@@ -393,7 +393,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
             return
         # Few subscriptions have a filter.
         from aionode.content_filter import compile_filter
-        from aionode.endpoints.subscription import decoding
+        from aionode.engine.wire.byte_filter import decoding
 
         own_class = aionode_class(self.msg_type)
         self.inbox.accept = decoding(own_class, compile_filter(own_class, expression, parameters))

@@ -9,7 +9,7 @@ from rclpy.waitable import Waitable
 
 if TYPE_CHECKING:
     from aionode.clock import Clock
-    from aionode.endpoints.service_introspection import ServiceIntrospectionState
+    from aionode.engine.rules.service_events import ServiceIntrospectionState
     from aionode.qos import QoSProfile
     from rclpy._impl.wait_set import WaitSet
     from rclpy.node import Node

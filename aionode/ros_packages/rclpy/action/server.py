@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.endpoints.actions.common import tell_full
+from aionode.engine.reports.limits import tell_full
 from aionode.engine.rules.goal import (
     CancelResponse,
     GoalEvent,

@@ -5,8 +5,9 @@ from __future__ import annotations
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
-from aionode import lifecycle as core
-from aionode.lifecycle import ManagedEntity, TransitionCallbackReturn
+from aionode.engine.rules import managed_entity as core
+from aionode.engine.rules.lifecycle_states import TransitionCallbackReturn
+from aionode.engine.rules.managed_entity import ManagedEntity
 from rclpy._reexports import add_names
 
 if TYPE_CHECKING:

@@ -1,0 +1,35 @@
+"""What the log says where more comes than an endpoint takes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from aionode.logging import RcutilsLogger
+
+__all__ = ["REJECTED_SEC", "heavy_text", "tell_full"]
+
+REJECTED_SEC = 1.0
+"""The shortest time between two reports of rejected goals, in seconds."""
+
+
+def heavy_text(name: str, limit_bytes: int, what: str) -> str:
+    """Return what the log says of an endpoint for which messages or requests wait.
+
+    Args:
+        name: Its topic or service.
+        limit_bytes: How many bytes may wait.
+        what: What happens to more.
+    """
+    return (
+        f"{name}: more than {limit_bytes / 2**20:.3g} MiB wait here for their callback; what is "
+        f"more is {what}. AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
+    )
+
+
+def tell_full(logger: RcutilsLogger, subject: str, why: str) -> None:
+    """Log that a server rejected a goal, as it has as many as it takes; once a second at most."""
+    logger.warning(
+        f"{subject}: rejected a goal, as {why}",
+        throttle_duration_sec=REJECTED_SEC,
+    )

@@ -1,0 +1,32 @@
+"""How many messages of a publisher are missing, by their sequence numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from aionode._process.recent import Recent
+
+__all__ = ["REMEMBERED_PUBLISHERS", "missing_before"]
+
+REMEMBERED_PUBLISHERS = 1024
+"""For how many publishers a subscription keeps the last sequence number."""
+
+
+def missing_before(last_sequences: Recent[bytes, int], gid: bytes, sequence: int) -> int:
+    """Take the number of a message; return how many before it are missing from its publisher.
+
+    Args:
+        last_sequences: The last number of each publisher, by gid; messages may carry any number of
+            invented gids.
+        gid: The publisher.
+        sequence: The number. One that is not newer than the last counts for nothing.
+    """
+    last = last_sequences.get(gid)
+    if last is None:
+        last_sequences.put(gid, sequence)
+        return 0
+    if sequence <= last:
+        return 0
+    last_sequences[gid] = sequence
+    return sequence - last - 1
