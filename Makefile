@@ -54,10 +54,10 @@ bench: .venv/installed-dev
 coverage: .venv/installed-dev
 	-$(BIN)/python -m pytest -q -n $(WORKERS) \
 		-m "not checks and not processes and not faults and not stress and not second_loop" \
-		--cov --cov-report= --cov-fail-under=0
+		--cov --cov-branch --cov-report= --cov-fail-under=0
 	-$(BIN)/python -m pytest -q -n $(WORKERS) tests/rclpy \
 		-m "processes and not faults and not stress and not second_loop" \
-		--cov --cov-append --cov-report= --cov-fail-under=0
+		--cov --cov-branch --cov-append --cov-report= --cov-fail-under=0
 	$(BIN)/coverage report --skip-covered --sort=cover
 
 $(LAB): %: .venv/installed-dev
