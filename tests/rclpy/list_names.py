@@ -1,7 +1,7 @@
 """Prints the public names of rclpy's modules and classes, as JSON, whichever rclpy there is.
 
-``names.json`` is what it prints with rclpy 9.1.2. Left out are the names of `typing`, which say
-nothing about rclpy, and what a class has from outside of rclpy.
+``names.json`` is what it prints with rclpy 9.1.2. Left out are the names of `typing` and of the
+rest of Python, which say nothing about rclpy, and what a class has from outside of rclpy.
 """
 
 from __future__ import annotations
@@ -10,9 +10,11 @@ import importlib
 import inspect
 import json
 import pkgutil
+import sys
 import typing
 import warnings
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import rclpy
 
@@ -32,11 +34,23 @@ def modules() -> Iterator[str]:
             yield found.name
 
 
+def is_of_python(found: Any) -> bool:
+    """Return whether a module, class or function is not of ROS."""
+    if not (inspect.ismodule(found) or inspect.isclass(found) or inspect.isroutine(found)):
+        return False
+    home = found.__name__ if inspect.ismodule(found) else found.__module__ or "builtins"
+    return home.partition(".")[0] in {*sys.stdlib_module_names, "yaml"}
+
+
 warnings.simplefilter("ignore")
 names, classes = {}, {}
 for name in modules():
     module = importlib.import_module(name)
-    names[name] = [each for each in public(vars(module)) if each not in OF_TYPING]
+    names[name] = [
+        each
+        for each in public(vars(module))
+        if each not in OF_TYPING and not is_of_python(vars(module)[each])
+    ]
     for each in names[name]:
         found = vars(module)[each]
         if inspect.isclass(found) and found.__module__ == name:

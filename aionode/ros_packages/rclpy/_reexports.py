@@ -1,6 +1,7 @@
-"""Names that modules of rclpy and tf2 have from elsewhere, as programs take them.
+"""Names that modules of rclpy and tf2 have from elsewhere in ROS, as programs take them.
 
-They are found when asked for, and so are names of `typing`, which nearly every module has.
+They are found when asked for, and so are names of `typing`, which nearly every module has. Of what
+those modules have from Python itself there is no more than a program was seen to take from there.
 """
 
 from __future__ import annotations
@@ -10,109 +11,87 @@ import typing
 from importlib import import_module
 from typing import Any, Final
 
-__all__ = ["add_names", "names_from_elsewhere"]
+__all__ = ["add_names"]
 
 NAMES: Final = """
-    rclpy: TracebackType callback_groups duration exceptions impl qos_profile_rosout_default
-    rclpy.action.client: Action CancelGoal ClientGoalHandleDict Clock FeedbackMessage
-        GetResultServiceResponse GoalStatusArray SendGoalKWargs SendGoalServiceResponse
-        ServiceIntrospectionState Time TracebackType UUID Waitable time
+    rclpy: callback_groups duration exceptions impl qos_profile_rosout_default
+    rclpy.action.client: Action CancelGoal Clock FeedbackMessage GetResultServiceResponse
+        GoalStatusArray ServiceIntrospectionState Time UUID Waitable
     rclpy.action.graph: Node
-    rclpy.action.server: functools Action CancelGoal Clock Enum FeedbackMessage
-        GetResultServiceRequest GetResultServiceResponse GoalInfo SendGoalServiceRequest
-        ServerGoalHandleDict ServiceIntrospectionState Task TracebackType UUID Waitable traceback
-    rclpy.callback_groups: Lock
-    rclpy.client: CallbackGroup Clock Context QoSProfile ServiceIntrospectionState Srv
-        SrvRequestT SrvResponseT SrvType SrvTypeRequest SrvTypeResponse TracebackType time
-    rclpy.clock: Context JumpHandlePreCallbackType TimeJumpDictionary TracebackType
-    rclpy.context: MethodType TracebackType
-    rclpy.duration: S_TO_NS builtin_interfaces math
-    rclpy.event_handler: CallbackGroup EventHandlerData TracebackType get_logger
-        qos_policy_name_from_kind rclpy
-    rclpy.executors: Client Clock ClockType Condition Context ExitStack GuardCondition
-        InvalidHandle Lock MessageInfo Msg NumberOfEntities RLock Service
-        SignalHandlerGuardCondition Subscription Timer TimerCancelledError TimerInfo
-        TracebackType Waitable YieldedCallback partial time timeout_sec_to_nsec
-    rclpy.experimental.events_executor: faulthandler rclpy typing
+    rclpy.action.server: Action CancelGoal Clock FeedbackMessage GetResultServiceResponse GoalInfo
+        ServiceIntrospectionState Task UUID Waitable
+    rclpy.client: CallbackGroup Clock Context QoSProfile ServiceIntrospectionState Srv SrvRequestT
+        SrvResponseT SrvType SrvTypeRequest SrvTypeResponse
+    rclpy.clock: Context
+    rclpy.duration: S_TO_NS builtin_interfaces
+    rclpy.event_handler: CallbackGroup get_logger qos_policy_name_from_kind rclpy
+    rclpy.executors: Client Clock ClockType Context GuardCondition InvalidHandle MessageInfo Msg
+        NumberOfEntities Service SignalHandlerGuardCondition Subscription Timer TimerCancelledError
+        TimerInfo Waitable time timeout_sec_to_nsec
+    rclpy.experimental.events_executor: rclpy
     rclpy.guard_condition: CallbackGroup Context
     rclpy.impl: implementation_singleton logging_severity rcutils_logger
-    rclpy.impl.logging_severity: IntEnum
-    rclpy.impl.rcutils_logger: Clock FrameType LoggingSeverity inspect os
-    rclpy.lifecycle.node: CallbackGroup CallbackNames CreateLifecyclePublisherArgs
-        LifecycleNodeArgs MsgT QoSProfile RcutilsLogger Service check_is_valid_srv_type
-        lifecycle_msgs
+    rclpy.impl.rcutils_logger: Clock LoggingSeverity
+    rclpy.lifecycle.node: CallbackGroup MsgT QoSProfile RcutilsLogger Service
+        check_is_valid_srv_type lifecycle_msgs
     rclpy.lifecycle.publisher: CallbackGroup PublisherEventCallbacks QoSProfile
-    rclpy.logging: Path
     rclpy.logging_service: GetLoggerLevels LoggerLevel LoggingSeverity SetLoggerLevels
         SetLoggerLevelsResult TOPIC_SEPARATOR_STRING qos_profile_services_default rclpy
-    rclpy.node: warnings AllowableParameterValue AllowableParameterValueT ContentFilterOptions
-        Context FloatingPointRange IntegerRange InvalidParameterTypeException
-        InvalidParameterValueException InvalidTopicNameException ListParameters ListParametersResult
-        MessageInfo MsgT MsgType PARAMETER_SEPARATOR_STRING ParameterAlreadyDeclaredException
-        ParameterDescriptor ParameterEvent ParameterImmutableException ParameterMsg
-        ParameterNotDeclaredException ParameterType ParameterUninitializedException ParameterValue
-        RcutilsLogger SetParametersResult Srv SrvRequestT SrvResponseT SrvType SrvTypeRequest
-        SrvTypeResponse TimerInfo TopicEndpointInfo TracebackType Waitable expand_topic_name math
-        time validate_full_topic_name validate_namespace validate_node_name validate_parameter_name
-        validate_topic_name
-    rclpy.parameter: ParameterMsg ParameterType ParameterValue sys yaml
+    rclpy.node: AllowableParameterValue AllowableParameterValueT ContentFilterOptions Context
+        FloatingPointRange IntegerRange InvalidParameterTypeException InvalidParameterValueException
+        InvalidTopicNameException ListParameters ListParametersResult MessageInfo MsgT MsgType
+        PARAMETER_SEPARATOR_STRING ParameterAlreadyDeclaredException ParameterDescriptor
+        ParameterEvent ParameterImmutableException ParameterMsg ParameterNotDeclaredException
+        ParameterType ParameterUninitializedException ParameterValue RcutilsLogger
+        SetParametersResult Srv SrvRequestT SrvResponseT SrvType SrvTypeRequest SrvTypeResponse
+        TimerInfo TopicEndpointInfo Waitable expand_topic_name validate_full_topic_name
+        validate_namespace validate_node_name validate_parameter_name validate_topic_name
+    rclpy.parameter: ParameterMsg ParameterType ParameterValue
     rclpy.parameter_client: CallbackGroup Client DescribeParameters Future GetParameterTypes
         GetParameters ListParameters MessageInfo Node ParameterEvent ParameterMsg
         QoSOverridingOptions SetParameters SetParametersAtomically Subscription
-        SubscriptionEventCallbacks time
-    rclpy.parameter_event_handler: CallbackGroup Lock Node ParameterEvent ParameterMsg
+        SubscriptionEventCallbacks
+    rclpy.parameter_event_handler: CallbackGroup Node ParameterEvent ParameterMsg
         QoSOverridingOptions SubscriptionEventCallbacks
     rclpy.parameter_service: DescribeParameters GetParameterTypes GetParameters ListParameters
-        ListParametersResult ParameterUninitializedException SetParameters
-        SetParametersAtomically SetParametersResult TOPIC_SEPARATOR_STRING
+        ListParametersResult ParameterUninitializedException SetParameters SetParametersAtomically
+        SetParametersResult TOPIC_SEPARATOR_STRING
     rclpy.publisher: CallbackGroup EventHandler MsgType PublisherEventCallbacks QoSProfile
-        TracebackType
-    rclpy.qos: Duration IntEnum
-    rclpy.qos_overriding_options: Parameter ParameterAlreadyDeclaredException
-        ParameterDescriptor QoSDurabilityPolicy QoSHistoryPolicy QoSLivelinessPolicy QoSProfile
-        QoSProfileAttributes QoSReliabilityPolicy QosCallbackType SetParametersResult rclpy
+    rclpy.qos: Duration
+    rclpy.qos_overriding_options: Parameter ParameterAlreadyDeclaredException ParameterDescriptor
+        QoSDurabilityPolicy QoSHistoryPolicy QoSLivelinessPolicy QoSProfile QoSReliabilityPolicy
+        SetParametersResult rclpy
     rclpy.serialization: Msg MsgT
     rclpy.service: CallbackGroup Clock QoSProfile ServiceIntrospectionState Srv SrvRequestT
-        SrvResponseT SrvType SrvTypeRequest SrvTypeResponse TracebackType
+        SrvResponseT SrvType SrvTypeRequest SrvTypeResponse
     rclpy.signals: InvalidHandle
     rclpy.subscription: CallbackGroup MsgType QoSProfile SubscriptionEventCallbacks
-        TracebackType
     rclpy.time: builtin_interfaces
     rclpy.time_source: SetParametersResult rosgraph_msgs
-    rclpy.timer: CallbackGroup Clock Context TracebackType
-    rclpy.topic_endpoint_info: TypeHashDictionary
+    rclpy.timer: CallbackGroup Clock Context
     rclpy.type_description_service: GetTypeDescription ParameterDescriptor ParameterType Service
         TOPIC_SEPARATOR_STRING check_is_valid_srv_type qos_profile_services_default
-    rclpy.type_hash: TypeHashDictionary
-    rclpy.type_support: CommonMsgSrvMetaClass EventMessage FeedbackMessage GetResultService
-        GetResultServiceRequest GetResultServiceResponse MsgMetaClass ProtocolType PyCapsule
-        SendGoalService SendGoalServiceRequest SendGoalServiceResponse ServiceEventInfo Time
-        UUID
-    rclpy.utilities: ament_index_python os
+    rclpy.type_support: FeedbackMessage GetResultServiceResponse ServiceEventInfo Time UUID
+    rclpy.utilities: ament_index_python
     rclpy.validate_full_topic_name: InvalidServiceNameException InvalidTopicNameException
     rclpy.validate_namespace: InvalidNamespaceException
     rclpy.validate_node_name: InvalidNodeNameException
     rclpy.validate_parameter_name: InvalidParameterException
     rclpy.validate_topic_name: InvalidServiceNameException InvalidTopicNameException
     rclpy.wait_for_message: MsgT Node QoSProfile
-    rclpy.waitable: TracebackType
-    rclpy.qos_event: CallbackGroup EventHandlerData NumberOfEntities TracebackType Waitable
-        get_logger qos_policy_name_from_kind rclpy
-    message_filters: Duration LoggingSeverity itertools rclpy reduce
-    rclpy.clock_type: rclpy.constants: rclpy.exceptions: rclpy.lifecycle.managed_entity:
-    rclpy.service_introspection: rclpy.task:
+    rclpy.qos_event: CallbackGroup NumberOfEntities Waitable get_logger qos_policy_name_from_kind
+        rclpy
+    message_filters: Duration LoggingSeverity rclpy
     tf2_ros: ActionClient Clock Duration DurabilityPolicy FrameGraph Future Header HistoryPolicy
         JumpThreshold LookupTransform Node PointCloud2 PointStamped PoseStamped
         PoseWithCovarianceStamped QoSProfile ReentrantCallbackGroup SingleThreadedExecutor TFMessage
-        Thread Time=rclpy.time.Time TimeJump TransformStamped Vector3Stamped builtin_interfaces
-        deepcopy rclpy sleep threading warnings
+        Time=rclpy.time.Time TimeJump TransformStamped Vector3Stamped builtin_interfaces rclpy
     tf2_ros.buffer: FrameGraphSrvRequest=tf2_msgs.srv.FrameGraph.Request
         FrameGraphSrvResponse=tf2_msgs.srv.FrameGraph.Response tf2=tf2_py FrameGraph Future
-        JumpThreshold Node Time=rclpy.time.Time TimeJump TransformStamped rclpy sleep tf2_ros
+        JumpThreshold Node Time=rclpy.time.Time TimeJump TransformStamped rclpy tf2_ros
     tf2_ros.buffer_client: LookupTransformGoal=tf2_msgs.action.LookupTransform.Goal
         LookupTransformResult=tf2_msgs.action.LookupTransform.Result tf2=tf2_py Clock Node
-        Time=rclpy.time.Time TransformStamped LookupTransform builtin_interfaces sleep tf2_ros
-        warnings
+        Time=rclpy.time.Time TransformStamped LookupTransform builtin_interfaces tf2_ros
     tf2_ros.buffer_interface: tf2=tf2_py Header PointCloud2 PointStamped PoseStamped
         PoseWithCovarianceStamped Time=rclpy.time.Time TransformStamped Vector3Stamped rclpy tf2_ros
     tf2_ros.static_transform_broadcaster: DurabilityPolicy HistoryPolicy Node QoSProfile TFMessage
@@ -120,13 +99,12 @@ NAMES: Final = """
     tf2_ros.transform_broadcaster: Node QoSProfile TFMessage TransformStamped
     tf2_ros.transform_listener: Buffer Node TFMessage tf2_ros
     tf2_geometry_msgs: Point Point32 PointStamped PolygonStamped Pose PoseStamped
-        PoseWithCovarianceStamped TransformStamped Vector3Stamped np=numpy tf2_ros
+        PoseWithCovarianceStamped TransformStamped Vector3Stamped tf2_ros
     tf2_geometry_msgs.tf2_geometry_msgs: Point Point32 PointStamped PolygonStamped Pose PoseStamped
-        PoseWithCovarianceStamped TransformStamped Vector3Stamped np=numpy tf2_ros
-    tf2_sensor_msgs: Header PointCloud2 Transform TransformStamped create_cloud np=numpy read_points
-        tf2_ros
+        PoseWithCovarianceStamped TransformStamped Vector3Stamped tf2_ros
+    tf2_sensor_msgs: Header PointCloud2 Transform TransformStamped create_cloud read_points tf2_ros
     tf2_sensor_msgs.tf2_sensor_msgs: Header PointCloud2 Transform TransformStamped create_cloud
-        np=numpy read_points tf2_ros
+        read_points tf2_ros
 """
 """The names by the modules of rclpy 9.1.2 and tf2 0.45 that have them, but for those that are here
 already; with ``=`` and what it is, where another module has another thing of that name."""
@@ -134,21 +112,11 @@ already; with ``=`` and what it is, where another module has another thing of th
 ORIGINS: Final = """
     action_msgs.msg: GoalInfo GoalStatusArray
     action_msgs.srv: CancelGoal
-    rclpy._type_names: CallbackNames ClientGoalHandleDict CommonMsgSrvMetaClass
-        CreateLifecyclePublisherArgs EventHandlerData EventMessage FeedbackMessage
-        GetResultService GetResultServiceRequest GetResultServiceResponse
-        JumpHandlePreCallbackType LifecycleNodeArgs MsgMetaClass MsgType ProtocolType PyCapsule
-        QoSProfileAttributes QosCallbackType SendGoalKWargs SendGoalService
-        SendGoalServiceRequest SendGoalServiceResponse ServerGoalHandleDict SrvType
-        SrvTypeRequest SrvTypeResponse TimeJumpDictionary TypeHashDictionary YieldedCallback
+    rclpy._type_names: FeedbackMessage GetResultServiceResponse MsgType SrvType SrvTypeRequest
+        SrvTypeResponse
     builtin_interfaces.msg: Time
-    contextlib: ExitStack
-    copy: deepcopy
-    enum: Enum IntEnum
-    functools: partial reduce
     geometry_msgs.msg: Point Point32 PointStamped PolygonStamped Pose PoseStamped
         PoseWithCovarianceStamped Transform TransformStamped Vector3Stamped
-    pathlib: Path
     rcl_interfaces.msg: FloatingPointRange IntegerRange ListParametersResult LoggerLevel
         ParameterDescriptor ParameterEvent ParameterMsg=Parameter ParameterType ParameterValue
         SetLoggerLevelsResult SetParametersResult
@@ -163,11 +131,10 @@ ORIGINS: Final = """
     rclpy.context: Context
     rclpy.duration: Duration
     rclpy.event_handler: EventHandler PublisherEventCallbacks SubscriptionEventCallbacks
-    rclpy.exceptions: InvalidNamespaceException InvalidNodeNameException
-        InvalidParameterException InvalidParameterTypeException InvalidParameterValueException
-        InvalidServiceNameException InvalidTopicNameException ParameterAlreadyDeclaredException
-        ParameterImmutableException ParameterNotDeclaredException
-        ParameterUninitializedException
+    rclpy.exceptions: InvalidNamespaceException InvalidNodeNameException InvalidParameterException
+        InvalidParameterTypeException InvalidParameterValueException InvalidServiceNameException
+        InvalidTopicNameException ParameterAlreadyDeclaredException ParameterImmutableException
+        ParameterNotDeclaredException ParameterUninitializedException
     rclpy.executors: SingleThreadedExecutor
     rclpy.expand_topic_name: expand_topic_name
     rclpy.guard_condition: GuardCondition
@@ -179,9 +146,8 @@ ORIGINS: Final = """
     rclpy.parameter: AllowableParameterValue AllowableParameterValueT PARAMETER_SEPARATOR_STRING
         Parameter
     rclpy.qos: DurabilityPolicy HistoryPolicy QoSDurabilityPolicy QoSHistoryPolicy
-        QoSLivelinessPolicy QoSProfile
-        QoSReliabilityPolicy qos_policy_name_from_kind qos_profile_rosout_default
-        qos_profile_services_default
+        QoSLivelinessPolicy QoSProfile QoSReliabilityPolicy qos_policy_name_from_kind
+        qos_profile_rosout_default qos_profile_services_default
     rclpy.qos_overriding_options: QoSOverridingOptions
     rclpy.service: Service
     rclpy.service_introspection: ServiceIntrospectionState
@@ -207,10 +173,7 @@ ORIGINS: Final = """
     tf2_msgs.msg: TFMessage
     tf2_msgs.srv: FrameGraph
     tf2_ros.buffer: Buffer
-    threading: Condition Lock RLock Thread
-    time: sleep
     type_description_interfaces.srv: GetTypeDescription
-    types: FrameType MethodType TracebackType
     unique_identifier_msgs.msg: UUID
 """
 """The module that defines each name, with ``=`` and its name there; all others are modules."""
@@ -242,15 +205,10 @@ def table(text: str) -> dict[str, list[str]]:
 BY_MODULE: Final = table(NAMES)
 
 
-def names_from_elsewhere(module: str) -> list[str]:
-    """Return the names that a module of rclpy has from elsewhere; the module's name is rclpy's."""
-    return BY_MODULE.get(module, [])
-
-
 def add_names(name: str) -> None:
     """Let a module, which is being loaded, find its names from elsewhere, and list them."""
     module = sys.modules[name]
-    words = [word.partition("=") for word in names_from_elsewhere(name)]
+    words = [word.partition("=") for word in BY_MODULE.get(name, [])]
     names = {shown: place for shown, _, place in words}
 
     def find(asked: str) -> Any:
