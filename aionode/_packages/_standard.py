@@ -10,8 +10,13 @@ __all__ = ["program_module", "remark_on", "standard_executables"]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
+    "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
-    "tf2_ros": {"static_transform_publisher": "_static_transform_publisher"},
+    "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},
+    "tf2_ros": {
+        "buffer_server": "_buffer_server",
+        "static_transform_publisher": "_static_transform_publisher",
+    },
     "topic_tools": {
         name: f"_{name}" for name in ("delay", "drop", "mux", "relay", "throttle", "transform")
     },

@@ -41,6 +41,7 @@ NOUNS = {
     "run": "Run node classes together in one process.",
     "service": "List, find and call services.",
     "system": "Show what runs in a system; stop and restart its members.",
+    "teleop": "Drive a robot by the keys of this terminal.",
     "tf": "Show and publish transforms between frames.",
     "topic": "List, print, publish and measure topics.",
 }

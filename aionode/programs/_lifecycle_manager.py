@@ -1,0 +1,218 @@
+"""``nav2_lifecycle_manager``: brings managed nodes up in order, and down if one of them is lost."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import aionode
+from aionode import DurabilityPolicy, Node, Parameter, QoSProfile, Timer
+from aionode.errors import AionodeError, CommandError
+from aionode.interfaces.diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from aionode.interfaces.lifecycle_msgs.srv import ChangeState
+from aionode.interfaces.nav2_msgs.srv import ManageLifecycleNodes
+from aionode.interfaces.std_msgs.msg import Bool
+from aionode.interfaces.std_srvs.srv import Trigger
+from aionode.lifecycle import LifecycleManager
+
+__all__ = ["Manager", "main"]
+
+WATCH_SEC: Final = 0.2
+DIAGNOSTICS_SEC: Final = 1.0
+PATIENCE_SEC: Final = 20.0
+"""After how long it says again for which node it waits."""
+
+HEALTH: Final = {
+    "active": (DiagnosticStatus.OK, "Managed nodes are active"),
+    "inactive": (DiagnosticStatus.OK, "Managed nodes are inactive"),
+    "unconfigured": (DiagnosticStatus.OK, "Managed nodes are unconfigured"),
+    "finalized": (DiagnosticStatus.WARN, "Managed nodes have been shut down"),
+    "unknown": (DiagnosticStatus.ERROR, "An error has occurred during a node state transition"),
+}
+
+
+class Manager(Node):
+    """Manages the nodes of the parameter `node_names`, as its service `~/manage_nodes` is told.
+
+    A node that has gone brings all others down; when all are back within
+    `bond_respawn_max_duration`, they are brought up again.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("lifecycle_manager")
+        names = self.declare_parameter("node_names", Parameter.Type.STRING_ARRAY)
+        if not names.value:
+            raise CommandError("parameter 'node_names' is needed: the nodes to manage, in order")
+        self.names = list(names.value)
+        self.starts_itself = self.declare_parameter("autostart", False).value
+        self.bond_timeout = self.declare_parameter("bond_timeout", 4.0).value
+        self.respawn_sec = self.declare_parameter("bond_respawn_max_duration", 10.0).value
+        self.restores = self.declare_parameter("attempt_respawn_reconnection", True).value
+        self.declare_parameter("bond_heartbeat_period", 0.25)
+        timeout = self.declare_parameter("service_timeout", 5.0).value
+        self.manager = LifecycleManager(self, self.names, timeout_sec=timeout)
+        self.changers = {
+            name: self.create_client(ChangeState, f"{name}/change_state") for name in self.names
+        }
+        self.state = "unconfigured"
+        self.lost_ns: int | None = None
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.activity = self.create_publisher(Bool, "~/managed_nodes_activated", latched)
+        self.diagnostics = self.create_publisher(DiagnosticArray, "/diagnostics", 1)
+        self.tell(self.state)
+        self.create_service(ManageLifecycleNodes, "~/manage_nodes", self.manage)
+        self.create_service(Trigger, "~/is_active", self.answer)
+        self.create_timer(DIAGNOSTICS_SEC, self.diagnose)
+        self.create_timer(WATCH_SEC, self.watch)
+        self.beginning: Timer = self.create_timer(0.001, self.begin)
+
+    def tell(self, state: str) -> None:
+        """Note the common state of the nodes, and say whether they are active."""
+        self.state = state
+        self.activity.publish(Bool(data=state == "active"))
+
+    async def begin(self) -> None:
+        """Wait for the nodes, and bring them up if that is wanted."""
+        self.beginning.cancel()
+        for name, client in self.changers.items():
+            while not await client.wait_for_service(PATIENCE_SEC):
+                self.get_logger().info(f"Waiting for service {name}/change_state...")
+        if self.starts_itself:
+            await self.startup()
+
+    async def manage(self, request: Any, response: Any) -> Any:
+        """Do what a request says."""
+        kind = ManageLifecycleNodes.Request
+        action = {
+            kind.STARTUP: self.startup,
+            kind.PAUSE: self.pause,
+            kind.RESUME: self.resume,
+            kind.RESET: self.reset,
+            kind.SHUTDOWN: self.shutdown,
+            kind.CONFIGURE: self.configure,
+            kind.CLEANUP: self.cleanup,
+        }.get(request.command)
+        response.success = action is not None and await action()
+        return response
+
+    def answer(self, _request: Any, response: Any) -> Any:
+        """Say whether the nodes are active."""
+        response.success = self.state == "active"
+        return response
+
+    async def change(self, label: str, doing: str, *, reverse: bool = False) -> bool:
+        """Have all nodes make a transition; return whether all have."""
+        for name in reversed(self.names) if reverse else self.names:
+            self.get_logger().info(f"{doing} {name}")
+            try:
+                await self.manager.change_state(name, label)
+            except AionodeError as error:
+                self.get_logger().error(f"Failed to change state for node: {name}. {error}")
+                self.tell("unknown")
+                return False
+        return True
+
+    async def startup(self) -> bool:
+        """Configure and activate all nodes."""
+        log = self.get_logger()
+        log.info("Starting managed nodes bringup...")
+        done = await self.change("configure", "Configuring") and await self.change(
+            "activate", "Activating"
+        )
+        if done:
+            log.info("Managed nodes are active")
+            self.tell("active")
+        else:
+            log.error("Failed to bring up all requested nodes. Aborting bringup.")
+        return done
+
+    async def configure(self) -> bool:
+        """Configure all nodes."""
+        done = await self.change("configure", "Configuring")
+        return self.concluded(done, "inactive", "configured")
+
+    async def cleanup(self) -> bool:
+        """Clean all nodes up."""
+        done = await self.change("cleanup", "Cleaning up", reverse=True)
+        return self.concluded(done, "unconfigured", "cleaned up")
+
+    async def pause(self) -> bool:
+        """Deactivate all nodes."""
+        done = await self.change("deactivate", "Deactivating", reverse=True)
+        return self.concluded(done, "inactive", "paused")
+
+    async def resume(self) -> bool:
+        """Activate all nodes."""
+        done = await self.change("activate", "Activating")
+        return self.concluded(done, "active", "resumed")
+
+    async def reset(self) -> bool:
+        """Bring all nodes down, whatever states they are in."""
+        try:
+            await self.manager.reset()
+        except ExceptionGroup as group:
+            self.get_logger().error(f"Failed to reset nodes: {group.exceptions[0]}")
+            self.tell("unknown")
+            return False
+        return self.concluded(True, "unconfigured", "reset")
+
+    async def shutdown(self) -> bool:
+        """Bring all nodes down, and end their lives."""
+        done = await self.reset()
+        return self.concluded(
+            done and await self.change("shutdown", "Shutting down", reverse=True),
+            "finalized",
+            "shut down",
+        )
+
+    def concluded(self, done: bool, state: str, what: str) -> bool:
+        """Note the end of a step, and return whether it succeeded."""
+        if done:
+            self.get_logger().info(f"Managed nodes have been {what}")
+            self.tell(state)
+        return done
+
+    async def watch(self) -> None:
+        """Bring all nodes down if one has gone, and up again if all are back in time."""
+        if self.bond_timeout <= 0:
+            return
+        gone = [name for name, client in self.changers.items() if not client.service_is_ready()]
+        if self.state == "active":
+            if gone:
+                self.get_logger().error(
+                    f"CRITICAL FAILURE: SERVER {gone[0]} IS DOWN. Shutting down related nodes."
+                )
+                await self.reset()
+                self.tell("unconfigured")
+                self.lost_ns = self.get_clock().now().nanoseconds if self.restores else None
+        elif self.lost_ns is not None:
+            passed = (self.get_clock().now().nanoseconds - self.lost_ns) / 1e9
+            if not gone:
+                self.lost_ns = None
+                self.get_logger().info(
+                    "Successfully re-established connections from server respawns, starting back "
+                    "up."
+                )
+                await self.startup()
+            elif passed >= self.respawn_sec:
+                self.lost_ns = None
+                self.get_logger().info(
+                    "Failed to re-establish connection from a server crash after maximum timeout."
+                )
+
+    def diagnose(self) -> None:
+        """Publish how the nodes are."""
+        level, message = HEALTH[self.state]
+        status = DiagnosticStatus(
+            level=level,
+            name=f"{self.get_name()}: Nav2 Health",
+            message=message,
+            hardware_id="Nav2",
+        )
+        msg = DiagnosticArray(status=[status])
+        msg.header.stamp = self.get_clock().now().to_msg()
+        self.diagnostics.publish(msg)
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(Manager)

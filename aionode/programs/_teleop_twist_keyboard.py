@@ -1,0 +1,235 @@
+"""``teleop_twist_keyboard``: drives a base by keys; the wheels stop when the terminal is lost."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import sys
+import termios
+import tty
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+from typing import Any, Final
+
+import aionode
+from aionode import Node
+from aionode.errors import CommandError, LeaseExpiredError
+from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
+
+__all__ = ["Keys", "Teleop", "main", "terminal"]
+
+HELP: Final = """
+Keys move the robot; each goes on until the next one. It works best with a US keyboard layout.
+---------------------------
+Moving around:
+   u    i    o
+   j    k    l
+   m    ,    .
+
+For Holonomic mode (strafing), hold down the shift key:
+---------------------------
+   U    I    O
+   J    K    L
+   M    <    >
+
+t : up (+z)
+b : down (-z)
+
+anything else : stop
+
+q/z : increase/decrease max speeds by 10%
+w/x : increase/decrease only linear speed by 10%
+e/c : increase/decrease only angular speed by 10%
+
+CTRL-C to quit
+"""
+
+MOVES: Final[dict[str, tuple[int, int, int, int]]] = {
+    "i": (1, 0, 0, 0), "o": (1, 0, 0, -1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1),
+    "u": (1, 0, 0, 1), ",": (-1, 0, 0, 0), ".": (-1, 0, 0, 1), "m": (-1, 0, 0, -1),
+    "O": (1, -1, 0, 0), "I": (1, 0, 0, 0), "J": (0, 1, 0, 0), "L": (0, -1, 0, 0),
+    "U": (1, 1, 0, 0), "<": (-1, 0, 0, 0), ">": (-1, -1, 0, 0), "M": (-1, 1, 0, 0),
+    "t": (0, 0, 1, 0), "b": (0, 0, -1, 0),
+}  # fmt: skip
+"""How each key moves: along x, y and z, and around z."""
+
+FACTORS: Final[dict[str, tuple[float, float]]] = {
+    "q": (1.1, 1.1), "z": (0.9, 0.9), "w": (1.1, 1.0), "x": (0.9, 1.0), "e": (1.0, 1.1),
+    "c": (1.0, 0.9),
+}  # fmt: skip
+"""By what each key multiplies the speed, and the speed of turning."""
+
+REPEAT_SEC: Final = 0.1
+"""How often a command is published while it stands."""
+
+TTL_SEC: Final = 0.3
+"""After how long the wheels stop if this program does nothing any more."""
+
+
+class Keys:
+    """What keys have said.
+
+    Args:
+        speed: In m/s.
+        turn: In rad/s.
+    """
+
+    def __init__(self, speed: float = 0.5, turn: float = 1.0) -> None:
+        self.speed = speed
+        self.turn = turn
+        self.move: tuple[int, int, int, int] = (0, 0, 0, 0)
+
+    @property
+    def is_moving(self) -> bool:
+        """Whether the robot is to move."""
+        return any(self.move)
+
+    @property
+    def twist(self) -> Twist:
+        """The command."""
+        x, y, z, around = self.move
+        linear = Vector3(x=x * self.speed, y=y * self.speed, z=z * self.speed)
+        return Twist(linear=linear, angular=Vector3(z=around * self.turn))
+
+    def press(self, key: str) -> str | None:
+        """Take a key; return the speeds if it has changed them."""
+        if key not in FACTORS:
+            self.move = MOVES.get(key, (0, 0, 0, 0))
+            return None
+        speed, turn = FACTORS[key]
+        self.speed *= speed
+        self.turn *= turn
+        return str(self)
+
+    def __str__(self) -> str:
+        return f"currently:\tspeed {self.speed}\tturn {self.turn} "
+
+
+class Teleop(Node):
+    """Publishes on `cmd_vel` what keys say, again and again, under a lease.
+
+    While the robot is to stand, nothing is published, so that others may command it.
+
+    Args:
+        show: Called with texts for the user.
+
+    Raises:
+        CommandError: A frame is given for commands without a header.
+    """
+
+    def __init__(self, show: Callable[[str], object]) -> None:
+        super().__init__("teleop_twist_keyboard")
+        self.is_stamped = self.declare_parameter("stamped", False).value
+        self.frame_id = self.declare_parameter("frame_id", "").value
+        if self.frame_id and not self.is_stamped:
+            raise CommandError("'frame_id' can only be set when 'stamped' is True")
+        self.keys = Keys(
+            self.declare_parameter("speed", 0.5).value, self.declare_parameter("turn", 1.0).value
+        )
+        kind: Any = TwistStamped if self.is_stamped else Twist
+        self.publisher = self.create_publisher(kind, "cmd_vel", 10)
+        self.show = show
+        self.is_due = asyncio.Event()
+        self.is_leased = False
+        self.create_timer(REPEAT_SEC, self.is_due.set)
+
+    def press(self, key: str) -> None:
+        """Take a key, and publish what it says at once."""
+        text = self.keys.press(key)
+        if text is not None:
+            self.show(f"{text}\n")
+        elif not self.keys.is_moving and not self.is_leased:
+            # The end of a lease is a stop by itself; what others have commanded ends, too.
+            self.publisher.publish(self.command(Twist()))
+        self.is_due.set()
+
+    def command(self, twist: Twist) -> Any:
+        """Return a command as the robot takes it."""
+        if not self.is_stamped:
+            return twist
+        stamped = TwistStamped(twist=twist)
+        stamped.header.frame_id = self.frame_id
+        stamped.header.stamp = self.get_clock().now().to_msg()
+        return stamped
+
+    async def drive(self) -> None:
+        """Publish what keys say, until it is cancelled; then the stop goes out."""
+        while True:
+            await self.is_due.wait()
+            self.is_due.clear()
+            if not self.keys.is_moving:
+                continue
+            try:
+                async with self.publisher.lease(self.command(Twist()), TTL_SEC) as lease:
+                    self.is_leased = True
+                    while self.keys.is_moving:
+                        lease.publish(self.command(self.keys.twist))
+                        await self.is_due.wait()
+                        self.is_due.clear()
+            except LeaseExpiredError as error:
+                self.keys.move = (0, 0, 0, 0)
+                self.show(f"stopped: {error}; press a key to go on\n")
+            finally:
+                self.is_leased = False
+
+
+@contextmanager
+def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Iterator[None]:
+    """Read single keys from the terminal within the block, without showing them.
+
+    Args:
+        press: Called with each key.
+        end: Called when the terminal is lost.
+
+    Raises:
+        CommandError: There is no terminal.
+    """
+    number = sys.stdin.fileno()
+    if not os.isatty(number):
+        raise CommandError(
+            "keys are read from a terminal, and stdin is none: start it in a terminal of its own, "
+            "in a launch file with prefix='xterm -e'"
+        )
+    loop = asyncio.get_running_loop()
+    before = termios.tcgetattr(number)
+
+    def read() -> None:
+        try:
+            data = os.read(number, 1000)
+        except OSError:
+            data = b""
+        for key in data.decode(errors="replace"):
+            press(key)
+        if not data:
+            loop.remove_reader(number)
+            end()
+
+    tty.setcbreak(number)  # Ctrl-C stays a signal
+    loop.add_reader(number, read)
+    try:
+        yield
+    finally:
+        loop.remove_reader(number)
+        with suppress(termios.error):  # the terminal is lost
+            termios.tcsetattr(number, termios.TCSADRAIN, before)
+
+
+def show(text: str) -> None:
+    """Write a text to the terminal, if there still is one."""
+    with suppress(OSError):  # the terminal is lost, and the program is about to end
+        sys.stdout.write(text)
+        sys.stdout.flush()
+
+
+async def drive_by_keys() -> None:
+    """Drive until Ctrl-C, or until the terminal is lost."""
+    async with Teleop(show) as node, asyncio.TaskGroup() as tasks:
+        driving = tasks.create_task(node.drive())
+        with terminal(node.press, driving.cancel):
+            show(f"{HELP}\n{node.keys}\n")  # from here on keys count
+            await asyncio.wait([driving])
+
+
+def main() -> None:
+    """Drive until Ctrl-C, or until the terminal is lost."""
+    aionode.run(drive_by_keys)
