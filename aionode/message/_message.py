@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, dataclass_transform, get_args, 
 
 import msgspec
 
+from aionode.message._fastapi import NoDataclass
 from aionode.message._field_types import Constant, Field, field_type
 from aionode.message._serialized import unserialized
 from aionode.message.type_names import TYPES_BY_NAME, checked_type_name
@@ -135,19 +136,11 @@ class PydanticSerializer:
         return cls.__ros_functions__["pydantic_serializer"]
 
 
-class NoDataclass:
-    """What every dataclass has, and a message has not.
+def written(message: Message) -> dict[str, Any]:
+    """Return a message as builtin types, only with values that JSON has."""
+    from aionode.message._schema import in_json  # as above
 
-    Where a route has no type for its response, FastAPI asks each value for it before it looks for
-    the function that writes the value. By then FastAPI is imported, and is told of that function.
-    """
-
-    def __get__(self, _message: object, cls: type[Message]) -> Any:
-        """Raise AttributeError."""
-        from aionode.message._schema import register_with_fastapi  # as below
-
-        register_with_fastapi()
-        raise AttributeError("__dataclass_fields__")
+    return in_json(message)
 
 
 @dataclass_transform(kw_only_default=True, field_specifiers=(msgspec.field,))
@@ -172,7 +165,7 @@ class Message(msgspec.Struct, metaclass=MessageMeta):  # noqa: PLW1641 (mutable:
     """Functions generated for this class, by purpose."""
 
     __pydantic_serializer__: ClassVar[Any] = PydanticSerializer()
-    __dataclass_fields__: ClassVar[Any] = NoDataclass()
+    __dataclass_fields__: ClassVar[Any] = NoDataclass(written)
 
     def __eq__(self, other: object) -> bool:
         """Return whether both have the same class and values."""

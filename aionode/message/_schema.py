@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import inspect
 import re
-import sys
 from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -26,7 +25,6 @@ __all__ = [
     "pydantic_core_schema",
     "pydantic_json_schema",
     "pydantic_serializer",
-    "register_with_fastapi",
 ]
 
 Schema = dict[str, Any]
@@ -190,13 +188,6 @@ def pydantic_serializer(cls: type[Message]) -> Any:
     except ImportError:
         raise AttributeError("__pydantic_serializer__") from None
     return TypeAdapter(cls).serializer
-
-
-def register_with_fastapi() -> None:
-    """Have FastAPI, if it is imported, write messages in responses that no annotation describes."""
-    encoders = getattr(sys.modules.get("fastapi.encoders"), "encoders_by_class_tuples", None)
-    if isinstance(encoders, dict):
-        encoders[in_json] = (Message,)
 
 
 def pydantic_json_schema(cls: type[Message], handler: GetJsonSchemaHandler) -> Schema:
