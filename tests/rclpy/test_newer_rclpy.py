@@ -3,21 +3,30 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import threading
 from collections.abc import Callable, Iterator
+from datetime import datetime
 from typing import Any
 
 import pytest
 
 import rclpy
+import rclpy.exceptions
+import rclpy.experimental
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from rclpy.action import ActionClient, ActionServer, CancelResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.clock_type import ClockType
+from rclpy.endpoint_info import EndpointTypeEnum, ServiceEndpointInfo
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.parameter_event_handler import ParameterEventHandler
+from rclpy.qos import QoSProfile
 from rclpy.service import Service
 from rclpy.task import Future
+from rclpy.time import Time
 from tests.support.peers import isolated_environment
 
 PATIENCE_S = 20.0
@@ -248,3 +257,82 @@ def test_a_busy_pool_takes_nothing_that_it_cannot_call(context: rclpy.Context, n
         may_end.set()
 
     assert (len(calls), spinning.is_alive()) == (2, False)
+
+
+def test_time_becomes_a_local_time() -> None:
+    """As in Lyrical: without zone, and not for a clock that begins anywhere."""
+    moment = datetime(2026, 5, 23, 12, 30, 0, 250000)  # noqa: DTZ001  # as rclpy returns it
+    time = Time(nanoseconds=round(moment.timestamp() * 1e9), clock_type=ClockType.SYSTEM_TIME)
+
+    assert time.to_datetime() == moment
+    with pytest.raises(TypeError, match="should be either ROS_TIME or SYSTEM_TIME"):
+        Time(clock_type=ClockType.STEADY_TIME).to_datetime()
+
+
+def test_the_clients_and_servers_of_a_service_are_told(node: Node) -> None:
+    """As in Lyrical on rmw_zenoh, where each of them is one endpoint."""
+    node.create_service(AddTwoInts, "add", lambda request, response: response)
+    node.create_client(AddTwoInts, "add")
+
+    (server,) = node.get_servers_info_by_service("add")
+    (client,) = node.get_clients_info_by_service("/add", no_mangle=True)
+
+    assert (server.endpoint_type, client.endpoint_type) == (
+        EndpointTypeEnum.SERVER,
+        EndpointTypeEnum.CLIENT,
+    )
+    assert server.service_type == "example_interfaces/srv/AddTwoInts"
+    assert server.endpoint_count == len(server.endpoint_gids) == len(server.qos_profiles) == 1
+    assert "Endpoint type: SERVER\nEndpoint count: 1\nGID: " in str(server)
+    assert node.get_publishers_info_by_topic("add") == []
+
+
+def test_a_service_of_two_endpoints_is_shown_as_lyrical_shows_it() -> None:
+    """As middlewares on DDS tell of them."""
+    info = ServiceEndpointInfo(
+        endpoint_type=EndpointTypeEnum.CLIENT,
+        endpoint_count=2,
+        endpoint_gids=[[1, 2], [3]],
+        qos_profiles=[QoSProfile(depth=1), QoSProfile(depth=2)],
+    )
+
+    text = str(info)
+
+    assert "GIDs:\n - Request Writer : 03\n - Response Reader : 01.02\nQoS profiles:\n" in text
+    assert "History (Depth): KEEP_LAST (2)" in text.partition(" - Response Reader :\n")[0]
+
+
+def test_parameter_events_can_be_those_of_some_nodes(node: Node) -> None:
+    """By a filter of the subscription, until it is taken away."""
+    handler = ParameterEventHandler(node)
+
+    assert handler.configure_nodes_filter(["/one", "/two"])
+    filtered = handler.parameter_event_subscription.get_content_filter()
+    assert filtered.filter_expression == "node = %0 OR node = %1"
+    assert filtered.expression_parameters == ["'/one'", "'/two'"]
+    assert handler.configure_nodes_filter()
+    assert not handler.parameter_event_subscription.is_cft_enabled
+
+
+def test_the_arguments_of_lyrical_are_taken(node: Node) -> None:
+    """They choose how messages travel, and none is lost without them."""
+    subscription = node.create_subscription(
+        Fibonacci.Impl.FeedbackMessage, "a", print, 1, acceptable_buffer_backends="any"
+    )
+    client: Any = ActionClient(node, Fibonacci, "b", enable_feedback_msg_optimization=True)
+
+    assert subscription.topic_name == "/a"
+    assert client.server_is_ready() is False
+
+
+def test_the_modules_and_bases_of_lyrical_can_be_imported(node: Node) -> None:
+    """For annotations, and for programs that ask what a node is."""
+    for kind in ("client", "clock", "node", "publisher", "service", "subscription", "timer"):
+        base = getattr(importlib.import_module(f"rclpy.{kind}"), f"Base{kind.title()}")
+        name = f"Async{kind.title()}"
+        own = getattr(importlib.import_module(f"rclpy.experimental.async_{kind}"), name)
+
+        assert issubclass(own, base)
+        assert getattr(rclpy.experimental, name) is own
+    assert isinstance(node, rclpy.node.BaseNode)
+    assert issubclass(rclpy.exceptions.TimeSourceChangedError, Exception)

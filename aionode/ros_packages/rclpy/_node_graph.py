@@ -8,6 +8,7 @@ from aionode.engine.graph_queries import GraphQueries
 from aionode.graph import EndpointKind
 from rclpy._entities import in_use_by_node, wait_until
 from rclpy._impl.node import NodeHandle
+from rclpy.endpoint_info import ServiceEndpointInfo
 from rclpy.qos import as_own
 from rclpy.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from rclpy.type_hash import TypeHash
@@ -21,6 +22,8 @@ __all__ = ["NodeGraph"]
 TYPES = {
     EndpointKind.PUBLISHER: TopicEndpointTypeEnum.PUBLISHER,
     EndpointKind.SUBSCRIPTION: TopicEndpointTypeEnum.SUBSCRIPTION,
+    EndpointKind.CLIENT: TopicEndpointTypeEnum.CLIENT,
+    EndpointKind.SERVER: TopicEndpointTypeEnum.SERVER,
 }
 
 
@@ -81,6 +84,24 @@ class NodeGraph(GraphQueries):
         """Return the subscriptions of a topic; with `no_mangle` its name is complete."""
         return self._Node__infos(EndpointKind.SUBSCRIPTION, topic_name, is_complete=no_mangle)
 
+    def get_clients_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Return the clients of a service, in Lyrical; with `no_mangle` its name is complete."""
+        return self._Node__services(EndpointKind.CLIENT, service_name, is_complete=no_mangle)
+
+    def get_servers_info_by_service(
+        self, service_name: str, no_mangle: bool = False
+    ) -> list[ServiceEndpointInfo]:
+        """Return the servers of a service, in Lyrical; with `no_mangle` its name is complete."""
+        return self._Node__services(EndpointKind.SERVER, service_name, is_complete=no_mangle)
+
+    def _Node__services(
+        self, kind: EndpointKind, service_name: str, *, is_complete: bool
+    ) -> list[ServiceEndpointInfo]:
+        endpoints = self._Node__handle.endpoints(kind, service_name, is_complete=is_complete)
+        return [service_info_of(endpoint) for endpoint in endpoints]
+
     def _Node__infos(
         self, kind: EndpointKind, topic_name: str, *, is_complete: bool
     ) -> list[TopicEndpointInfo]:
@@ -98,4 +119,18 @@ def info_of(endpoint: EndpointInfo) -> TopicEndpointInfo:
         endpoint_type=TYPES[endpoint.kind],
         endpoint_gid=list(endpoint.gid),
         qos_profile=as_own(endpoint.qos),
+    )
+
+
+def service_info_of(endpoint: EndpointInfo) -> ServiceEndpointInfo:
+    """Return what rclpy tells of a client or server."""
+    return ServiceEndpointInfo(
+        node_name=endpoint.node.name,
+        node_namespace=endpoint.node.namespace,
+        service_type=endpoint.type_name,
+        service_type_hash=TypeHash.from_text(endpoint.type_hash),
+        qos_profiles=[as_own(endpoint.qos)],
+        endpoint_gids=[list(endpoint.gid)],
+        endpoint_type=TYPES[endpoint.kind],
+        endpoint_count=1,
     )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rclpy.context import Context
     from rclpy.qos import QoSProfile
 
-__all__ = ["Client"]
+__all__ = ["BaseClient", "Client"]
 
 RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
@@ -145,6 +145,10 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
             Whether one is there.
         """
         return wait_until(self.service_is_ready, self.context, timeout_sec)
+
+
+BaseClient = Client
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

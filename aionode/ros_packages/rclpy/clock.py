@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from rclpy.context import Context
 
 __all__ = [
+    "BaseClock",
     "Clock",
     "ClockChange",
     "JumpHandle",
@@ -133,6 +134,10 @@ class ROSClock(Clock):
 
     def __init__(self, **_: Any) -> None:
         super().__init__(clock_type=ClockType.ROS_TIME)
+
+
+BaseClock = Clock
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

@@ -38,6 +38,7 @@ __all__ = [
     "ParameterNotDeclaredException",
     "ParameterUninitializedException",
     "ROSInterruptException",
+    "TimeSourceChangedError",
     "TimerCancelledError",
 ]
 
@@ -55,6 +56,10 @@ class NoTypeSupportImportedException(Exception):  # noqa: N818  # rclpy's name
 
     def __init__(self) -> None:
         super().__init__("no type_support imported")
+
+
+class TimeSourceChangedError(Exception):
+    """The source of time changed during a sleep: of rclpy in Lyrical."""
 
 
 class ROSInterruptException(Exception):  # noqa: N818  # rclpy's name

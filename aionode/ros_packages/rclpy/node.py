@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from rclpy.subscription_content_filter_options import ContentFilterOptions
     from rclpy.waitable import Waitable
 
-__all__ = ["HIDDEN_NODE_PREFIX", "Node", "NodeNameNonExistentError"]
+__all__ = ["HIDDEN_NODE_PREFIX", "BaseNode", "Node", "NodeNameNonExistentError"]
 
 HIDDEN_NODE_PREFIX = "_"
 
@@ -304,6 +304,7 @@ class Node(NodeParameters, NodeGraph):
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
         content_filter_options: ContentFilterOptions | None = None,
+        acceptable_buffer_backends: str | None = None,
     ) -> Subscription[Any]:
         """Return a subscription.
 
@@ -317,6 +318,9 @@ class Node(NodeParameters, NodeGraph):
             qos_overriding_options: Which policies parameters may override.
             raw: Whether the callback gets bytes.
             content_filter_options: Which messages it takes.
+            acceptable_buffer_backends: Where large arrays may lie, of rclpy in Lyrical: messages
+                come in the memory of the processor, which every publisher offers, whatever is
+                acceptable besides.
 
         Raises:
             InvalidTopicNameException: the topic is invalid (a ValueError).
@@ -582,6 +586,10 @@ def as_profile(qos_or_depth: QoSProfile | int) -> QoSProfile:
     if qos_or_depth < 0:
         raise ValueError("history depth must be greater than or equal to zero")
     return QoSProfile(depth=qos_or_depth)
+
+
+BaseNode = Node
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

@@ -12,7 +12,7 @@ from rclpy._reexports import add_names
 from rclpy.qos import QoSProfile, qos_profile_parameter_events
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Iterable, Sequence
 
     from rclpy.callback_groups import CallbackGroup
     from rclpy.event_handler import SubscriptionEventCallbacks
@@ -183,6 +183,21 @@ class ParameterEventHandler:
     def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
         """Remove a callback; a RuntimeError if it was not added."""
         self._callbacks.remove_parameter_event_callback(handle)
+
+    def configure_nodes_filter(self, node_names: Sequence[str] | None = None) -> bool:
+        """Take the events of some nodes alone, and of all without names; of rclpy in Lyrical.
+
+        Args:
+            node_names: Their full names, with namespace.
+
+        Returns:
+            Whether the filter is set, or taken away.
+        """
+        names = list(node_names or ())
+        expression = " OR ".join(f"node = %{at}" for at in range(len(names)))
+        subscription = self.parameter_event_subscription
+        subscription.set_content_filter(expression, [f"'{name}'" for name in names])
+        return subscription.is_cft_enabled == bool(names)
 
     def _resolve_path(self, node_path: str | None = None) -> str:
         if not node_path:

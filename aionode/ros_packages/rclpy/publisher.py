@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rclpy.event_handler import EventHandler, PublisherEventCallbacks
     from rclpy.qos import QoSProfile
 
-__all__ = ["Publisher"]
+__all__ = ["BasePublisher", "Publisher"]
 
 MsgT = TypeVar("MsgT")
 
@@ -75,6 +75,10 @@ class Publisher(TopicEntity[PublisherHandle], Generic[MsgT]):
         """Wait until what was published is handed on; return whether that is so in time."""
         with self.handle:
             return self._handle.wait_for_all_acked(timeout)
+
+
+BasePublisher = Publisher
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

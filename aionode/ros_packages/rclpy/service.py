@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rclpy.callback_groups import CallbackGroup
     from rclpy.qos import QoSProfile
 
-__all__ = ["Service"]
+__all__ = ["BaseService", "Service"]
 
 RequestT = TypeVar("RequestT")
 ResponseT = TypeVar("ResponseT")
@@ -72,6 +72,10 @@ class Service(ServiceEntity[ServiceHandle], Generic[RequestT, ResponseT]):
             raise TypeError
         with self._handle:
             self._handle.service_send_response(response, header)
+
+
+BaseService = Service
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

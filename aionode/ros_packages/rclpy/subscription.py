@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rclpy.event_handler import EventHandler, SubscriptionEventCallbacks
     from rclpy.qos import QoSProfile
 
-__all__ = ["MessageInfo", "RCLError", "Subscription"]
+__all__ = ["BaseSubscription", "MessageInfo", "RCLError", "Subscription"]
 
 MsgT = TypeVar("MsgT")
 
@@ -125,6 +125,10 @@ class Subscription(TopicEntity[SubscriptionHandle], Generic[MsgT]):
         """
         with self.handle:
             return ContentFilterOptions(*self._handle.get_content_filter())
+
+
+BaseSubscription = Subscription
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime
 from typing import Any
 
 from aionode import clock as core
@@ -39,6 +40,16 @@ class Time(core.Time):
         """Return it as a `builtin_interfaces/msg/Time`, which has no clock type."""
         sec, nanosec = divmod(self.nanoseconds, S_TO_NS)
         return msg.Time(sec=sec, nanosec=nanosec)
+
+    def to_datetime(self) -> datetime:
+        """Return it as a local time without zone; of rclpy in Lyrical.
+
+        Raises:
+            TypeError: It is a time of the steady clock.
+        """
+        if self.clock_type not in (ClockType.ROS_TIME, ClockType.SYSTEM_TIME):
+            raise TypeError("Time object's clock type should be either ROS_TIME or SYSTEM_TIME")
+        return datetime.fromtimestamp(self.nanoseconds / S_TO_NS)  # noqa: DTZ006  # as rclpy does
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from rclpy.clock import Clock
     from rclpy.context import Context
 
-__all__ = ["Rate", "Timer", "TimerInfo"]
+__all__ = ["BaseTimer", "Rate", "Timer", "TimerInfo"]
 
 
 class TimerInfo:
@@ -182,6 +182,10 @@ class Rate:
         if self._is_shutdown:
             self.destroy()
             raise ROSInterruptException
+
+
+BaseTimer = Timer
+"""The base of this and of the asynchronous class in rclpy of Lyrical, which are one here."""
 
 
 add_names(__name__)

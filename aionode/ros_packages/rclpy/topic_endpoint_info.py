@@ -17,11 +17,13 @@ __all__ = ["TopicEndpointInfo", "TopicEndpointTypeEnum"]
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """The kind of an endpoint."""
+    """The kind of an endpoint; those of services are of Lyrical, where it is `EndpointTypeEnum`."""
 
     INVALID = 0
     PUBLISHER = 1
     SUBSCRIPTION = 2
+    CLIENT = 3
+    SERVER = 4
 
 
 def from_dict(kind: Any) -> Any:

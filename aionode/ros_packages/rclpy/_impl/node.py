@@ -186,9 +186,11 @@ class NodeHandle(Destroyable):
     ) -> list[EndpointInfo]:
         """Return the endpoints of a topic; its name is expanded unless it `is_complete`."""
         with self:
-            name = topic_name if is_complete else self._expected(topic_name)
+            is_service = kind in SERVICE_KINDS
+            name = topic_name if is_complete else self._expected(topic_name, is_service=is_service)
+            what = "service" if is_service else "topic"
             return self.ask(
-                f"Failed to get information by topic for {kind.value}s",
+                f"Failed to get information by {what} for {kind.value}s",
                 lambda graph: graph.endpoints(kind, name=name),
             )
 

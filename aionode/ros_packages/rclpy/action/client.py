@@ -121,6 +121,8 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         callback_group: The group in which answers are handled and feedback callbacks called.
         goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
             feedback_sub_qos_profile, status_sub_qos_profile: QoS of its services and topics.
+        enable_feedback_msg_optimization: Of rclpy in Lyrical, and without effect: feedback of the
+            goals of others is dropped as it comes.
     """
 
     def __init__(
@@ -135,6 +137,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
         cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
         feedback_sub_qos_profile: QoSProfile = FEEDBACK_QOS,
         status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+        enable_feedback_msg_optimization: bool = False,
     ) -> None:
         super().__init__(callback_group or node.default_callback_group)
         check_for_type_support(action_type)

@@ -1,0 +1,5 @@
+"""`AsyncClient`, as rclpy of ROS 2 Lyrical has it in a module of its own."""
+
+from rclpy.experimental.async_node import AsyncClient
+
+__all__ = ["AsyncClient"]

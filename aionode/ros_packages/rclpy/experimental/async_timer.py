@@ -1,0 +1,5 @@
+"""`AsyncTimer`, as rclpy of ROS 2 Lyrical has it in a module of its own."""
+
+from rclpy.experimental.async_node import AsyncTimer
+
+__all__ = ["AsyncTimer"]
