@@ -22,9 +22,6 @@ MODULES = sorted(
     path for path in ROOT.rglob("*.py") if path.relative_to(ROOT).parts[0] != "interfaces"
 )
 
-MOST_CROSSINGS = 0
-"""How many private names may cross; the number only falls."""
-
 MOST_PRIVATE_READS = 124
 """How often tests may read private names of aionode; the number only falls."""
 
@@ -76,9 +73,7 @@ def cycles(imports: grimp.ImportGraph) -> set[frozenset[str]]:
 
 def test_no_private_name_crosses_a_room() -> None:
     """What begins with an underscore may change without a look at other top-level folders."""
-    crossings = structure.crossings()
-
-    assert len(crossings) <= MOST_CROSSINGS, crossings
+    assert structure.crossings() == []
 
 
 def test_no_folder_has_more_than_twenty_modules() -> None:
