@@ -25,7 +25,14 @@ REAL: dict[tuple[str, str], dict[str, list[str]]] = {
 }
 """The classes of ROS's packages, by package and name: their bases, and the names they have."""
 
-NEWER = {"_spin_once_impl", "getLatestTime", "is_spinning"}
+NEWER = {
+    "_spin_once_impl",
+    "configure_nodes_filter",
+    "getLatestTime",
+    "get_clients_info_by_service",
+    "get_servers_info_by_service",
+    "is_spinning",
+}
 """Names that these classes have got since."""
 
 OF_ROS = {
