@@ -94,3 +94,17 @@ async def test_a_post_tells_the_page_why_its_websocket_is_refused(web: httpx.Asy
     assert refused.status_code == 401
     assert "list the origin under `origins`" in refused.json()["error"]
     assert passed.status_code == 405
+
+
+@pytest.mark.parametrize("path", ["/page/main.js", "/page/style.css"])
+async def test_the_page_comes_whatever_its_origin_is(web: httpx.AsyncClient, path: str) -> None:
+    """Browsers show one with scripts: behind a proxy the page could not say why it is refused."""
+    origin = {"Origin": "https://robot.example.org", "Sec-Fetch-Site": "same-origin"}
+
+    whole = await web.get(path, headers=origin)
+    of_the_robot = await web.get("/topics", headers=origin)
+    rebound = await web.get(path, headers={"Host": "evil.example"})
+
+    assert whole.status_code == 200
+    assert whole.headers["cross-origin-resource-policy"] == "same-origin"
+    assert (of_the_robot.status_code, rebound.status_code) == (401, 401)

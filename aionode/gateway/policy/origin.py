@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from aionode.gateway.policy.identity import Credentials
 
-__all__ = ["check_browser"]
+__all__ = ["check_browser", "check_host"]
 
 HOST: Final = re.compile(r"(\[[0-9A-Fa-f:.]+(?:%\w+)?\]|[\w.-]+)(?::[0-9]{1,5})?", re.ASCII)
 """A ``Host`` header: an address or a name, and perhaps a port; nobody is named before an ``@``."""
@@ -40,13 +40,7 @@ def check_browser(
     Raises:
         RefusedError: such a page has made it, or the request names another host.
     """
-    if not is_known_host(credentials.host, hosts):
-        raise RefusedError(
-            f"request for {credentials.host[:80]!r}",
-            "this machine is not known by that name; use its address, or list the name under "
-            "`hosts` in the policy",
-            "unauthorized",
-        )
+    check_host(credentials, hosts)
     if credentials.origin is None:
         if credentials.sec_fetch_site not in SAME_SITES:
             raise RefusedError(
@@ -58,6 +52,21 @@ def check_browser(
         raise RefusedError(
             f"request of a page of {credentials.origin[:80]!r}",
             "pages of other origins may not connect; list the origin under `origins` in the policy",
+            "unauthorized",
+        )
+
+
+def check_host(credentials: Credentials, hosts: Iterable[str] = ()) -> None:
+    """Refuse a request for another host than this one.
+
+    Raises:
+        RefusedError: this machine has no such name.
+    """
+    if not is_known_host(credentials.host, hosts):
+        raise RefusedError(
+            f"request for {credentials.host[:80]!r}",
+            "this machine is not known by that name; use its address, or list the name under "
+            "`hosts` in the policy",
             "unauthorized",
         )
 

@@ -11,7 +11,7 @@ from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS
 from aionode.errors import RefusedError
 from aionode.gateway.policy.identity import from_scope, place_of, take_token
-from aionode.gateway.policy.origin import check_browser
+from aionode.gateway.policy.origin import check_browser, check_host
 
 if TYPE_CHECKING:
     from aionode.gateway._clients import Clients
@@ -82,7 +82,11 @@ class Door:
         answer = Answer(send, allowed_origin(credentials.origin, policy.page_origins))
         try:
             # Before its token is looked at: what another page sends says nothing about who guesses.
-            check_browser(credentials, policy.hosts, policy.page_origins)
+            # A browser shows the origin with each script, even of the gateway's own page.
+            if is_script(scope):
+                check_host(credentials, policy.hosts)
+            else:
+                check_browser(credentials, policy.hosts, policy.page_origins)
             if is_preflight(scope):
                 await preflight(answer)
                 return
@@ -151,10 +155,15 @@ class Guesses:
 
 def is_public(scope: Message) -> bool:
     """Return whether a request is for the page or the health, which tell nothing of the robot."""
-    path: str = scope["path"]
     if scope["type"] != "http" or scope["method"] not in {"GET", "HEAD"}:
         return False
-    return path in {"/", "/healthz"} or path.startswith(PUBLIC)
+    return scope["path"] in {"/", "/healthz"} or is_script(scope)
+
+
+def is_script(scope: Message) -> bool:
+    """Return whether a request is for what the page consists of; other origins cannot embed it."""
+    is_read = scope["type"] == "http" and scope["method"] in {"GET", "HEAD"}
+    return is_read and bool(scope["path"].startswith(PUBLIC))
 
 
 def hides_its_page(scope: Message, credentials: Credentials) -> bool:
