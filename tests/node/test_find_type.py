@@ -200,7 +200,7 @@ async def test_a_description_beyond_the_limits_is_named(
     node_factory: Callable[..., Node],
 ) -> None:
     """Thirty levels of two fields would be a billion values."""
-    from tests.wire.test_described_type import tower
+    from tests.engine.wire.test_described_type import tower
 
     def describe(_: Any, response: Any) -> Any:
         response.successful = True

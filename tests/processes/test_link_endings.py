@@ -22,7 +22,7 @@ from tests.support.peers import KEEP_ALL, quiet_node
 __all__ = ["folder"]  # a fixture
 from tests.support import fork_server
 
-pytestmark = pytest.mark.one_loop  # tests/transport/link reads ended links on both loops
+pytestmark = pytest.mark.one_loop  # tests/engine/transport/link reads ended links on both loops
 
 ENDER = Path(__file__).with_name("link_ender.py")
 

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 DOMAIN_ID = 42
 NO_HASH = "TypeHashNotSupported"
 VECTORS: dict[str, Any] = json.loads(
-    (Path(__file__).parents[2] / "vectors" / "vectors.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[3] / "vectors" / "vectors.json").read_text(encoding="utf-8")
 )
 STRING = VECTORS["messages"]["std_msgs/msg/String"]
 ADD = VECTORS["services"]["example_interfaces/srv/AddTwoInts"]

@@ -1,6 +1,6 @@
 """Reliable topics over Zenoh: acknowledged where both ends can, and else left to Zenoh.
 
-The protocol itself is tested without a network: tests/transport/reliability.
+The protocol itself is tested without a network: tests/engine/transport/reliability.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ from aionode._distribution import NO_TYPE_HASH
 from aionode.engine.wire import _key_expression as key_expression
 
 VECTORS: dict[str, Any] = json.loads(
-    Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()
+    Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
 )
 
 STRING_HASH = VECTORS["messages"]["std_msgs/msg/String"]["rihs01"]

@@ -28,7 +28,7 @@ from aionode.qos import (
 )
 
 VECTORS: dict[str, Any] = json.loads(
-    Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()
+    Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
 )
 TOKENS: list[dict[str, str]] = VECTORS["liveliness_tokens"]
 

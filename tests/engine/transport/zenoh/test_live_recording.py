@@ -32,7 +32,7 @@ from aionode.qos import (
 from tests.support.peers import known, raw_session
 
 RECORDED: dict[str, Any] = json.loads(
-    (Path(__file__).parents[2] / "vectors" / "live_rmw_zenoh.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[3] / "vectors" / "live_rmw_zenoh.json").read_text(encoding="utf-8")
 )
 TOKENS: list[str] = RECORDED["tokens"]
 DOMAIN_ID = 42

@@ -12,7 +12,7 @@ import pytest
 from aionode.errors import EntityDestroyedError, LeaseExpiredError
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.qos import DurabilityPolicy, QoSProfile
-from tests.transport.test_contract import Pair, numbers, pair
+from tests.engine.transport.test_contract import Pair, numbers, pair
 
 if TYPE_CHECKING:
     from aionode.endpoints.publisher import Publisher

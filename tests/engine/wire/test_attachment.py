@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from aionode.engine.wire import _attachment as attachment
 
 GOLDEN: dict[str, Any] = json.loads(
-    Path(__file__).parent.parent.joinpath("vectors", "vectors.json").read_text()
+    Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
 )["attachment"]
 VALUES = (GOLDEN["seq"], GOLDEN["source_timestamp_ns"], bytes.fromhex(GOLDEN["gid"]))
 INT64 = st.integers(-(2**63), 2**63 - 1)

@@ -14,7 +14,7 @@ from aionode.engine.transport.zenoh._defects._switch import defects, is_mended
 from aionode.engine.transport.zenoh.session.settings import router_settings, session_settings
 from aionode.errors import ConfigurationError
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 VARIABLE = "AIONODE_ZENOH_UNMENDED"
 

@@ -46,7 +46,7 @@ from tests.support.peers import (
 from tests.support.waiting import until
 
 VECTORS: dict[str, Any] = json.loads(
-    Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
+    Path(__file__).parents[3].joinpath("vectors", "vectors.json").read_text()
 )
 MESSAGES: dict[str, dict[str, Any]] = VECTORS["messages"]
 CHATTER = data_key(DOMAIN_ID, "/chatter", "std_msgs/msg/String", type_hash(String))

@@ -44,7 +44,7 @@ from tests.support.peers import (
 from tests.support.waiting import until
 
 VECTORS: dict[str, Any] = json.loads(
-    Path(__file__).parents[2].joinpath("vectors", "vectors.json").read_text()
+    Path(__file__).parents[3].joinpath("vectors", "vectors.json").read_text()
 )
 SERVICES: dict[str, dict[str, Any]] = VECTORS["services"]
 ADD_TYPE = "example_interfaces/srv/AddTwoInts"

@@ -8,7 +8,7 @@ from typing import Any
 
 import grimp
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 PACKAGE = "aionode.engine.transport.link"
 
 

@@ -1,7 +1,7 @@
 """What the transport makes of rcl's answers, with an rcl of this process alone: `FakeRcl`.
 
-The contract of transports is in ``tests/transport/test_contract.py``, on this one too; here is what
-only rcl does.
+The contract of transports is in ``tests/engine/transport/test_contract.py``, on this one too; here
+is what only rcl does.
 """
 
 from __future__ import annotations

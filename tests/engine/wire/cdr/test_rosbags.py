@@ -14,8 +14,8 @@ from rosbags.typesys import Stores, get_typestore
 from aionode.engine.wire import cdr
 from aionode.engine.wire.cdr._fallback_decoder import decode_slowly
 from aionode.message import DTYPES, FieldType, Message, fields, type_name
+from tests.engine.wire.cdr.test_properties import few, many
 from tests.support.strategies import message_classes, messages
-from tests.wire.cdr.test_properties import few, many
 
 if TYPE_CHECKING:
     from rosbags.interfaces.typing import Fielddefs, FieldDesc

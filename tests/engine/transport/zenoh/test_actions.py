@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 VECTORS = json.loads(
-    (Path(__file__).parents[2] / "vectors" / "vectors.json").read_text(encoding="utf-8")
+    (Path(__file__).parents[3] / "vectors" / "vectors.json").read_text(encoding="utf-8")
 )["actions"]["example_interfaces/action/Fibonacci"]
 CDR = {name: bytes.fromhex(entry["cdr"]) for name, entry in VECTORS["cdr"].items()}
 ENDPOINTS = VECTORS["endpoints"]

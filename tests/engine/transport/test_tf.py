@@ -5,8 +5,8 @@ from __future__ import annotations
 from aionode import Time
 from aionode.clock import ClockType
 from aionode.tf import Buffer, StaticTransformBroadcaster, TransformBroadcaster
+from tests.engine.transport.test_contract import Pair, pair
 from tests.support.transforms import senders, transform
-from tests.transport.test_contract import Pair, pair
 
 __all__ = ["pair"]  # the fixture
 
