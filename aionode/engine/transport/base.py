@@ -224,7 +224,7 @@ class StopSender(ABC):
 
     No full queue drops, delays or overtakes it: what waits there before it may be dropped, and is
     counted. It takes the route and the priority of the messages before it, so that none of them
-    arrives after it, and goes to all readers, whatever their filters.
+    arrives after it, and goes to all readers.
     """
 
     @abstractmethod
