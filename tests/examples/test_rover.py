@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import httpx
@@ -17,6 +18,7 @@ import pytest
 from aionode import Node, Parameter
 from aionode.action import ActionClient
 from aionode.errors import GoalAbortedError, GoalRejectedError
+from aionode.examples import rover as rover_package
 from aionode.examples.rover.battery import Battery
 from aionode.examples.rover.description import LATCHED, Description
 from aionode.examples.rover.driver import Driver
@@ -306,3 +308,15 @@ def test_without_the_extra_the_rover_says_what_its_page_needs() -> None:
 
     assert "pip install 'aionode[gateway]'" in line
     assert status == 0
+
+
+@pytest.mark.timeout(60)
+def test_the_launch_file_starts_a_process_for_each_part() -> None:
+    """It is shipped beside the nodes, so it has to name files that are there."""
+    file = Path(rover_package.__file__).with_name("rover.launch.py")
+    command = [sys.executable, "-m", "aionode", "launch", str(file), "rate:=5.0", "--print"]
+    plan = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+
+    started = set(re.findall(r"rover/(\w+)\.py", plan)) - {"rover"}
+    assert started == {"simulator", "description", "battery", "driver", "page"}
+    assert "5.0" in plan
