@@ -34,6 +34,7 @@ HEADING = re.compile(r"^#+ (?P<text>.+)$", re.MULTILINE)
 TYPED = re.compile(r"^ *\$ (?P<command>.+)$", re.MULTILINE)
 NAMED = re.compile(r"`(?P<command>(?:aionode|make|python -m (?:aionode|tests)[\w.]*) [^`]+)`")
 HOP = re.compile(r"\| `(?P<file>aionode/[\w/]+\.py)` \| `(?P<name>[\w.]+)` \|")
+PLACE = re.compile(r"^\| [^|]+ \| `(?P<file>[\w/]+\.py)` \| `(?P<name>[\w.]+)` \|$", re.MULTILINE)
 TERM = re.compile(r"^\| (?P<words>[^|`]+[^|]*) \| [^|]+ \| `(?P<place>[^`]+)` \|$", re.MULTILINE)
 NAME = re.compile(r"`([A-Z]\w+)`")
 PAGES = [str(page.relative_to(ROOT)) for page in pages()]
@@ -295,6 +296,17 @@ def test_a_hop_of_a_message_is_a_function_of_its_file() -> None:
     assert hops
     for file, name in hops:
         assert fragment((ROOT / file).read_text(encoding="utf-8"), name), (file, name)
+
+
+def test_what_the_design_places_stands_there() -> None:
+    """Whoever looks for a behaviour opens the file that docs/design.md names."""
+    page = (ROOT / "docs/design.md").read_text(encoding="utf-8")
+    section = page.partition("\n## Where it stands\n")[2].partition("\n## ")[0]
+    places = {(place["file"], place["name"]) for place in PLACE.finditer(section)}
+
+    assert len(places) >= 30
+    for file, name in places:
+        assert fragment((ROOT / "aionode" / file).read_text(encoding="utf-8"), name), (file, name)
 
 
 @dataclass(frozen=True)
