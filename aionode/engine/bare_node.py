@@ -251,7 +251,8 @@ class BareCall:
 class BareNode:
     """A node in the graph, and the owner of bare endpoints.
 
-    Names are used as they are given: valid, complete and remapped.
+    Names are used as they are given: valid, complete and remapped. It has no services of its own:
+    other processes find types that only it uses if its owner serves ``get_type_description``.
 
     Args:
         context: The context that it joins.

@@ -138,6 +138,8 @@ async def test_an_answer_of_unknown_length_comes_in_chunks() -> None:
         (b"GET /silent HTTP/1.1\r\n" + HOST + b"\r\n", b""),
         (b"POST /x HTTP/1.1\r\n" + HOST + b"Transfer-Encoding: chunked\r\n\r\nz\r\n", b"400 "),
         (UPGRADE.format(path="/", more="").replace("13", "12").encode(), b"400 Bad Request"),
+        (UPGRADE.format(path="/", more="").replace("GET", "POST").encode(), b"200 OK"),
+        (UPGRADE.format(path="/", more="").replace("1.1", "1.0").encode(), b"200 OK"),
         (UPGRADE.format(path="/", more="Content-Length: 1\r\n").encode() + b"x", b"200 OK"),
     ],
 )

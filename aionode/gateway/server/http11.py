@@ -318,14 +318,15 @@ class Request:
 
 
 def asks_for_websocket(request: h11.Request) -> bool:
-    """Return whether a request wants to become a WebSocket; one that has a body does not."""
+    """Return whether a request wants to become a WebSocket, as only GET without a body can."""
     headers: dict[bytes, bytes] = {}
     for name, value in request.headers:
         headers[name] = headers[name] + b"," + value if name in headers else value
     options = {option.strip().lower() for option in headers.get(b"connection", b"").split(b",")}
     is_upgrade = b"upgrade" in options and headers.get(b"upgrade", b"").lower() == b"websocket"
     has_body = b"transfer-encoding" in headers or headers.get(b"content-length", b"0") != b"0"
-    return is_upgrade and not has_body
+    is_get = (request.method, request.http_version) == (b"GET", b"1.1")
+    return is_get and is_upgrade and not has_body
 
 
 def unread_bytes(transport: asyncio.Transport) -> int:
