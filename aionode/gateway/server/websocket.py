@@ -18,6 +18,7 @@ from websockets.http11 import Request
 from websockets.protocol import SEND_EOF, State
 from websockets.server import ServerProtocol
 
+from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS
 from aionode.gateway.server.connection import (
     GOODBYE_SEC,
@@ -82,7 +83,8 @@ class WebSocketConnection(Connection):
         self._has_closed = False
         self._parts: list[bytes] = []
         self._is_text = False
-        self._asked: dict[bytes, Callable[[], None] | None] = {}  # by the payloads of pings
+        # By the payloads of pings.
+        self._asked: Recent[bytes, Callable[[], None] | None] = Recent(MOST_ASKED)
         self._awaits_pong = False
         self._timer: asyncio.TimerHandle | None = None
         rate_hz = limits.frames_per_sec
@@ -327,9 +329,7 @@ class WebSocketConnection(Connection):
         if not self._may_send():
             return
         payload = secrets.token_bytes(8)
-        if len(self._asked) >= MOST_ASKED:
-            del self._asked[next(iter(self._asked))]
-        self._asked[payload] = answered
+        self._asked.put(payload, answered)
         self._protocol.send_ping(payload)
         self._write_protocol()
 

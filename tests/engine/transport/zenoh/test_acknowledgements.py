@@ -32,6 +32,7 @@ from aionode.engine.transport.zenoh.connections import sockets as _sockets
 from aionode.engine.transport.zenoh.delivery import acknowledgements
 from aionode.engine.transport.zenoh.endpoints import publisher as publishers
 from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.endpoints.sender import ZenohSender
 from aionode.engine.wire import cdr
 from aionode.graph import EndpointInfo
 from aionode.interfaces.std_msgs.msg import Int32, String
@@ -149,15 +150,15 @@ async def test_what_is_lost_on_the_way_is_sent_again(
     qos: QoSProfile, theirs: QoSProfile, monkeypatch: pytest.MonkeyPatch, writers: Writers
 ) -> None:
     """Every third message here, the last one included."""
-    put, count = ZenohWriter.put, 0
+    put, count = ZenohSender.put, 0
 
-    def put_some(self: ZenohWriter, payload: bytes, extra: bytes) -> None:
+    def put_some(self: ZenohSender, payload: bytes, extra: bytes) -> None:
         nonlocal count
         count += 1
         if count % 3:
             put(self, payload, extra)
 
-    monkeypatch.setattr(ZenohWriter, "put", put_some)
+    monkeypatch.setattr(ZenohSender, "put", put_some)
     async with two_nodes() as (a, b):
         publisher = a.create_publisher(Int32, "n", qos)
         subscription = b.create_subscription(Int32, "n", None, theirs)

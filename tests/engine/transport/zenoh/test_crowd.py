@@ -19,6 +19,7 @@ from aionode.engine.transport.zenoh._defects import crowd
 from aionode.engine.transport.zenoh._defects.crowd import CROWDED
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
+from aionode.engine.transport.zenoh.endpoints.sender import ZenohSender
 from aionode.engine.transport.zenoh.session import announced
 from aionode.engine.transport.zenoh.session.announced import AnnouncedLimit
 from aionode.engine.wire._key_expression import Side
@@ -38,13 +39,13 @@ class Gate:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.opened = threading.Event()
-        send = ZenohWriter._send
+        send = ZenohSender._send
 
-        def wait(self_: ZenohWriter, *what: Any) -> None:
+        def wait(self_: ZenohSender, *what: Any) -> None:
             self.opened.wait()
             send(self_, *what)
 
-        monkeypatch.setattr(ZenohWriter, "_send", wait)
+        monkeypatch.setattr(ZenohSender, "_send", wait)
 
 
 def writer_of(publisher: Publisher[Int32]) -> ZenohWriter:
@@ -56,7 +57,7 @@ def writer_of(publisher: Publisher[Int32]) -> ZenohWriter:
 
 def is_direct(writer: ZenohWriter) -> bool:
     """Return whether the loop puts messages into Zenoh itself, as beside few others."""
-    return writer._is_direct
+    return writer.sender.puts_small_at_once
 
 
 @pytest.fixture
@@ -120,7 +121,7 @@ async def test_messages_wait_for_zenoh_in_a_thread_and_stay_in_order(
         limit.release("other", "one more")
         for number in range(101, 111):  # Zenoh may be dropping the rest
             publisher.publish(Int32(data=number))
-        assert len(writer_of(publisher)._large) == 110
+        assert len(writer_of(publisher).sender.large) == 110
         gate.opened.set()
 
         heard = [(await subscription.receive()).data for _ in range(110)]

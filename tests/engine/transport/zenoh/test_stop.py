@@ -132,7 +132,7 @@ async def test_a_stop_that_is_dropped_once_arrives(
     """What Zenoh drops for 0.1 s does not keep the robot driving."""
     async with wheels() as (both, _):
         (writer,) = [one for one in both.commands._all_writers if isinstance(one, ZenohWriter)]
-        monkeypatch.setattr(writer, "_publisher", Dropping(writer._publisher, drops))
+        monkeypatch.setattr(writer.sender, "publisher", Dropping(writer.sender.publisher, drops))
         await both.drive()
         await both.wait(0.4)
         assert both.got[-1][0] == STOP.data

@@ -10,7 +10,7 @@ Seen in:
     1.5.1, 1.7.2, 1.8.0, 1.9.0, 1.10.2
 Mend:
     Each transient local publisher puts from a thread of its own, of which at most so many messages
-    wait as fit into a queue: `ZenohWriter` in `_publisher`, `ZenohStop` in `_stop`.
+    wait as fit into a queue: `ZenohSender` in `endpoints/sender.py`.
 """
 
 from __future__ import annotations

@@ -45,7 +45,9 @@ class BridgeWriter(BridgeDeclaration, ZenohWriter):
         """Update `active` from the subscriptions that bridges announce."""
         super()._update(reader, present)
         if self._transient:
-            self.active = self._publisher is not None or keeps_for_late_readers(self.endpoint.qos)
+            self.active = self.sender.publisher is not None or keeps_for_late_readers(
+                self.endpoint.qos
+            )
 
     def assert_liveliness(self) -> None:
         """Do nothing: a bridge does not carry it."""

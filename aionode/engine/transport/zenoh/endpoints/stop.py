@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import logging
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final, Protocol
-
-import zenoh
 
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import StopSender
-from aionode.engine.transport.zenoh.connections.handlers import BULK_BYTES, reason
+from aionode.engine.transport.zenoh.connections.handlers import BULK_BYTES
 from aionode.engine.wire import _attachment as attachment
 from aionode.engine.wire import cdr
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from zenoh import ext
-
-    from aionode.clock import SilenceAlarm
     from aionode.engine.transport.reliability.stateful_writer import StatefulWriter
-    from aionode.engine.transport.send_thread import SendQueue, SendThread
+    from aionode.engine.transport.zenoh.endpoints.sender import ZenohSender
 
 __all__ = ["ZenohStop"]
 
@@ -38,30 +32,14 @@ class StoppableWriter(Protocol):
 
     gid: bytes
     active: bool
-    used_bulk: bool
-    _transient: bool
-    _stop: ZenohStop | None
-    _key: str
-    _publisher: zenoh.Publisher | ext.AdvancedPublisher | None
-    _history: StatefulWriter | None
-    _expiry: SilenceAlarm | None
-    _large: SendQueue
-    _blocking: SendQueue | None
-    _blocking_thread: SendThread
+    sender: ZenohSender
+    history: StatefulWriter | None
 
-    def _keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None: ...
-    def _abandon_queues(self) -> None: ...
-    def _has_unacknowledging(self) -> bool: ...
-    def _send_blocking(
-        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
-    ) -> None: ...
-    def _watch(self) -> None: ...
-    def _put_blocking(
-        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
-    ) -> None: ...
-    def _send(
-        self, publisher: zenoh.Publisher | ext.AdvancedPublisher, payload: bytes, extra: bytes
-    ) -> None: ...
+    def keep_early(self, sequence: int, payload: bytes, extra: bytes) -> None:
+        """Keep a message for late readers until the session is open."""
+
+    def watch_stop(self, stop: ZenohStop) -> None:
+        """Have `tick` called while there may be readers that do not acknowledge."""
 
 
 class ZenohStop(StopSender):
@@ -85,7 +63,7 @@ class ZenohStop(StopSender):
         self._ends_ns = 0  # when it is put no more
         self._past = 0  # its number, once it was sent past the loop
         # Whether a large message was published since: only behind it nothing is overtaken.
-        writer.used_bulk = len(self._payload) >= BULK_BYTES
+        writer.sender.used_bulk = len(self._payload) >= BULK_BYTES
 
     @property
     def is_repeated(self) -> bool:
@@ -94,27 +72,25 @@ class ZenohStop(StopSender):
 
     def send(self, sequence: int, source_ns: int) -> None:
         """Send it, or keep for those who ask again what was sent past the loop."""
-        writer, history = self._writer, self._writer._history
+        writer, sender, history = self._writer, self._writer.sender, self._writer.history
         is_past = self._past == sequence
         if not is_past:
             if not writer.active:
                 return
             self._begin(sequence, source_ns)
-        if writer._publisher is None:
-            writer._keep_early(sequence, self._payload, self._extra)
+        if sender.publisher is None:
+            writer.keep_early(sequence, self._payload, self._extra)
             return
-        writer._abandon_queues()
+        sender.abandon()
         # Past the loop, it was put past what is kept for late readers.
-        put = self._no_more if is_past and not writer._transient else self._put
+        put = self._no_more if is_past and not sender.transient else sender.put_stop
         if history is None:
             put(self._payload, self._extra)
         else:
             history.write_stop(sequence, self._payload, self._extra, put)
-        if writer._expiry is not None:
-            writer._expiry.note()
-        if writer._has_unacknowledging():
-            writer._stop = self
-        writer._watch()
+        if sender.expiry is not None:
+            sender.expiry.note()
+        writer.watch_stop(self)
 
     def tick(self) -> ZenohStop | None:
         """Put it again, if that is still due; return what to call next time."""
@@ -130,19 +106,6 @@ class ZenohStop(StopSender):
     def _no_more(self, payload: bytes, extra: bytes) -> None:
         """Do nothing: it was put past the loop."""
 
-    def _put(self, payload: bytes, extra: bytes) -> None:
-        """Put it where the last message was put."""
-        writer = self._writer
-        blocking, publisher = writer._blocking, writer._publisher
-        if (blocking is not None or writer._transient) and publisher is not None:
-            if blocking is not None and len(blocking):
-                self.repeat()  # its thread waits for a slow reader, the others do not
-            writer._put_blocking(publisher, payload, extra)
-        elif writer.used_bulk and publisher is not None:
-            writer._large.put(partial(writer._send, publisher, payload, extra), len(payload))
-        else:
-            self.repeat()
-
     def send_past_loop(self, sequence: int, source_ns: int) -> None:
         """Put it, and tell the readers that acknowledge to wait for nothing before it.
 
@@ -151,24 +114,11 @@ class ZenohStop(StopSender):
         self._past = sequence
         self._begin(sequence, source_ns)
         self.repeat()
-        writer = self._writer
-        if writer._transient and writer._publisher is not None:
-            # Such a stop is not kept for late readers, who would get the last command.
-            keep = partial(writer._send_blocking, writer._publisher, self._payload, self._extra)
-            writer._blocking_thread.submit_past_loop(keep)
-        if writer._history is not None:
-            writer._history.announce_only(sequence)
+        # Zenoh keeps no such stop, and late readers would get the last command.
+        self._writer.sender.keep_past_loop(self._payload, self._extra)
+        if self._writer.history is not None:
+            self._writer.history.announce_only(sequence)
 
     def repeat(self) -> None:
         """Put it at once, with the priority of the messages before it."""
-        writer = self._writer
-        publisher = writer._publisher
-        if publisher is None:
-            return
-        try:
-            if writer.used_bulk or writer._transient:
-                writer._send(publisher, self._payload, self._extra)
-            else:
-                publisher.put(self._payload, attachment=self._extra)
-        except zenoh.ZError as error:  # the session was closed meanwhile
-            logger.debug("%s: not sent: %s", writer._key, reason(error))
+        self._writer.sender.put_now(self._payload, self._extra)
