@@ -20,7 +20,7 @@ __all__ = [
 
 DISTRIBUTIONS: Final = ("humble", "iron", "jazzy", "kilted", "lyrical", "rolling")
 DEFAULT: Final = "jazzy"
-"""That of the shipped interfaces; the wire is the same up to rolling."""
+"""The distribution of the shipped interfaces; the wire is the same up to rolling."""
 
 VARIABLE: Final = "ROS_DISTRO"
 

@@ -81,7 +81,7 @@ class Routes:
         self.all_done.clear()
 
     def remove(self, scope: asyncio.Timeout) -> None:
-        """Note that a block has ended."""
+        """Record the end of a block."""
         self._scopes.discard(scope)
         if not self._scopes:
             self.all_done.set()
@@ -91,7 +91,7 @@ class Routes:
         return self._is_ending
 
     def reset(self) -> None:
-        """Let blocks of another application in this process go on again."""
+        """Resume the blocks of another application in this process."""
         self.begun = None
         self._is_ending = False
 
@@ -258,7 +258,7 @@ async def disconnected(request: Request) -> None:
 async def watching(
     sign: Callable[[], Awaitable[object]], scope: asyncio.Timeout
 ) -> AsyncIterator[None]:
-    """Let `scope` expire when `sign` returns."""
+    """Cancel `scope` when `sign` returns."""
 
     async def watch() -> None:
         await sign()

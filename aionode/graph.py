@@ -473,7 +473,7 @@ class Graph:
 
 
 def end(waiter: asyncio.Future[None]) -> None:
-    """Have a wait for a change raise that the context is destroyed."""
+    """End a wait for a change with an error: the context is destroyed."""
     if not waiter.done():
         waiter.set_exception(EntityDestroyedError("context"))
         waiter.exception()  # retrieved, as nobody may await it any more

@@ -124,7 +124,7 @@ async def to_the_end(work: Coroutine[Any, Any, T], raising: BaseException | None
 def spin_before_blocking(
     loop: asyncio.AbstractEventLoop, spin_ns: int, now_ns: Callable[[], int], subject: str
 ) -> Callable[[], None]:
-    """Have `loop` ask for events again and again for a while, before it lets the thread sleep.
+    """Make `loop` poll for events for a while before its thread sleeps.
 
     Args:
         loop: An event loop of asyncio's own.

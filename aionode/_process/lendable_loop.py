@@ -234,7 +234,7 @@ class Readers:
         return not self._closing
 
     def end(self) -> None:
-        """Let the loop wait for its descriptors itself."""
+        """Give the waiting for descriptors back to the loop itself."""
         self._gate.modify(self._fd, select.EPOLLIN)
         self._waiting.release()
 

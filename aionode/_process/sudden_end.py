@@ -74,7 +74,7 @@ SENDING: Final[list[str]] = []
 
 
 def mark_sending(package: str) -> None:
-    """Have no message sent from a signal handler that interrupts the modules of `package`.
+    """Forbid sending from a signal handler that interrupts a module of `package`.
 
     Its own ``__init__`` says so, and keeps saying it wherever the package moves. It is for code
     that a signal can leave in the middle of a message: between the number of a message and its

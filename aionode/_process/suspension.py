@@ -52,4 +52,4 @@ def is_main_thread() -> bool:
 
 
 suspension = SuspensionHandler()
-"""That of this process."""
+"""This process's handler."""

@@ -22,7 +22,7 @@ PRESETS: Final = {
 """The compression of chunks for each of rosbag2's presets for MCAP."""
 
 COMPRESSIONS: Final = {"None": "none", "Lz4": "lz4", "Zstd": "zstd"}
-"""The same, in the configuration files of its MCAP plugin."""
+"""The compression for each name in the configuration files of its MCAP plugin."""
 
 
 def content_of(path: str) -> dict[str, Any]:

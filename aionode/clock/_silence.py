@@ -114,7 +114,7 @@ class SilenceAlarm:
             self._jumps.unregister()
 
     def _on_jump(self, jump: TimeJump) -> None:
-        """Note that the clock has moved: ROS time is set from outside, never by itself."""
+        """Record that the clock has moved: ROS time is set from outside, never by itself."""
         if self._since_ns is None or not jump.delta.nanoseconds:
             return  # without a sign, or a change of the source: then the clock has not moved
         self._since_ns = self._steady_ns()

@@ -68,7 +68,7 @@ class TimeBase(ABC):
 
     @abstractmethod
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Have the running loop call `callback` at `steady_ns` of the steady clock, never earlier.
+        """Schedule `callback` in the running loop for `steady_ns`, never earlier.
 
         For a time in the past it is called in one of the next turns of the loop, never at once.
         """
@@ -86,7 +86,7 @@ class MachineTime(TimeBase):
         return BOOT_TIME
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Have the running loop call `callback` at `steady_ns`.
+        """Schedule `callback` in the running loop for `steady_ns`.
 
         On Linux it does so within about 0.1 ms, elsewhere within 1 or 2 ms.
         """

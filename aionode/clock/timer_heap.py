@@ -46,7 +46,7 @@ class TimerHeap:
         return len(self._heap) - self._cancelled
 
     def add(self, when_ns: int, callback: Callable[[], None]) -> Entry:
-        """Have the first `fire()` at or after `when_ns` call `callback`."""
+        """Schedule `callback` for the first `fire()` at or after `when_ns`."""
         entry = Entry(self, callback)
         heappush(self._heap, (when_ns, next(self._order), entry))
         return entry

@@ -101,7 +101,7 @@ class Clients:
                 self._refused += session.refused
 
     def _make_room(self, identity: Identity) -> None:
-        """Have a client of the greediest identity leave if there are as many as there may be.
+        """Disconnect a client of the identity with the most clients, if the limit is reached.
 
         So each identity has a share, and each address has one of that of its identity.
 
@@ -183,7 +183,7 @@ class Clients:
         )
 
     def use_policy(self, policy: Policy) -> None:
-        """Have another policy count from now on; rights that it does not give end."""
+        """Apply a new policy from now on; rights that it does not grant end."""
         log = self.node.get_logger()
         if policy.tls != self._policy.tls:
             log.warning("gateway: [tls] of the policy has changed; start the gateway again for it")

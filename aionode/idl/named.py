@@ -47,7 +47,7 @@ class NamedInterfaces:
     def __init__(self) -> None:
         self._folders: set[Path] = set()
         self._new: list[Path] = []
-        """Those that have not been looked at yet."""
+        """The folders that have not been read yet."""
         self._files: dict[str, Path] = {}
         self._builder = NamedBuilder(FileTexts(self._files))
         self._lock = RLock()  # a builder knows which type is being built; it asks for others
@@ -246,7 +246,7 @@ class NamedLoader(Loader):
 
 
 def refuse(module: ModuleType, name: str, error: IdlError) -> None:
-    """Let a module raise an error where one of its types is asked for."""
+    """Make a module raise an error where one of its types is asked for."""
     failed: dict[str, IdlError] = vars(module).setdefault("__refused__", {})
     failed[name] = error
 

@@ -196,7 +196,7 @@ class Gate(SimpleManagedEntity):
         self._watch: SilenceWatch | None = None
 
     def guard(self, watch: SilenceWatch) -> None:
-        """Have a subscription notice silence only while enabled."""
+        """Make a subscription notice silence only while enabled."""
         self._watch = watch
         watch.enable(enabled=self.is_activated)
 

@@ -156,7 +156,7 @@ class LifecycleManager:
                 await self.change_state(name, "shutdown")
 
     async def change_state(self, node_name: str, label: str) -> None:
-        """Have one node make a transition.
+        """Make one node perform a transition.
 
         Raises:
             TransitionError: it refused, failed, or did not appear.

@@ -274,7 +274,7 @@ def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
 
 
 def fixed_bytes(value: bytes | bytearray | memoryview) -> bytes | memoryview:
-    """Return bytes if they are read-only, else a copy."""
+    """Return bytes as they are if they are read-only, else a copy."""
     if isinstance(value, bytearray) or (isinstance(value, memoryview) and not value.readonly):
         return bytes(value)
     return value

@@ -80,7 +80,7 @@ ConstructorT = TypeVar("ConstructorT", bound="Callable[..., None]")
 
 
 def in_context_thread(constructor: ConstructorT) -> ConstructorT:
-    """Have the constructor of `Node` run in the thread of its context's loop, if that is open."""
+    """Run the constructor of `Node` in the thread of its context's loop, if that is open."""
 
     @wraps(constructor)
     def construct(self: Node, *args: Any, **options: Any) -> None:
@@ -210,7 +210,7 @@ class Node(ParameterMethods, GraphQueries):
         core.constructed = True
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Have a node whose constructor raises leave its context."""
+        """Remove a node whose constructor raises from its context."""
         super().__init_subclass__(**options)
         if "__init__" in vars(cls):
             cls.__init__ = destroying_on_error(cls.__init__)  # type: ignore[method-assign]
@@ -1008,7 +1008,7 @@ def add_subscription(core: NodeCore, subscription: Subscription[T]) -> Subscript
 
 
 def add_with_events(core: NodeCore, endpoint: TopicT) -> TopicT:
-    """Have a node own a publisher or subscription, and what calls its event callbacks."""
+    """Add a publisher or subscription to a node, with the task that calls its event callbacks."""
     core.add(endpoint)
     monitor = endpoint._monitor
     if monitor is not None and monitor.handler is not None:

@@ -41,7 +41,7 @@ class Source:
         self._now = now
 
     def hear(self, *, is_set: bool) -> None:
-        """Note that a message came."""
+        """Record the arrival of a message."""
         self.stamp_ns = self._now()
         self.is_set = is_set
 

@@ -52,7 +52,7 @@ DeadlineBestAvailable = Duration(nanoseconds=CONST_INFINITE_NS - 1)
 """A deadline that is compatible with the endpoints visible when the entity is created."""
 
 LivelinessLeaseDurationBestAvailable = DeadlineBestAvailable
-"""The same for a lease duration."""
+"""A lease duration that is compatible with the endpoints visible when the entity is created."""
 
 PolicyT = TypeVar("PolicyT", bound="QoSPolicyEnum")
 

@@ -22,9 +22,9 @@ FOLDER: Final = Path(__file__).parents[1] / "ros_packages"
 SUPPLIED: Final = frozenset(path.name for path in FOLDER.iterdir() if path.name != "__pycache__")
 """Their names."""
 YIELDING: Final = ("launch_param_builder", "nav2_common")
-"""Those of them that give way to a package of the workspace, or an installed one, of their name."""
+"""The packages that give way to one of the same name in the workspace or installed."""
 A_MODULE_FOR_EACH_CLASS: Final = ("launch", "launch_ros", "nav2_common")
-"""Those that have a module for each class in ROS, and one for several classes here."""
+"""The packages that have a module for each class in ROS, and one for several classes here."""
 
 SHARED_ELSEWHERE: Final = {
     "InvalidQoSProfileException": "rclpy.qos",
@@ -109,7 +109,7 @@ def provide(name: str) -> None:
 
 
 def shared_errors_take_names() -> None:
-    """Let the exceptions that rclpy has as well say that they are of rclpy.
+    """Give the exceptions that rclpy has as well the names of rclpy's modules.
 
     For processes that run a program of rclpy; elsewhere they are those of `aionode.errors`.
     """

@@ -183,7 +183,7 @@ def code_of_call(module: str, function: str) -> CodeType:
 
 
 def no_module(name: str) -> str:
-    """Return that there is no module, where it was looked for, and what is close to its name."""
+    """Return the error text for a missing module: where it was looked for, and the closest name."""
     import difflib  # for a text of an error alone
     import pkgutil
 

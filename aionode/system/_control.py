@@ -53,7 +53,7 @@ class Controlled(Protocol):
         ...
 
     def request_end(self) -> None:
-        """Have the system end."""
+        """End the system."""
         ...
 
 

@@ -205,7 +205,7 @@ class Guard:
     def start(
         self, description: ProgramDescription, streams: Sequence[int], outputs: Sequence[int]
     ) -> RunningProgram:
-        """Have a program started; the caller closes its descriptors afterwards.
+        """Ask the guardian to start a program; the caller closes its descriptors afterwards.
 
         Args:
             description: What is started.
@@ -233,7 +233,7 @@ class Guard:
         return program
 
     def stop(self, program: RunningProgram) -> None:
-        """Have a program stopped by the signals of its description."""
+        """Ask the guardian to stop a program by the signals of its description."""
         program.is_stopping = True
         if self._orphans is None:
             self._send({"do": "stop", "number": program.number})
@@ -261,7 +261,7 @@ class Guard:
         self._loop.remove_writer(self._link)
 
     def _kill_at_sudden_end(self, _ends_ns: int) -> bool:
-        """Have every process killed when a second signal ends this process at once."""
+        """Arrange for every process to be killed when a second signal ends this process at once."""
         if self._orphans is not None:
             self._orphans.kill()
         with contextlib.suppress(OSError):

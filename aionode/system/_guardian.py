@@ -85,7 +85,7 @@ class Program:
             self._steps, self._due = list(self.ladder), 0.0
 
     def kill(self) -> None:
-        """Let SIGKILL be the next signal, now."""
+        """Escalate to SIGKILL now."""
         self.stopping = True
         self._steps, self._due = [], 0.0
 

@@ -420,6 +420,6 @@ async def outcome_of(work: Any) -> NotReadyError | None:
 
 
 def settle(waiter: asyncio.Future[None]) -> None:
-    """Let a future be done, unless it is."""
+    """Complete a future, unless it is done."""
     if not waiter.done():
         waiter.set_result(None)

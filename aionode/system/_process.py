@@ -131,7 +131,7 @@ class ProcessMember(Member):
             self._processes.reader.remove(pipe)
 
     def _start(self) -> tuple[list[int], RunningProgram]:
-        """Have it started; return the pipes that it prints to, and the program.
+        """Start it; return the pipes that it prints to, and the program.
 
         Both streams share one pipe, which keeps the order of their lines, unless somebody wants to
         know them apart.
@@ -144,7 +144,7 @@ class ProcessMember(Member):
         return outputs, program
 
     def _hand_over(self, given: ExitStack, kept: ExitStack) -> tuple[RunningProgram, list[int]]:
-        """Have it started; what closes the descriptors that it gets, and those of its output."""
+        """Start it; return the program and its outputs. The stacks close descriptors."""
         outputs: list[int] = []
         streams = [os.open(os.devnull, os.O_RDONLY)]
         given.callback(os.close, streams[0])

@@ -41,7 +41,7 @@ class ManualClock(TimeBase):
         return Time(nanoseconds=self._now_ns, clock_type=ClockType.ROS_TIME)
 
     async def advance(self, seconds: float) -> None:
-        """Let `seconds` pass: everything due fires at its own time, in order.
+        """Advance by `seconds`: everything due fires at its own time, in order.
 
         Before the clock moves, and after each point in time, all callbacks run until they wait for
         something (see `settle`).
@@ -58,7 +58,7 @@ class ManualClock(TimeBase):
         await settle()
 
     async def jump(self, seconds: float) -> None:
-        """Let `seconds` pass at once, as after a stall: everything due meanwhile fires late.
+        """Jump by `seconds`, as after a stall: everything due meanwhile fires late.
 
         A timer that has missed several periods fires once, and keeps its schedule.
 
@@ -70,7 +70,7 @@ class ManualClock(TimeBase):
         await settle()
 
     def stall(self, seconds: float) -> None:
-        """Let `seconds` pass as in a callback that blocks the event loop: nothing fires yet.
+        """Advance by `seconds` as a callback that blocks the event loop does: nothing fires yet.
 
         Everything due meanwhile fires late, when the clock moves next.
 
@@ -80,7 +80,7 @@ class ManualClock(TimeBase):
         self._now_ns += span_ns(seconds, "stall")
 
     async def _walk_to(self, end_ns: int, settled: Callable[[], Awaitable[None]]) -> None:
-        """Let time pass until `end_ns`, if that is later, after everything has settled.
+        """Advance to `end_ns`, if that is later, after everything has settled.
 
         Args:
             end_ns: The time in nanoseconds.

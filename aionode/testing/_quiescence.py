@@ -61,7 +61,7 @@ def ready_queue(loop: asyncio.AbstractEventLoop) -> Sized | None:
 
 
 async def turn_until_empty(loop: asyncio.AbstractEventLoop, ready: Sized) -> None:
-    """Let `loop` turn until its queue holds nothing but other calls of this function."""
+    """Run `loop` until its queue holds nothing but other calls of this function."""
     SETTLING[loop] = SETTLING.get(loop, 0) + 1
     try:
         await checkpoint()
@@ -72,7 +72,7 @@ async def turn_until_empty(loop: asyncio.AbstractEventLoop, ready: Sized) -> Non
 
 
 async def turn_until_tasks_block() -> None:
-    """Let the loop turn until every other task has been blocked for some turns in a row."""
+    """Run the loop until every other task has been blocked for some turns in a row."""
     idle_turns = 0
     while idle_turns < IDLE_TURNS:
         await checkpoint()

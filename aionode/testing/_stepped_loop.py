@@ -68,7 +68,7 @@ class SteppedLoop:
             running.add_done_callback(partial(pass_on, outcome=outcome))
 
     async def walk_to(self, end_ns: int) -> None:
-        """Let time pass until `end_ns`: everything due fires at its own time, in order."""
+        """Advance time to `end_ns`: everything due fires at its own time, in order."""
         await self._clock._walk_to(end_ns, self.settle)
 
     async def settle(self) -> None:
@@ -163,13 +163,13 @@ class SteppedTimer(asyncio.TimerHandle):
     _timers: dict[SteppedTimer, None]
 
     def enter(self, clock: ManualClock, due_ns: int, timers: dict[SteppedTimer, None]) -> None:
-        """Have `clock` call it at `due_ns`; it is one of `timers` until then."""
+        """Schedule it with `clock` at `due_ns`; until then it is one of `timers`."""
         self._timers = timers
         self._timers[self] = None
         self._alarm = clock.call_at(due_ns, self.run)
 
     def leave_clock(self) -> None:
-        """Have the clock forget it."""
+        """Remove it from the clock."""
         self._timers.pop(self, None)
         if self._alarm is not None:
             self._alarm.cancel()

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["system_under_test"]
 
 DOMAINS: Final = range(102, 233)
-"""Those that tests take: the ones above are for people, whose ports every platform has."""
+"""The domains for tests: lower ones are for people, as every platform has their ports."""
 
 
 @contextlib.asynccontextmanager
@@ -90,7 +90,7 @@ def is_launch_file(file: Path) -> bool:
 async def started_by(
     main: Callable[[System], Awaitable[object]], system: System
 ) -> AsyncIterator[None]:
-    """Have a function add the members of a system, and yield when they are ready."""
+    """Start the members that a function adds to a system, and yield when they are ready."""
     await main(system)
     await system.ready()
     yield

@@ -32,7 +32,7 @@ LARGEST_PART: Final = 128 << 20
 """A chunk or message may have so many bytes, and more if its compressed form justifies it."""
 
 LARGEST_FILE: Final = 256 << 20
-"""The same for a whole file, which is written to a temporary folder."""
+"""The limit for a whole file, which is decompressed to a temporary folder."""
 
 LIMIT_VARIABLE: Final = "AIONODE_BAG_LARGEST_BYTES"
 """The variable of the environment that raises both."""

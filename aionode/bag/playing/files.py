@@ -48,7 +48,7 @@ class FilesInPlay:
         self.next_ns = MOST_NS
 
     def go_to(self, time_ns: int) -> None:
-        """Note that the player reads from a time on."""
+        """Record the time from which the player reads."""
         self._next = sum(start_ns <= time_ns for start_ns, _, _ in self._files)
         self._note()
 

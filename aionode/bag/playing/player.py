@@ -354,7 +354,7 @@ class Player:
         return bag_ns + int((self._steady_ns() - steady_ns) * self._rate)
 
     def _set_anchor(self, bag_ns: int) -> None:
-        """Let the recording show a time now, and go on from there."""
+        """Seek to a time of the recording, and play on from there."""
         self._anchor = (self._steady_ns(), bag_ns)
         self._wake.set()
 

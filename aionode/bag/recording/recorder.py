@@ -43,7 +43,7 @@ BACK_NS: Final = 1_000_000_000
 NODE_TIME: Final = 0
 PUBLISH_TIME: Final = 1
 RECEIVE_TIME: Final = 2
-"""By which time something is to happen, as rosbag2's services number them."""
+"""The clocks by which something may be scheduled, with the numbers of rosbag2's services."""
 
 
 class Due(NamedTuple):

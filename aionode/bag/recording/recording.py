@@ -115,7 +115,7 @@ class Recording:
         return found
 
     async def do(self, work: Callable[[], Any]) -> None:
-        """Have the thread do something after what it was given before, and wait for it.
+        """Run something in the writer thread, after all earlier work, and wait for it.
 
         Raises:
             BagWriteError: the disk is full, or fails.

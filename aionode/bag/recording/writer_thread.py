@@ -133,7 +133,7 @@ class WriterThread:
         return True
 
     def call(self, work: Callable[[], None]) -> None:
-        """Have the thread call `work` after it has written the rows that came before."""
+        """Call `work` in the thread once all earlier rows are written."""
         self._rows.append(work)
 
     def stop(self) -> None:
@@ -180,7 +180,7 @@ class WriterThread:
         self._sync_in_time()
 
     def _sync_in_time(self) -> None:
-        """Have the disk confirm what was written, if that is due."""
+        """Sync the file to disk, if a sync is due."""
         if self._is_dirty and perf_ns() - self._synced_ns >= SYNC_NS:
             self._is_dirty = False
             self._synced_ns = perf_ns()

@@ -99,7 +99,7 @@ class Search:
             size = max(1, min(size, len(self.piece.topics)) // 2)
 
     async def cut_end(self) -> None:
-        """Let the piece end as early as possible."""
+        """Move the end of the piece as early as possible."""
         passes_ns, fails_ns = self.piece.start_ns, self.piece.end_ns
         while fails_ns - passes_ns > SHORTEST_NS:
             middle_ns = (passes_ns + fails_ns) // 2
@@ -109,7 +109,7 @@ class Search:
                 passes_ns = middle_ns
 
     async def cut_start(self) -> None:
-        """Let the piece begin as late as possible: the steps halve until none is left."""
+        """Move the start of the piece as late as possible, by steps that halve each time."""
         step_ns = (self.piece.end_ns - self.piece.start_ns) // 2
         while step_ns > SHORTEST_NS:
             start_ns = self.piece.start_ns + step_ns

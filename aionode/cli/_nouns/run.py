@@ -144,7 +144,7 @@ class Programs:
         return Packages(workspace_of(current) or current)
 
     def use_workspace(self, specs: Sequence[str]) -> None:
-        """Have nodes find the types of the workspace that was named, or that their files lie in."""
+        """Let nodes find the types of the named workspace, or of that around their files."""
         from aionode._packages import use, workspace_of
 
         files = (Path(source) for source in (spec.partition(":")[0] for spec in specs))

@@ -140,7 +140,7 @@ def interfaces_option(command: CommandT) -> CommandT:
 def name_interface_folders(
     ctx: click.Context, param: click.Parameter, value: tuple[Path, ...]
 ) -> None:
-    """Have this process, and those that it starts, find the interfaces of the given folders."""
+    """Make the interfaces of the given folders known to this process and its children."""
     if value:
         folders = os.pathsep.join(str(path.absolute()) for path in value)
         ctx.with_resource(in_environment("AIONODE_INTERFACES", folders))

@@ -149,7 +149,7 @@ class ClockedSchedule:
         )
 
     def wake(self) -> None:
-        """Have those that wait look again, because the schedule has changed."""
+        """Wake those who wait, because the schedule has changed."""
 
     def close(self) -> None:
         """Stop following the clock."""
@@ -227,7 +227,7 @@ class Ticker(ClockedSchedule):
         schedule.look_back(self.clock.now_ns())  # the machine's clock may have been set back
 
     def _set_alarm(self, ring: Callable[[], None], *, repeat: bool) -> tuple[Alarm, int]:
-        """Have `ring` called when the next call is due; return how often after that, 0 for never.
+        """Call `ring` when the next call is due; return its period after that, 0 for none.
 
         With `repeat` it may go on by itself, which the kernel does for less than setting it again.
         """

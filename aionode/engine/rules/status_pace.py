@@ -57,7 +57,7 @@ class StatusPace:
         self._due: asyncio.Handle | None = None
 
     def note_change(self) -> None:
-        """Have the states sent soon."""
+        """Schedule the states to be sent soon."""
         if self._due is None:
             loop = asyncio.get_running_loop()
             wait_s = self._spacing.wait_s(loop.time())

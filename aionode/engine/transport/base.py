@@ -412,7 +412,7 @@ class Transport(ABC):
         return []
 
     def abandon(self) -> None:  # noqa: B027  # most have nothing to let go of
-        """Let go of what a forked child has of its parent's, without a sign to others.
+        """Release what a forked child inherited from its parent, without telling anyone.
 
         Called in the child, which never uses this transport again.
         """

@@ -54,7 +54,7 @@ LATER: Final = "f"
 """The first digit of the id of a session that looks others up: it dials all others."""
 
 SOUGHT: Final = "1"
-"""That of a session that does not: all others dial it, if one has introduced it to them."""
+"""The first digit of the id of a session that looks nobody up: all dial it once introduced."""
 
 
 class DiscoveryRange(enum.Enum):
@@ -126,14 +126,14 @@ class Network:
 
     @property
     def far_peers(self) -> tuple[str, ...]:
-        """Those static peers that a router of this machine dials: on other machines."""
+        """The static peers that a router on this machine dials: those on other machines."""
         if self.discovery_range is DiscoveryRange.OFF:
             return ()
         return tuple(endpoint for endpoint in self.static_peers if not is_near(endpoint))
 
     @property
     def near_peers(self) -> tuple[str, ...]:
-        """Those static peers that a session dials itself: on this machine."""
+        """The static peers that a session dials itself: those on this machine."""
         if self.discovery_range is DiscoveryRange.OFF:
             return ()
         return tuple(endpoint for endpoint in self.static_peers if is_near(endpoint))

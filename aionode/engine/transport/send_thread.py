@@ -90,7 +90,7 @@ class Worker:
         self._jobs.put(run)
 
     def end(self) -> None:
-        """Let the thread end after its jobs."""
+        """End the thread after its jobs."""
         self._jobs.put(None)
 
     def _run(self) -> None:
@@ -160,13 +160,13 @@ class SendThread:
             worker.submit_past_loop(job)
 
     def close(self) -> None:
-        """Let the thread end after the jobs that it has; returns at once."""
+        """End the thread after the jobs it has now; does not wait."""
         worker, self._worker = self._worker, None
         if worker is not None:
             worker.end()
 
     def abandon(self) -> None:
-        """Let the thread end after the job that it is in; returns at once."""
+        """End the thread after its current job; does not wait."""
         if self._worker is not None:
             self._worker.stopped = True
         self.close()
@@ -234,7 +234,7 @@ class SendQueue:
         return self._put_bytes - self._sent_bytes
 
     def put(self, send: Callable[[], None], size_bytes: int = 0) -> None:
-        """Have `send` called in the thread; a full queue drops its oldest unless it keeps all."""
+        """Queue a call of `send`; a full queue drops its oldest unless it keeps all."""
         waiting = self._waiting
         dropped = 0
         while not self._keep_all and (

@@ -107,7 +107,7 @@ class Simulator(Node):
     # One step
 
     def step(self) -> None:
-        """Let the world go on, and publish what there is to see."""
+        """Advance the world, and publish what the sensors see."""
         self.steps += 1
         if self.makes_time:
             self.clock.publish(Clock(clock=self.now().to_msg()))

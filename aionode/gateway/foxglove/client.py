@@ -129,7 +129,7 @@ class Client:
                 await robot.clock.sleep(SETTLING_SEC)
 
     def _note_policy(self, ended: list[Subscribed]) -> None:
-        """Take that the policy has changed, which has ended subscriptions."""
+        """Handle a change of policy, which has ended subscriptions."""
         self._channels.tell_ended(ended)
         self._parameters.forget(ended)
         self._news.set()

@@ -196,7 +196,7 @@ class Failures:
             self.add(subject, str(error) or "no answer in time")
 
     def add(self, subject: str, reason: str) -> None:
-        """Note that something has failed."""
+        """Record a failure."""
         self._texts.append(f"{subject}: {reason}")
 
     def tell(self, request: str) -> None:

@@ -187,7 +187,7 @@ class Asked:
         return self.request.headers.get("accept", "")
 
     def lose_silent_client(self) -> None:
-        """Have the caller count as gone when its host is silent for as long as the policy says."""
+        """Treat the caller as gone when its host has been silent for as long as the policy says."""
         connection: Any = self.request.scope["state"].get("aionode_connection")
         if connection is not None:
             connection.lose_after(self.session._limits.client_lost_sec)

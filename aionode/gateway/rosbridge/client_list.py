@@ -48,7 +48,7 @@ class ClientList:
 
     @contextmanager
     def listing(self, address: str) -> Iterator[None]:
-        """Have a client of rosbridge on the list while it is connected.
+        """List a rosbridge client for as long as it is connected.
 
         Args:
             address: Its address.

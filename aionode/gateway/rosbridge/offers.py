@@ -169,7 +169,7 @@ class Offers:
     async def _execute(
         self, offer: Offer, type_name: str, goal: ServerGoalHandle[Any, Any, Any]
     ) -> Any:
-        """Have the client execute a goal; return the result."""
+        """Execute a goal at the client, and return its result."""
         try:
             message_id, answer = offer.ask("action_goal")
         except ServiceError as error:

@@ -36,7 +36,7 @@ SERVICES: Final[dict[str, tuple[tuple[str, ...], Answer]]] = {}
 
 
 def service(name: str, *request: str) -> Callable[[Answer], Answer]:
-    """Have a function answer a service; `request` has the fields of its request in their order."""
+    """Answer a service by a function, whose arguments are the fields of the request in order."""
 
     def add(answer: Answer) -> Answer:
         SERVICES[name] = (request, answer)

@@ -122,7 +122,7 @@ class Connection(asyncio.Protocol):
         self._portions.add(data)
 
     def pause_writing(self) -> None:
-        """Have what is sent wait until the client has read enough."""
+        """Pause sending until the client has read enough."""
         self.writable.clear()
 
     def resume_writing(self) -> None:

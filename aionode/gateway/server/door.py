@@ -147,7 +147,7 @@ class Guesses:
             )
 
     def note_wrong(self, address: str) -> None:
-        """Take that a token was wrong."""
+        """Record a wrong token."""
         now_ns, place = self._now_ns(), place_of(address)
         free_ns = max(self._free_ns.pop(place, 0), now_ns) + WRONG_NS
         self._free_ns.put(place, free_ns)

@@ -46,7 +46,7 @@ async def close(websocket: WebSocket, code: int, reason: str) -> None:
 async def exchange(
     websocket: WebSocket, session: Session, serve: Serve, subprotocol: str | None = None
 ) -> None:
-    """Let a protocol speak with a client until one of them ends it.
+    """Run a protocol with a client until either side ends it.
 
     Args:
         websocket: The WebSocket, which is accepted here.

@@ -103,7 +103,7 @@ class HttpConnection(Connection):
         self._shared.start(self._request.run(self._shared.app))
 
     def _become_websocket(self, scope: dict[str, Any]) -> None:
-        """Let a WebSocket have all the time, and frames as large as the policy says now."""
+        """Lift the time limit for a WebSocket; take the largest frame from the current policy."""
         self._http.next_event()  # the end of the request, which has no body
         rest = self._http.trailing_data[0] + self._portions.close()
         self._stop_time()
@@ -157,7 +157,7 @@ class HttpConnection(Connection):
             self._handle_events()
 
     def resume_writing(self) -> None:
-        """Note that the client reads."""
+        """Record that the client is reading."""
         self._unread_bytes = None
         super().resume_writing()
 
@@ -187,7 +187,7 @@ class HttpConnection(Connection):
             self._begin_time()
 
     def lose_after(self, seconds: float) -> None:
-        """Have a client whose host acknowledges nothing for some seconds count as disconnected.
+        """Treat a client as disconnected when its host has acknowledged nothing for some seconds.
 
         TCP by itself waits for a quarter of an hour. Only Linux is told, and only the host answers:
         a program that is frozen is not noticed.
@@ -240,7 +240,7 @@ class Request:
         self.is_answered = False
 
     async def run(self, app: Application) -> None:
-        """Have the application answer; its error is answered with a status, and logged."""
+        """Call the application; if it raises, answer with an error status, and log it."""
         try:
             await app(self._scope, self.receive, self.send)
             if not self._is_over:

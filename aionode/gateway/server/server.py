@@ -69,7 +69,7 @@ class Server:
                 await end_connections(shared)
 
     def stop(self) -> None:
-        """Have `serve` disconnect the clients and return."""
+        """Make `serve` disconnect its clients and return."""
         self._has_to_end.set()
 
 

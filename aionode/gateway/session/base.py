@@ -289,7 +289,7 @@ class SessionBase:
         return self._trusted < self._doubts
 
     def doubt(self, *, stood_still: bool = False) -> None:
-        """Have commands refused until the client has answered a ping that is sent now.
+        """Refuse commands until the client has answered a ping, which is sent now.
 
         It was silent for too long, or the gateway has not read what it has sent. What was on its
         way meanwhile was sent before that answer.
@@ -312,7 +312,7 @@ class SessionBase:
             self.connection.ping(answered)
 
     def note_frame(self) -> None:
-        """Take that a frame is handled now, which arrived with the last bytes of the client."""
+        """Begin to handle a frame that arrived with the client's latest bytes."""
         if self.connection is not None:
             self._robot.standstills.look()
             self.note_arrival(self.connection.silent_sec())
@@ -323,7 +323,7 @@ class SessionBase:
                 self._stood_still_ns = max(self._stood_still_ns, self.arrival_ns())
 
     def note_arrival(self, age_sec: float) -> None:
-        """Take that what is handled now arrived some seconds ago."""
+        """Begin to handle something that arrived some seconds ago."""
         self._frame_ns = self.steady_ns() - round(age_sec * S_TO_NS)
 
     def arrival_ns(self) -> int:

@@ -28,7 +28,7 @@ class Owner(Protocol):
         """How it is connected, as others are told who ask for what it commands."""
 
     def doubt(self) -> None:
-        """Take that the client was silent for the time to live."""
+        """Handle a client that was silent for the time to live."""
 
 
 class Holder:

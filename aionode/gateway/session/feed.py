@@ -214,7 +214,7 @@ class Feed:
 
 
 def ignore_incompatible_qos(info: object) -> None:
-    """Have the log get no warning of it."""
+    """Keep the warning about it out of the log."""
 
 
 class Feeds:

@@ -64,7 +64,7 @@ class Standstills:
             self._alarm.cancel()
 
     def look(self) -> None:
-        """Note that the loop turns; if it has not for too long, everything read now may be old."""
+        """Record a turn of the loop; after too long without one, everything read now may be old."""
         if self._on_standstill is None:
             return
         now_ns = self._clock.steady_ns()

@@ -165,7 +165,7 @@ class SessionTopics(SessionBase):
         min_period_sec: float = 0.0,
         prepare: Prepare | None = None,
     ) -> Subscribed:
-        """Have each message of a topic put into the outbox.
+        """Put each message of a topic into the outbox.
 
         Args:
             topic: The name of the topic.

@@ -154,11 +154,11 @@ class LaunchContext:
         self.environment.update(os.environ)
 
     def register_event_handler(self, event_handler: Any, append: bool = False) -> None:
-        """Have a handler called from now on."""
+        """Register a handler."""
         self.steps.append(Watch(handler=event_handler, context=self.fork()))
 
     def unregister_event_handler(self, event_handler: Any) -> None:
-        """Have a handler called no more."""
+        """Unregister a handler."""
         self.steps.append(Watch(handler=event_handler, context=self.fork(), ends=True))
 
     def emit_event_sync(self, event: Any) -> None:

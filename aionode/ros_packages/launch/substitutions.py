@@ -259,7 +259,7 @@ class FindExecutable(Substitution):
 
     @classmethod
     def _Substitution__of_words(cls, *words: Any) -> Self:
-        """Return that of ``$(find-exec name)``."""
+        """Return the substitution for ``$(find-exec name)``."""
         return cls(name=words[0])
 
     def perform(self, context: LaunchContext) -> str:
@@ -281,7 +281,7 @@ def program_of(name: str, context: LaunchContext) -> str | None:
 
 
 def missing_program(name: str) -> str:
-    """Return that a program is not there, and what to do."""
+    """Return the error text for a missing program, with its remedy."""
     remedy = "; pip install 'aionode[xacro]' brings it" if Path(name).name == "xacro" else ""
     return f"{name!r} not found on the PATH{remedy}"
 
@@ -371,7 +371,7 @@ class PythonExpression(Substitution):
 
     @classmethod
     def _Substitution__of_words(cls, *words: Any) -> Self:
-        """Return that of ``$(eval 'expression' 'module, module')``."""
+        """Return the substitution for ``$(eval 'expression' 'module, module')``."""
         if len(words) < 2:
             return cls(words[0])
         names = "".join(getattr(word, "text", "") for word in words[1]).split(",")

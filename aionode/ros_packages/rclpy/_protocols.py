@@ -16,10 +16,10 @@ class ExecutorLike(Protocol):
     """An executor, as tasks and nodes see it."""
 
     def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Any:
-        """Have a function or coroutine run; return its future."""
+        """Schedule a function or coroutine; return its future."""
 
     def wake(self) -> None:
-        """Have it look again at what is ready."""
+        """Wake it to look again at what is ready."""
 
 
 class NodeLike(Protocol):

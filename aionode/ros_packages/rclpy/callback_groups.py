@@ -43,11 +43,11 @@ class CallbackGroup:
         raise NotImplementedError
 
     def beginning_execution(self, entity: Entity) -> bool:
-        """Note that a call begins; return whether it may."""
+        """Begin a call, and return whether it may run."""
         raise NotImplementedError
 
     def ending_execution(self, entity: Entity) -> None:
-        """Note that a call that began has ended, by return or exception."""
+        """End a call that had begun, whether it returned or raised."""
         raise NotImplementedError
 
 
@@ -81,7 +81,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return self._active_entity is None
 
     def beginning_execution(self, entity: Entity) -> bool:
-        """Note that a call begins, if none runs."""
+        """Begin a call, if none runs."""
         with self._lock:
             if self._active_entity is None:
                 self._active_entity = entity
@@ -89,7 +89,7 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
         return False
 
     def ending_execution(self, entity: Entity) -> None:
-        """Note that the call has ended."""
+        """End the call."""
         with self._lock:
             self._active_entity = None
 

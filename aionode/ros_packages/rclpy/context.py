@@ -92,7 +92,7 @@ class Context:
                 configure_logging(self._handle)
 
     def track_node(self, node: Any) -> None:
-        """Have `shutdown` destroy `node`, if it still exists then."""
+        """Register `node` to be destroyed by `shutdown`, if it still exists then."""
         with self._lock:
             self._nodes.append(weakref.ref(node))
 
@@ -141,7 +141,7 @@ class Context:
                 self._cleanup()
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
-        """Have `shutdown` call `callback`; at once if it has happened. Methods are held weakly.
+        """Call `callback` at `shutdown`, or now if that has happened. Methods are held weakly.
 
         Raises:
             TypeError: it is not callable.

@@ -131,7 +131,7 @@ class Executor:
     # Tasks
 
     def create_task(self, callback: Callable[..., Any], *args: Any, **kwargs: Any) -> Task[Any]:
-        """Have a function or coroutine run while the executor spins; return its future."""
+        """Schedule a function or coroutine to run while the executor spins; return its future."""
         task: Task[Any] = Task(callback, args, kwargs, executor=self)
         with self._tasks_lock:
             self._tasks.append((task, None, None))
@@ -177,7 +177,7 @@ class Executor:
             return list(self._nodes)
 
     def wake(self) -> None:
-        """Have it look again at what is ready; any thread may call this."""
+        """Wake the executor to look again at what is ready; any thread may call this."""
         self._Executor__wakeup.wake()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:

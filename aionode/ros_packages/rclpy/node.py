@@ -480,7 +480,7 @@ class Node(NodeParameters, NodeGraph):
             arrivals.note()
 
     def add_waitable(self, waitable: Waitable[Any]) -> None:
-        """Have its executor wait for `waitable` as well."""
+        """Add `waitable` to what the executor waits for."""
         self._Node__waitables.append(waitable)
         self._wake_executor()
 

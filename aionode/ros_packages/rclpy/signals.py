@@ -76,7 +76,7 @@ def get_current_signal_handlers_options() -> SignalHandlerOptions:
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Have these signals shut contexts down.
+    """Install handlers by which these signals shut contexts down.
 
     SIGINT goes on as KeyboardInterrupt in the main thread; SIGTERM lets `spin` end. Only the main
     thread can do that; in others nothing happens.
@@ -97,7 +97,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def uninstall_signal_handlers() -> None:
-    """Have signals do again what they did before."""
+    """Restore what the signals did before."""
     for number, before in list(replaced.items()):
         try:
             if signal.getsignal(number) is handle:

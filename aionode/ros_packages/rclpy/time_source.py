@@ -161,7 +161,7 @@ class TimeSource:
 
 
 def watch_clock(subscription: EndpointInfo, context: CoreContext) -> None:
-    """Have the log say it if nobody publishes simulated time; in the context's thread.
+    """Warn in the log if nobody publishes simulated time; runs in the context's thread.
 
     Whether a time has come is not known there: that depends on who spins.
     """

@@ -89,7 +89,7 @@ class Waitable(Generic[T]):
         raise NotImplementedError("Must be implemented by subclass")
 
     def add_future(self, future: Future[Any]) -> None:
-        """Have the executor run the done callbacks of `future`."""
+        """Make the executor run the done callbacks of `future`."""
         self._futures.append(future)
 
     def remove_future(self, future: Future[Any]) -> None:

@@ -45,7 +45,7 @@ class ServiceRequestsSource:
 
 
 class MessageOrder:
-    """By which time messages are played."""
+    """The clock by which messages are played."""
 
     RECEIVED_TIMESTAMP = "received"
     SENT_TIMESTAMP = "sent"
@@ -240,7 +240,7 @@ class LiveThread:
             raise RuntimeError(str(error)) from error
 
     def begin(self, work: Coroutine[Any, Any, Any]) -> concurrent.futures.Future[Any]:
-        """Have a coroutine run in the loop, once that runs."""
+        """Run a coroutine in the loop, once the loop runs."""
         awaited(self._entered)
         return asyncio.run_coroutine_threadsafe(work, self._loop)
 

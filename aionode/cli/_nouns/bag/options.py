@@ -42,7 +42,7 @@ class Names(click.Option):
     """An option that takes all values up to the next option, as in ros2: ``--topics /a /b``."""
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Have the parser hand over the values that follow."""
+        """Make the parser take the values that follow."""
         super().add_to_parser(parser, ctx)
         for name in self.opts:
             option = parser._long_opt.get(name) or parser._short_opt.get(name)

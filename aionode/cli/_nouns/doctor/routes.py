@@ -1,4 +1,4 @@
-"""By which route each publisher reaches each subscription, as seen by another process.
+"""The route by which each publisher reaches each subscription, as seen by another process.
 
 The publishing process knows exactly: `publisher.stats.routes`. Other processes only see which
 processes are linked and which could be.

@@ -34,7 +34,7 @@ MOST_LINKS: Final = 4_000
 
 
 def name_of(secret: bytes) -> bytes:
-    """Return by which name anyone may know the link of a secret."""
+    """Return the public name of a link: a hash of its secret."""
     return blake2b(key=secret, digest_size=HASH_SIZE, person=b"name").digest()
 
 

@@ -435,7 +435,7 @@ class LinkManager:
             largest.close(FrameError(f"more than {MAX_HELD} bytes of incomplete frames"))
 
     def on_closed(self, connection: Connection) -> None:
-        """Let its endpoints go on over Zenoh, and dial again after a delay."""
+        """Continue its endpoints over Zenoh, and dial again after a delay."""
         dialled = self._opening.pop(connection, None)
         if dialled is not None:
             self._try_later(dialled)

@@ -245,7 +245,7 @@ class LinkWriter(Writer):
         return send_queue
 
     def reconsider(self) -> None:
-        """Have the next message find out whether a subscription needs Zenoh.
+        """Make the next message check whether a subscription needs Zenoh.
 
         Not now: with many subscriptions to one topic, each of them would look at all.
         """

@@ -72,7 +72,7 @@ ZENOH_LATE_S: Final = 0.1
 """Time for which a subscription that holds messages waits for the other route to deliver any."""
 
 RECOVERY_S: Final = 0.5
-"""The same where messages are sent again: to a KEEP_ALL subscription, or after a link has ended,
+"""The limit where messages are sent again: to a KEEP_ALL subscription, or after a link has ended,
 which the other process has to notice first.
 """
 

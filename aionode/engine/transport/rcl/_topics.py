@@ -142,7 +142,7 @@ class RclWriter(RclDeclaration, Writer):
             self._note_refused()
 
     def _put(self, payload: bytes) -> None:
-        """Have a thread send a message that may take long, or that comes after such ones."""
+        """Send a message by a thread: it may take long, or follows one that may."""
         send = partial(self._send_without_gil, self._handle, self._pointer, payload)
         self._queue.put(send, len(payload))
         self._queued = True

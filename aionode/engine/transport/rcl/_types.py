@@ -19,7 +19,7 @@ MESSAGE_HASH_FIELD: Final = 3
 """Position of ``get_type_hash_func`` in a ``rosidl_message_type_support_t``, in pointers."""
 
 SERVICE_HASH_FIELD: Final = 8
-"""The same in a ``rosidl_service_type_support_t``."""
+"""The corresponding field of a ``rosidl_service_type_support_t``."""
 
 PARTS: Final = ("Request", "Response", "Event")
 

@@ -43,7 +43,7 @@ class ReaderOutput(ProxyOutput, Protocol):
         """Return whether messages have arrived that the reader has not received yet."""
 
     def receive_arrivals(self) -> None:
-        """Have the reader receive them."""
+        """Deliver them to the reader."""
 
     def malformed(self) -> None:
         """Take note of a submessage without a valid sender."""

@@ -189,7 +189,7 @@ class StatefulWriter:
         self._output.send(reader.participant, data)
 
     def announce_only(self, sequence: int) -> None:
-        """Have present readers wait for nothing before a message, which is sent elsewhere.
+        """Tell current readers to wait for nothing before a message, which is sent another way.
 
         Another thread than the writer's may call this.
         """

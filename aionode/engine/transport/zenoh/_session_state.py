@@ -71,7 +71,7 @@ class LingeringWriter(Protocol):
 
 
 class EndpointNames(NamedTuple):
-    """By which names one of our endpoints is known to others.
+    """The names by which others know one of our endpoints.
 
     Attributes:
         key: The key of its messages or requests.

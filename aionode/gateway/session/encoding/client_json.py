@@ -22,7 +22,7 @@ LARGE_ITEMS: Final = 1_000
 """Beyond so many values, what is made of them is made in a thread: each takes some microseconds."""
 
 LARGE_BYTES: Final = 64 << 10
-"""The same for a message in CDR, which is decoded faster."""
+"""The limit for a message in CDR, which is decoded faster."""
 
 
 def decoded(text: str | bytes | memoryview, most_parts: int, what: str = "frame") -> Any:

@@ -45,7 +45,7 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """In which form a client wants a picture.
+    """The form in which a client wants a picture.
 
     Attributes:
         media_type: ``image/jpeg`` or ``image/png``; None for either.

@@ -227,7 +227,7 @@ class OpaqueCoroutine(Action):
         self._OpaqueCoroutine__ignore_context = ignore_context
 
     def execute(self, context: LaunchContext) -> None:
-        """Note that it is to be run."""
+        """Mark it to be run."""
         context.steps.append(Call(self, context.fork()))
 
     async def _OpaqueCoroutine__call(self, context: LaunchContext) -> None:

@@ -106,7 +106,7 @@ class ContextHandle(Destroyable):
         return True
 
     def note_told(self) -> None:
-        """Note that this thread of the program has been told of the shutdown."""
+        """Record that this thread of the program has been told of the shutdown."""
         if self._signalled:
             self._told_ns.setdefault(get_ident(), steady_ns())
 

@@ -54,7 +54,7 @@ class EndpointHandle(Destroyable, Generic[BareT]):
         self.profile: QoSProfile = profile_of(qos_profile)
 
     def _announce(self, create: Callable[..., BareT], wire_type: Any, *receiver: Any) -> None:
-        """Have the bare node create the endpoint; nothing is delivered here meanwhile."""
+        """Create the endpoint at the bare node; nothing is delivered here meanwhile."""
         self.bare = self.io.call(
             self.io.change_delivery, partial(create, wire_type, self.name, self.profile, *receiver)
         )

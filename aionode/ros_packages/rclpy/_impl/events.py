@@ -172,12 +172,12 @@ class Watch:
         return alarm
 
     def listen(self, listeners: list[Any], listener: Callable[[Any], None]) -> None:
-        """Have `listener` told of messages or assertions."""
+        """Tell `listener` of messages or assertions."""
         listeners.append(listener)
         self.ends.append(partial(listeners.remove, listener))
 
     def watch_opposites(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
-        """Have `watcher` told of the endpoints of the opposite kind that come and go."""
+        """Tell `watcher` of the endpoints of the opposite kind that come and go."""
         endpoint = self.endpoint
         self.ends.append(self.graph.watch(endpoint.kind.opposite, endpoint.name, watcher))
 

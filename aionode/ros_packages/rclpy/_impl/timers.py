@@ -74,7 +74,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         )
 
     def wake(self) -> None:
-        """Have those that wait for the timer look again."""
+        """Wake those who wait for the timer."""
         self.signal.notify()
 
     def _switch(self, old_now_ns: int, new_now_ns: int) -> None:

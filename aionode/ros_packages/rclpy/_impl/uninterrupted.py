@@ -106,7 +106,7 @@ def handlers_are_harmless() -> bool:
 
 
 def postpone(action: Callable[[], object]) -> bool:
-    """Have `action` called soon if this thread does such work.
+    """Postpone `action` if this thread does such work, and call it soon after.
 
     Returns:
         Whether it will be called.

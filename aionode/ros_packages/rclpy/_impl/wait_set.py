@@ -80,7 +80,7 @@ class WaitSet(Destroyable):
         return any(self._ready.values())
 
     def watch(self, wakeup: Wakeup) -> None:
-        """Have `wakeup` woken when a handle may have become ready, until `unwatch`."""
+        """Wake `wakeup` whenever a handle may have become ready, until `unwatch`."""
         for handles in self._handles.values():
             for handle in handles:
                 handle.signal.add(wakeup)

@@ -123,7 +123,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
             handle.publish_status()
 
     def execute(self, execute_callback: Callable[[AnyGoalHandle], Any] | None = None) -> None:
-        """Have an executor call the execute callback; by default that of the server."""
+        """Schedule the execute callback with the executor; by default the server's own callback."""
         if not self.is_cancel_requested:  # else the callback itself finds out
             self._update_state(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
@@ -446,7 +446,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         goal_handle: AnyGoalHandle,
         execute_callback: Callable[[AnyGoalHandle], Any] | None,
     ) -> None:
-        """Have the executor call a callback with a goal; by default that of the server."""
+        """Schedule a callback for a goal with the executor; by default the server's own."""
         executor = self._node.executor
         if executor is not None:
             executor.create_task(

@@ -74,7 +74,7 @@ SURE_S: Final = 0.3
 """Time for which a participant must be missing, in seconds; a starting one is for milliseconds."""
 
 NODES_S: Final = 3.0
-"""The same where an answer is waited for; that of a busy machine with 300 nodes takes a second."""
+"""The limit for an answer; on a busy machine with 300 nodes one takes a second."""
 
 CHECKS: Final = 3
 """Number of comparisons of the graph after connections have come or gone."""

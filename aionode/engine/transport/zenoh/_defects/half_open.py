@@ -29,7 +29,7 @@ OPEN_MS: Final = 30_000
 """Limit of the time that making a connection takes, in milliseconds."""
 
 FAR_OPEN_MS: Final = 3_000
-"""The same where other machines may be dialled: `close` waits for one that is switched off."""
+"""The limit where other machines may be dialled: `close` waits for one that is switched off."""
 
 
 def settings(network: Network) -> dict[str, object]:

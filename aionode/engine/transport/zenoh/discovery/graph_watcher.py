@@ -241,7 +241,7 @@ class Watcher:
             self._queue.put(check)
 
     def _hand_over(self, sample: zenoh.Sample) -> None:
-        """Have the loop take a token; thousands may wait, and the sample would take three times."""
+        """Queue a token for the loop; a sample would take three times as much memory."""
         self._queue.put(Change(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT))
 
     def _take(self, item: Change | zenoh.Reply | Check | Answer) -> None:

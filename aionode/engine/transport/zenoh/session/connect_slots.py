@@ -53,7 +53,7 @@ LOAD: Final = Path("/proc/loadavg")
 
 @contextmanager
 def one_at_a_time(port: int | None) -> Iterator[None]:
-    """Have the processes of this machine choose and take a free meeting port one after another.
+    """Serialize the choice of a free meeting port among the processes of this machine.
 
     Two that choose at the same moment would both choose the first port; the loser would have none,
     and not dial the winner either. Two that list each other would dial each other. Blocks.
@@ -75,7 +75,7 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
 
 @asynccontextmanager
 async def connecting(network: Network) -> AsyncIterator[None]:
-    """Let one process of this machine connect at a time for two processors that it has.
+    """Limit how many processes of this machine connect at once: one for every two processors.
 
     Each is connected with all others. If a hundred start together, and all connect at once, each of
     4950 connections is made while hundreds of threads wait for a processor, and the first processes

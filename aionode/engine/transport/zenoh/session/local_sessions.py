@@ -41,7 +41,7 @@ PRESENCE: Final = 97
 
 
 def announce(group: int, port: int) -> socket.socket:
-    """Have this machine list a session, until what is returned is closed.
+    """Register a session on this machine until the returned object is closed.
 
     Args:
         group: The first of the ports on which sessions meet; those with others do not meet.
