@@ -35,6 +35,7 @@ NOUNS = {
     "interface": "Show message, service and action types.",
     "launch": "Start processes and nodes as a launch file says.",
     "lifecycle": "Show and change the states of managed nodes.",
+    "new": "Write a package with a node, a message and a test.",
     "node": "List and inspect nodes.",
     "param": "Read and set the parameters of nodes.",
     "router": "Connect machines, as rmw_zenohd does.",
