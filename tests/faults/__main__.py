@@ -117,11 +117,10 @@ def main() -> None:
         print(line, flush=True)  # noqa: T201 - a program
 
     jobs: list[Job] = []
-    for one, two in rounds:
-        jobs += [*one, *scenes(two)]
-    longest_first = sorted(jobs, key=lambda job: -job.lasts_s)
+    for one, two in rounds:  # one after the other, so that an interrupted run has all cases
+        jobs += sorted([*one, *scenes(two)], key=lambda job: -job.lasts_s)
     try:
-        asyncio.run(run_together(longest_first, options.jobs, take))
+        asyncio.run(run_together(jobs, options.jobs, take))
     finally:  # report the cases that have run, even if interrupted
         broken = tell([each for each in cases if results[each.name]], results, options)
         broken += tell_motion([each for each in moving if results[each.name]], results, options)
