@@ -89,7 +89,8 @@ class Motion(msgspec.Struct, frozen=True):
         switches: Without any of these the promise breaks.
         limit_s: After how long they stand still; None if nothing of aionode can stop them.
         allowed_s: How much longer that may take.
-        returns: Whether the mover may move them again after the fault, with new commands.
+        returns: Whether the mover may move them again after the fault, with new commands, and
+            another one may take over.
         beside: Another mover of the same wheels, which goes on.
         joins_late: Whether other wheels join after the stop, which are to stand still too.
         ends: Whether the fault ends the process of the mover.
@@ -211,7 +212,8 @@ def stopped(
     late = [
         each
         for each in moves
-        if stop_s < each.time_s < until_s and not (motion.returns and each.sent_s > stop_s)
+        if stop_s < each.time_s < until_s
+        and not (motion.returns and (each.by != by or each.sent_s > stop_s))
     ]
     after_s = [each.time_s - struck_s for each in moves if struck_s < each.time_s < until_s]
     return Stopped(

@@ -544,7 +544,7 @@ def defaults() -> Iterator[Motion]:
         "stops": "the time in the definition of the message",
         "wheel": Wheel("", has_defaults=True),
         "strike": killed,
-        "limit_s": TTL_S,
+        "limit_s": 0.5,
         "ends": True,
     }
     by_page: dict[str, Any] = {"program": "page", "client": "lax", "has_defaults": True}
