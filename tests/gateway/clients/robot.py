@@ -25,6 +25,7 @@ class AddTwoIntsServer(Node):
 
     def __init__(self, context: Context) -> None:
         super().__init__("add_two_ints_server", context=context)
+        self.declare_parameter("speed", 1.5)
         self.create_service(AddTwoInts, "/add_two_ints", self.add)
         self.words = self.create_publisher(String, "/listener", 10)
         self.create_timer(0.1, self.publish)

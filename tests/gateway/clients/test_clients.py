@@ -1,7 +1,8 @@
-"""Clients of rosbridge as their users install them: `make rosbridge-clients` fetches and runs them.
+"""Clients of the gateway as their users install them: `make rosbridge-clients` fetches them.
 
-Without AIONODE_ROSLIB (the file ``RosLib.js`` of npm's roslib) and AIONODE_ROSLIBPY (a Python that
-has roslibpy) the tests are skipped.
+Without AIONODE_ROSLIB (the file ``RosLib.js`` of npm's roslib), AIONODE_ROSLIBPY (a Python that has
+roslibpy and ros-mcp) and AIONODE_FOXGLOVE (a ``node_modules`` with @foxglove/ws-protocol and ws)
+the tests are skipped.
 """
 
 from __future__ import annotations
@@ -85,3 +86,17 @@ async def test_roslib_of_npm_in_a_browser(roslib: str) -> None:
 def test_roslibpy(roslibpy: str, port: str) -> None:
     """Python programs without ROS use this library."""
     subprocess.run([roslibpy, HERE / "roslibpy_checks.py", port], check=True, timeout=50)
+
+
+@pytest.mark.timeout(180)
+def test_ros_mcp(roslibpy: str, port: str) -> None:
+    """Agents use this server of tools."""
+    subprocess.run([roslibpy, HERE / "ros_mcp_checks.py", port], check=True, timeout=170)
+
+
+@pytest.mark.parametrize("subprotocol", ["foxglove.websocket.v1", "foxglove.sdk.v1"])
+def test_ws_protocol_of_npm(port: str, subprotocol: str) -> None:
+    """Foxglove, Lichtblick and programs of Node use this library."""
+    modules = given("AIONODE_FOXGLOVE")
+    program = HERE / "foxglove_checks.mjs"
+    subprocess.run(["node", program, port, modules, subprotocol], check=True, timeout=50)
