@@ -10,7 +10,14 @@ import pytest
 from aionode.errors import RefusedError
 from aionode.gateway import Session
 from aionode.interfaces.builtin_interfaces.msg import Time
-from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from aionode.interfaces.geometry_msgs.msg import (
+    Pose,
+    PoseStamped,
+    Quaternion,
+    Twist,
+    TwistStamped,
+    Vector3,
+)
 from aionode.interfaces.std_msgs.msg import Header
 from aionode.testing import settle
 from tests.support.gateway_bench import Bench
@@ -35,6 +42,13 @@ who = ["low", "other"]
 publish = "/**"
 type = "geometry_msgs/msg/*"
 lease = { ttl_sec = 0.3, priority = 1, stop = { linear = { z = -1.0 } } }
+[[who]]
+name = "pilot"
+loopback = true
+[[allow]]
+who = "pilot"
+publish = "/goal_pose"
+lease = { stop = { header = { frame_id = "base_link" } } }
 [[allow]]
 publish = "/**"
 """
@@ -114,6 +128,24 @@ async def test_the_stop_is_sent_when_a_client_leaves(
         await drive(session, 1.0)
     await settle()
     assert wheels == [(1, 0), (0, -1)]
+
+
+async def test_a_type_whose_default_may_move_the_robot_needs_a_stop(bench: Bench) -> None:
+    """A pose at the origin is where a robot would drive to, and a default of a speed is one."""
+    bench.allow(POLICY)
+    pose = PoseStamped(pose=Pose(orientation=Quaternion(z=1.0, w=0.0)))
+    async with bench.session("high") as session:
+        with pytest.raises(RefusedError, match=r"pose\.orientation\.w=1\.0; give the rule's lease"):
+            await session.publish("/goal_pose", pose, "geometry_msgs/PoseStamped")
+        assert bench.robot.commands.holders() == {}
+
+
+async def test_a_stop_of_the_policy_serves_such_a_type(bench: Bench) -> None:
+    """Its owner knows which message stops the robot."""
+    bench.allow(POLICY)
+    async with bench.session("pilot") as session:
+        await session.publish("/goal_pose", PoseStamped(), "geometry_msgs/PoseStamped")
+        assert list(bench.robot.commands.holders()) == ["/goal_pose"]
 
 
 async def test_the_stop_is_sent_when_a_client_is_cancelled(

@@ -112,7 +112,8 @@ class LeaseRule(Part, frozen=True):
             gateway publishes the stop.
         priority: A client takes the topic from a holder of a lower priority.
         max_age_sec: The greatest age of a command, in seconds: by its stamp, and since it arrived.
-        stop: The values of the message that stops the robot. Other fields have their defaults.
+        stop: The values of the message that stops the robot; other fields have their defaults. A
+            type whose default message is not all zeros needs it.
     """
 
     ttl_sec: float = 0.3

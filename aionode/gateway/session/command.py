@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from aionode.clock import S_TO_NS
 from aionode.errors import AionodeError, LeaseExpiredError, RefusedError
-from aionode.message import Message, from_builtins
+from aionode.message import Message, from_builtins, to_builtins, type_name
 
 if TYPE_CHECKING:
     from aionode.clock import TimeBase
@@ -95,7 +95,8 @@ class Commands:
 
         Raises:
             RefusedError: another client of at least that priority holds the topic (``held``), or
-                the client was silent for the time to live and the stop was just sent (``too_old``).
+                the client was silent for the time to live and the stop was just sent (``too_old``);
+                or the policy does not say how this type stops (``not_allowed``).
             AionodeError: what `Publisher.publish` and `Publisher.lease` raise.
         """
         topic = publisher.topic_name
@@ -107,6 +108,7 @@ class Commands:
             self.refuse_if_held(topic, owner)
             holder = self._holders.get(topic)
         if holder is None:
+            refuse_without_stop(topic, publisher.msg_type, rule)
             holder = self._holders[topic] = Holder(owner, identity, rule)
             self._tasks.create_task(self._hold(topic, publisher, holder))
         await asyncio.shield(holder.entered)
@@ -159,6 +161,36 @@ class Commands:
         """End all leases, and wait until their stops were sent."""
         for holder in list(self._holders.values()):
             await self._end(holder)
+
+
+def refuse_without_stop(topic: str, msg_type: type[Message], rule: LeaseRule) -> None:
+    """Refuse a lease whose stop would be the type's default message, where that may move the robot.
+
+    A definition may give its fields defaults of their own, such as a speed; and a pose at the
+    origin is no stop at all.
+
+    Raises:
+        RefusedError: The default message is not all zeros, and the rule gives no stop.
+    """
+    if rule.stop or (moving := moving_field(to_builtins(msg_type()))) is None:
+        return
+    raise RefusedError(
+        f"publish {topic}",
+        f"the policy does not say how it stops, and the default message of {type_name(msg_type)} "
+        f"has {moving}; give the rule's lease a stop",
+        "not_allowed",
+    )
+
+
+def moving_field(value: Any, path: str = "") -> str | None:
+    """Return the first number in a message that is not zero, with its path; None without one."""
+    if isinstance(value, dict):
+        parts = ((f"{path}.{name}".lstrip("."), part) for name, part in value.items())
+    elif isinstance(value, list):
+        parts = ((f"{path}[{index}]", part) for index, part in enumerate(value))
+    else:
+        return f"{path}={value}" if isinstance(value, int | float) and value else None
+    return next(filter(None, (moving_field(part, name) for name, part in parts)), None)
 
 
 def held(topic: str, holder: Holder) -> RefusedError:
