@@ -639,12 +639,12 @@ def test_ci_runs_every_example() -> None:
     """A new example cannot be merged untested."""
     script = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
 
-    programs = [
-        path.relative_to(ROOT).with_suffix("")
+    programs = {
+        path.parent if (path.parent / "__main__.py").exists() else path.with_suffix("")
         for path in (ROOT / "aionode/examples").rglob("*.py")
         if path.stem != "__init__"
-    ]
-    modules = [".".join(program.parts) for program in programs]
+    }
+    modules = [".".join(program.relative_to(ROOT).parts) for program in programs]
     files = [f"examples/{path.name}" for path in (ROOT / "examples").glob("*.py")]
 
     assert [each for each in modules + files if each not in script] == []

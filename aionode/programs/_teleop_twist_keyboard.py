@@ -5,8 +5,6 @@ from __future__ import annotations
 import asyncio
 import os
 import sys
-import termios
-import tty
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Final
@@ -191,6 +189,9 @@ def terminal(press: Callable[[str], object], end: Callable[[], object]) -> Itera
             "in a launch file with prefix='xterm -e'"
         )
     loop = asyncio.get_running_loop()
+    import termios  # not on Windows
+    import tty
+
     before = termios.tcgetattr(number)
 
     def read() -> None:

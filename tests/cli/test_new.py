@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -30,6 +31,7 @@ def test_a_new_package_passes_its_test(package: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "src/my_robot"],
         cwd=package,
+        env={**os.environ, "PYTEST_ADDOPTS": ""},  # those of this run of tests
         capture_output=True,
         text=True,
         check=False,

@@ -16,6 +16,7 @@ from aionode.errors import IdlError
 from aionode.idl import definition_text, generate, load_interfaces
 from aionode.interfaces import get_interface, interface_names, shipped_packages
 from aionode.message import constants, fields
+from tests.support.without_ros import without_ros
 
 ROOT = Path(aionode.interfaces.__file__).parents[2]
 OWN_DEFINITIONS = (
@@ -91,7 +92,8 @@ def out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     folder.mkdir()
     monkeypatch.syspath_prepend(str(folder))
     before = set(sys.modules)
-    yield folder
+    with without_ros():  # in whose processes a package has rosidl's classes
+        yield folder
     for name in set(sys.modules) - before:
         if name.startswith(("odd_msgs", "other_msgs", "mine")):
             del sys.modules[name]

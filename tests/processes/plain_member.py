@@ -8,6 +8,7 @@ import pkgutil
 import sys
 
 import aionode
+import aionode.rclpy
 from aionode import Context, Node
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.std_srvs.srv import Trigger
@@ -53,6 +54,7 @@ async def both() -> None:
 
 if __name__ == "__main__":
     if sys.argv[1] == "import":
+        aionode.rclpy.install()  # what evaluates launch files imports launch
         for module in pkgutil.walk_packages(aionode.__path__, "aionode."):
             if not module.name.endswith("__main__"):
                 importlib.import_module(module.name)

@@ -135,7 +135,7 @@ class Terminal:
         """Run a command to its end, and return what it printed; nothing may stumble."""
         done = fork_server.run(
             ["-m", module, *words],
-            env=os.environ,
+            env={**os.environ, "PYTEST_ADDOPTS": ""},  # those of this run of tests
             timeout=60,
             cwd=self.workspace / folder,
             fresh=module != "aionode",
