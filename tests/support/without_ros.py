@@ -17,11 +17,17 @@ def without_ros() -> Iterator[None]:
     """Undo `aionode.rclpy.install` for a while: other tests of this process may have called it."""
     finders, modules = list(sys.meta_path), dict(sys.modules)
     sys.meta_path[:] = [finder for finder in finders if finder is not FINDER]
-    for name in modules:
-        if name.partition(".")[0] in SUPPLIED | shipped_packages():
-            del sys.modules[name]
+    forget()
     try:
         yield
     finally:
         sys.meta_path[:] = finders
+        forget()  # a part that stayed would not be in its package
         sys.modules.update(modules)
+
+
+def forget() -> None:
+    """Take the modules of ROS's packages out of this process."""
+    for name in list(sys.modules):
+        if name.partition(".")[0] in SUPPLIED | shipped_packages():
+            del sys.modules[name]

@@ -48,7 +48,7 @@ NAMES: Final[dict[Any, str]] = {
 
 TOOL_NAME: Final = "aionode replay"
 
-OWN: Final = str(Path(__file__).parent.parent) + os.sep
+OWN: Final = str(Path(__file__).parents[2]) + os.sep
 LIBRARY: Final = str(Path(os.__file__).parent) + os.sep
 
 
