@@ -131,13 +131,18 @@ class Builder:
     def make(self, text: InterfaceText) -> type[Interface]:
         """Return a new class."""
         package, kind, name = split_type_name(text.typename)
-        place = {"__module__": f"aionode.interfaces.{package}.{kind}", "__qualname__": name}
+        place: dict[str, Any] = {
+            "__module__": f"aionode.interfaces.{package}.{kind}",
+            "__qualname__": name,
+        }
+        fallback = f"{name}, as in {text.typename}."
         if kind == "msg":
-            return self.message(text, text.parts[0], {**place, **doc(text, name)})
-        body: dict[str, Any] = {**place, **doc(text, name)}
+            body = {**place, "__doc__": text.parts[0].docstring(fallback)}
+            return self.message(text, text.parts[0], body)
+        body = {**place, "__doc__": text.parts[0].comment or fallback}
         for half, part in zip(HALVES[kind], text.parts, strict=True):
             inside = {**place, "__qualname__": f"{name}.{half}"}
-            inside["__doc__"] = part.comment or f"The {half.lower()} of {name}."
+            inside["__doc__"] = part.docstring(f"The {half.lower()} of {name}.")
             body[half] = self.message(text, part, inside)
         return new_class(
             name,
@@ -204,11 +209,6 @@ def full_name(type_: TypeText, package: str) -> str:
     """Return the ROS name of a message type that is written in a definition of `package`."""
     parts = type_.name.split("/")
     return f"{parts[0] if len(parts) > 1 else package}/msg/{parts[-1]}"
-
-
-def doc(text: InterfaceText, name: str) -> dict[str, str]:
-    """Return the docstring of a class: the comment at the top of its file, if any."""
-    return {"__doc__": text.parts[0].comment or f"{name}, as in {text.typename}."}
 
 
 def existing(typename: str, built: type[Interface]) -> type[Interface] | None:

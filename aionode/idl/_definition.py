@@ -62,6 +62,7 @@ class MemberText:
         constant: Whether it is a constant.
         line: Line number, from 1.
         column: Column of its name, from 1.
+        comment: What is said of it, on one line.
     """
 
     type: TypeText
@@ -70,6 +71,7 @@ class MemberText:
     constant: bool
     line: int
     column: int
+    comment: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,19 @@ class MessageText:
 
     members: tuple[MemberText, ...]
     comment: str = ""
+
+    def docstring(self, fallback: str) -> str:
+        """Return the docstring of its class: its comment, or `fallback`, and those of its fields.
+
+        `aionode.message.documentation` reads both from there.
+        """
+        said = [
+            f"    {member.name}: {member.comment}"
+            for member in self.members
+            if member.comment and not member.constant
+        ]
+        text = self.comment or fallback
+        return "\n".join([text, "", "Attributes:", *said]) if said else text
 
 
 @dataclass(frozen=True, slots=True)

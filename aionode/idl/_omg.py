@@ -280,9 +280,8 @@ class Reader:
                 seen.add(word)
                 value = default_in(its_type, notes, at)
                 line, column = self._place(at)
-                members.append(
-                    MemberText(its_type, word, value, constant=False, line=line, column=column)
-                )
+                said = " ".join(comment_in(notes).split())
+                members.append(MemberText(its_type, word, value, False, line, column, said))
             self._expect(";")
         if [member.name for member in members] == [PLACEHOLDER]:
             members = []

@@ -6,6 +6,7 @@ Each line has one member: ``type name``, ``type name default`` or ``type NAME=va
 
 from __future__ import annotations
 
+import dataclasses
 import difflib
 import re
 import sys
@@ -94,46 +95,65 @@ def parse(typename: str, text: str, file: str = "", *, recorded: bool = False) -
     names = HALVES[split_type_name(typename)[1]]
     if len(text) > LARGEST_TEXT:
         raise IdlError(file, 0, 0, f"{len(text)} characters; at most {LARGEST_TEXT} are read")
-    parts: list[list[MemberText]] = [[]]
-    comments: list[list[str]] = [[]]
-    names_seen: dict[str, int] = {}
+    parts = [Part()]
     for number, line in enumerate(text.split("\n"), 1):
         stripped = line.strip()
         if SEPARATOR.fullmatch(stripped):
-            parts.append([])
-            comments.append([])
-            names_seen = {}
-        elif stripped.startswith("#"):
-            if not parts[-1]:
-                comments[-1].append(stripped.lstrip("#").strip())
-        elif stripped:
+            parts.append(Part())
+        elif not stripped or stripped.startswith("#"):
+            parts[-1].note(stripped)
+        else:
             try:
-                add(parts[-1], member(line, number, recorded=recorded), names_seen)
+                parts[-1].add(member(line, number, recorded=recorded), comment_behind(line))
             except LineError as misfit:
                 raise IdlError(file, number, misfit.offset + 1, misfit.problem) from None
-        elif not parts[-1] and comments[-1]:
-            comments[-1].append("")
     if len(parts) != len(names):
         wanted = " and ".join(name for name in names if name)
         needs = f"{wanted}, separated by '---'" if wanted else "one message, without '---'"
         raise IdlError(file, 0, 0, f"{len(parts)} part(s); this kind of file has {needs}")
-    messages = zip(parts, comments, strict=True)
-    return InterfaceText(
-        typename,
-        file,
-        tuple(MessageText(tuple(part), "\n".join(lines).strip()) for part, lines in messages),
-    )
+    return InterfaceText(typename, file, tuple(part.message() for part in parts))
 
 
-def add(members: list[MemberText], new: MemberText, lines: dict[str, int]) -> None:
-    """Add a member to those of its message, whose lines are known by their names."""
-    if new.name in lines:
-        problem = f"{new.name!r} is already defined on line {lines[new.name]}"
-        raise LineError(new.column - 1, problem)
-    if len(members) >= MOST_MEMBERS:
-        raise LineError(0, f"a message has at most {MOST_MEMBERS} fields and constants")
-    lines[new.name] = new.line
-    members.append(new)
+class Part:
+    """One message while its lines are read: its members, and the comments on it and on them."""
+
+    def __init__(self) -> None:
+        self._members: list[MemberText] = []
+        self._lines: dict[str, int] = {}
+        self._comment: list[str] = []
+        self._above: list[str] = []  # the comment that may be the next member's
+
+    def note(self, line: str) -> None:
+        """Take a comment or an empty line: what it ends belongs to the message, or to nothing."""
+        if line:
+            self._above.append(line.lstrip("#").strip())
+            return
+        if not self._members and self._above:
+            self._comment += [*self._above, ""]
+        self._above = []
+
+    def add(self, new: MemberText, behind: str) -> None:
+        """Take a member, and the comment behind it; the first comment is the message's.
+
+        Raises:
+            LineError: there is a member of its name, or there are too many.
+        """
+        if new.name in self._lines:
+            problem = f"{new.name!r} is already defined on line {self._lines[new.name]}"
+            raise LineError(new.column - 1, problem)
+        if len(self._members) >= MOST_MEMBERS:
+            raise LineError(0, f"a message has at most {MOST_MEMBERS} fields and constants")
+        if not self._members and not self._comment:
+            self._comment, self._above = self._above, []
+        said = " ".join(" ".join([*self._above, behind]).split())
+        self._above = []
+        self._lines[new.name] = new.line
+        self._members.append(dataclasses.replace(new, comment=said) if said else new)
+
+    def message(self) -> MessageText:
+        """Return the message."""
+        comment = self._comment if self._members else [*self._comment, *self._above]
+        return MessageText(tuple(self._members), "\n".join(comment).strip())
 
 
 def member(line: str, number: int, *, recorded: bool) -> MemberText:
@@ -266,11 +286,21 @@ def checked(type_: TypeText, default: object, at: int) -> object:
 
 def without_comment(text: str) -> str:
     """Return text up to the first ``#`` outside quotes."""
+    return text[: code_end(text)].strip()
+
+
+def comment_behind(line: str) -> str:
+    """Return what stands behind the first ``#`` outside quotes."""
+    return line[code_end(line) :].lstrip("#").strip() if "#" in line else ""
+
+
+def code_end(text: str) -> int:
+    """Return where the first ``#`` outside quotes is; the end if there is none."""
     position = 0
     while position < len(text) and text[position] != "#":
         quoted = QUOTED.match(text, position)
         position = quoted.end() if quoted else position + 1
-    return text[:position].strip()
+    return position
 
 
 def literal(type_: TypeText, text: str, at: int) -> object:

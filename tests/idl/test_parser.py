@@ -7,8 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from aionode.errors import IdlError
+from aionode.idl import define
 from aionode.idl._definition import MemberText, TypeText
 from aionode.idl._parser import parse
+from aionode.message import documentation
 
 
 def members(text: str) -> tuple[MemberText, ...]:
@@ -99,13 +101,14 @@ def test_constants_are_told_from_fields(text: str, value: object) -> None:
     assert found.value == value
 
 
-def test_comments_and_empty_lines_say_nothing() -> None:
-    """Except those at the top, which become the docstring."""
+def test_comments_and_empty_lines_define_nothing() -> None:
+    """Those at the top become the docstring, and those at a member say what it is."""
     text = "# What it is.\n#\n# More.\n\n# still\nint32 x  # about x\n# about y\n\n  int32 y\t\r\n"
     found = parse("tutorial/msg/Words", text).parts[0]
 
     assert [member.name for member in found.members] == ["x", "y"]
-    assert found.comment == "What it is.\n\nMore.\n\nstill"
+    assert found.comment == "What it is.\n\nMore."
+    assert [member.comment for member in found.members] == ["still about x", ""]
 
 
 def test_services_and_actions_have_parts() -> None:
@@ -193,3 +196,30 @@ def test_no_text_raises_anything_but_an_idl_error(text: str) -> None:
         members(text)
     except IdlError as error:
         assert error.line <= text.count("\n") + 1  # noqa: PT017 (it may well be readable)
+
+
+def test_comments_of_fields_are_kept() -> None:
+    """They say what a field means, and its unit: to tools, and to those who read the schema."""
+    text = """\
+# A cell.
+
+# The heat of it,
+# in degrees.
+float32 heat
+int8 n  # of the row
+string label "a # b"   # as printed
+
+# A remark about nothing.
+
+bool full
+int8 LIMIT=3 # not of a field
+"""
+    cell = define("tutorial/msg/CommentedCell", text)
+
+    assert documentation(cell) == (
+        "A cell.",
+        {"heat": "The heat of it, in degrees.", "n": "of the row", "label": "as printed"},
+    )
+    assert documentation(define("tutorial/msg/Plain", "int8 n # of the row"))[1] == {
+        "n": "of the row"
+    }
