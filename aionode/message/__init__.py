@@ -44,6 +44,7 @@ from aionode.message._service_types import (
     ServiceType,
 )
 from aionode.message._snapshot import check, checker, holds_arrays, snapshot, snapshotter
+from aionode.message._summary import summarize
 from aionode.message.conversion import (
     from_builtins,
     from_json,
@@ -97,6 +98,7 @@ __all__ = [
     "serialized",
     "snapshot",
     "snapshotter",
+    "summarize",
     "to_builtins",
     "to_json",
     "to_yaml",
