@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final, Generic, Self, TypeVar
 
 from aionode._process.concurrency import run_in_thread
 from aionode.bag.files.losses import LOSSES, losses_from
-from aionode.bag.files.metadata import FILE_NAME, read_metadata, topics_in
+from aionode.bag.files.metadata import FILE_NAME, read_metadata, start_in, topics_in
 from aionode.bag.files.order import in_order
 from aionode.bag.files.record import MOST_NS, Record, TopicInfo, time_of
 from aionode.bag.files.source import CHECK, McapSource
@@ -67,6 +67,7 @@ class Bag:
         if self.losses is not None:
             del self.custom_data[LOSSES]
         self._sources = sources
+        self._start_ns = first_ns(sources, start_in(self.metadata))
         self.connections = merged_topics(sources, topics_in(self.metadata))
         self.topics: dict[str, TopicInfo] = {}
         for topic in self.connections:
@@ -103,8 +104,7 @@ class Bag:
     @property
     def start_ns(self) -> int:
         """The time of the first message in nanoseconds since 1970; 0 without one."""
-        start = min((source.start_ns for source in self._sources), default=MOST_NS)
-        return 0 if start == MOST_NS else start
+        return 0 if self._start_ns == MOST_NS else self._start_ns
 
     @property
     def end_ns(self) -> int:
@@ -155,7 +155,10 @@ class Bag:
             if unknown:
                 there = ", ".join(sorted(self.topics)) or "none"
                 raise BagError(str(self.path), f"no topic {unknown[0]}", f"its topics: {there}")
-        return Records(self, self._sources, wanted, self._edge(start, 0), self._edge(end, END_NS))
+        start_ns = self._edge(start, 0)
+        if isinstance(start, Duration) and start_ns <= self.start_ns:
+            start_ns = 0  # so that no index decides what the first message is
+        return Records(self, self._sources, wanted, start_ns, self._edge(end, END_NS))
 
     def _edge(self, value: Time | Duration | None, default: int) -> int:
         if value is None:
@@ -272,6 +275,22 @@ class Batches(Generic[T]):
                 raise
             self._error = error
         return batch
+
+
+def first_ns(sources: list[Source], told_ns: int) -> int:
+    """Return the time of the first message; `MOST_NS` without one.
+
+    Args:
+        sources: The files.
+        told_ns: What the metadata say. If it is earlier than what the files' summaries say, one of
+            the two is wrong, and the first messages are read.
+    """
+    start_ns = min((source.start_ns for source in sources), default=MOST_NS)
+    if told_ns < start_ns:
+        for source in sources:
+            for record in islice(source.records(None, 0, END_NS, []), 1):
+                start_ns = min(start_ns, record.time_ns)
+    return start_ns
 
 
 def merged_topics(sources: list[Source], listed: list[TopicInfo]) -> list[TopicInfo]:

@@ -19,8 +19,8 @@ from aionode.bag.files.chunks import HEAD, MESSAGE, checked_content
 from aionode.bag.files.compression import TooLargeError
 from aionode.bag.files.mcap_writer import MAGIC, McapWriter, Span, index_record
 from aionode.bag.files.metadata import FILE_NAME, metadata_of, read_metadata, write_metadata
-from aionode.bag.files.source import CHECK, DAMAGE, damaged
-from aionode.bag.files.summary import read_summary
+from aionode.bag.files.source import CHECK, DAMAGE, McapSource, damaged
+from aionode.bag.files.summary import index_of, read_summary
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
@@ -135,8 +135,12 @@ def readable_messages(file: Path) -> int:
     Raises:
         BagError: it is damaged.
     """
-    with Bag(file, [source_of(file)]) as opened:
-        return sum(1 for _ in opened.read())
+    source = source_of(file)
+    with Bag(file, [source]) as opened:
+        count = sum(1 for _ in opened.read())
+        if isinstance(source, McapSource):
+            source.expect_index()
+        return count
 
 
 def repaired(file: Path, size: int) -> Checked:
@@ -299,18 +303,12 @@ class Scan:
                     channels[known.id] = known
             at = body + size
         self.schemas, self.channels = schemas, channels
-        self._entries, self._offsets = entries, {}
-        self._chunk = ChunkIndex(
-            chunk_length=length,
-            chunk_start_offset=start,
-            compression=chunk.compression,
-            compressed_size=len(chunk.data),
-            message_end_time=chunk.message_end_time,
-            message_index_length=0,
-            message_index_offsets=self._offsets,
-            message_start_time=chunk.message_start_time,
-            uncompressed_size=chunk.uncompressed_size,
-        )
+        self._entries = entries
+        self._chunk = index_of(chunk, start, length)
+        self._offsets = self._chunk.message_index_offsets
+        times = [time_ns for each in entries.values() for time_ns in each[::2]]
+        self._chunk.message_start_time = min(times, default=0)
+        self._chunk.message_end_time = max(times, default=0)
 
     def _finish_chunk(self) -> None:
         """Note a chunk with its index; one that is not whole is left out, and readers search."""

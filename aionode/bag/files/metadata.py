@@ -24,6 +24,7 @@ __all__ = [
     "metadata_of",
     "metadata_text",
     "read_metadata",
+    "start_in",
     "sync_folder",
     "topics_in",
     "write_metadata",
@@ -155,6 +156,13 @@ def read_metadata(folder: Path) -> dict[str, Any]:
         problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {what})"
         raise BagError(str(folder), problem, "`aionode bag reindex` writes a new one") from error
     return metadata
+
+
+def start_in(metadata: Mapping[str, Any]) -> int:
+    """Return when a bag begins as its metadata say, in nanoseconds; `NEVER_NS` if they do not."""
+    told = metadata.get("starting_time")
+    start = told.get("nanoseconds_since_epoch") if isinstance(told, dict) else None
+    return start if isinstance(start, int) else NEVER_NS
 
 
 def topics_in(metadata: Mapping[str, Any]) -> list[TopicInfo]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections import Counter
 from contextlib import ExitStack
 from io import BytesIO
 from typing import TYPE_CHECKING, Final, Protocol
@@ -15,12 +14,12 @@ from mcap.exceptions import McapError
 from mcap.opcode import Opcode
 from mcap.records import Message
 
-from aionode.bag.files.chunks import HEAD, MESSAGE, rows_of, size_of
+from aionode.bag.files.chunks import MESSAGE, rows_of
 from aionode.bag.files.compression import LIMIT_VARIABLE, TooLargeError, plain_file, plain_message
 from aionode.bag.files.order import in_order
 from aionode.bag.files.qos import readable_profiles
 from aionode.bag.files.record import MOST_NS, Record, TopicInfo
-from aionode.bag.files.summary import MAGIC, read_summary
+from aionode.bag.files.summary import heads_of, whole_summary
 from aionode.errors import BagError
 
 if TYPE_CHECKING:
@@ -116,29 +115,29 @@ class McapSource:
         with ExitStack() as stack:
             _, self._file = plain_file(path, stack)
             try:
-                summary = read_summary(self._file)
-                statistics = summary.statistics
-                if statistics is None:
-                    raise BagError(str(path), "the file has no summary", CHECK)  # noqa: TRY301  # more that it may lack
-                self._chunks = summary.chunks
+                summary, statistics = whole_summary(self._file, DAMAGE)
                 counts = statistics.channel_message_counts
-                if statistics.message_count and not counts:  # a writer may leave them out
-                    counts = self._counted()
+                self._chunks = summary.chunks
                 self._channels = {
                     number: topic_of(
                         summary.schemas.get(channel.schema_id), channel, counts.get(number, 0)
                     )
                     for number, channel in summary.channels.items()
                 }
-            except BagError:
-                raise
             except DAMAGE as error:
                 raise damaged(path, error) from error
             self._open = stack.pop_all()
         self.topics = list(self._channels.values())
-        has_messages = statistics.message_count > 0
-        self.start_ns = statistics.message_start_time if has_messages else MOST_NS
-        self.end_ns = statistics.message_end_time if has_messages else 0
+        # Statistics of some versions of libmcap leave out messages of the time 0.
+        spans = [
+            (chunk.message_start_time, chunk.message_end_time)
+            for chunk in self._chunks
+            if chunk.message_index_offsets or chunk.message_end_time
+        ]
+        if statistics.message_count:
+            spans.append((statistics.message_start_time, statistics.message_end_time))
+        self.start_ns = min((start for start, _ in spans), default=MOST_NS)
+        self.end_ns = max((end for _, end in spans), default=0)
 
     def records(
         self,
@@ -233,29 +232,28 @@ class McapSource:
         Raises:
             McapError: the file is damaged.
         """
-        at, size = len(MAGIC), size_of(self._file)
-        while at < size:
-            self._file.seek(at)
-            opcode, length = HEAD.unpack(self._file.read(HEAD.size))
-            at += HEAD.size
-            if opcode == Opcode.DATA_END:
-                return
-            if length > size - at or (opcode == Opcode.MESSAGE and length < MESSAGE.size):
-                raise McapError(f"the record at byte {at - HEAD.size} goes beyond the end")
+        for opcode, at, length in heads_of(self._file):
             if opcode == Opcode.MESSAGE:
                 channel, _, time_ns, _ = MESSAGE.unpack(self._file.read(MESSAGE.size))
                 yield at, length, channel, time_ns
-            at += length
 
-    def _counted(self) -> dict[int, int]:
-        """Return how many messages each channel has, counted in the file."""
-        counts: Counter[int] = Counter()
-        if not self._chunks:
-            counts.update(channel for _, _, channel, _ in self._lone_messages())
+    def expect_index(self) -> None:
+        """Raise BagError if the index of a chunk leaves out messages that are in it."""
         for chunk in self._chunks:
-            _, rows = rows_of(self._file, chunk, None, 0, 1 << 64)
-            counts.update(row[1] for row in rows)
-        return counts
+            where = f"the index of the chunk at byte {chunk.chunk_start_offset}"
+            try:
+                _, rows = rows_of(self._file, chunk, None, 0, 1 << 64)
+            except DAMAGE as error:
+                raise damaged(self.path, error, where) from error
+            messages = list(rows)
+            channels = {row[1] for row in messages}
+            listed = chunk.message_index_offsets
+            if messages and (
+                messages[0][0] < chunk.message_start_time
+                or messages[-1][0] > chunk.message_end_time
+                or (listed and not channels <= listed.keys())
+            ):
+                raise damaged(self.path, LookupError("it leaves out messages"), where)
 
     def _plain(self, records: Iterator[Record], problems: list[BagError]) -> Iterator[Record]:
         """Yield records whose messages are compressed by themselves."""

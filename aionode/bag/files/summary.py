@@ -3,20 +3,30 @@
 from __future__ import annotations
 
 import zlib
+from collections import Counter
+from contextlib import suppress
 from io import BytesIO
 from typing import IO, TYPE_CHECKING, Final, NamedTuple
 
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Channel, ChunkIndex, Footer, Schema, Statistics
+from mcap.records import Channel, Chunk, ChunkIndex, Footer, Schema, Statistics
 
-from aionode.bag.files.chunks import HEAD, size_of
+from aionode.bag.files.chunks import HEAD, MESSAGE, checked_content, size_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-__all__ = ["MAGIC", "Summary", "read_summary", "records_from"]
+__all__ = [
+    "MAGIC",
+    "Summary",
+    "heads_of",
+    "index_of",
+    "read_summary",
+    "records_from",
+    "whole_summary",
+]
 
 MAGIC: Final = b"\x89MCAP0\r\n"
 FOOTER: Final = HEAD.size + 20
@@ -107,3 +117,111 @@ def records_from(data: bytes) -> Iterator[tuple[int, bytes]]:
         if at > len(data):
             raise McapError("a record goes beyond its end")
         yield opcode, data[at - length : at]
+
+
+def heads_of(file: IO[bytes]) -> Iterator[tuple[int, int, int]]:
+    """Yield the kind of each record before the summary, where its bytes begin, and how many.
+
+    Raises:
+        McapError: the file is damaged.
+    """
+    at, size = len(MAGIC), size_of(file)
+    while at <= size - HEAD.size:
+        file.seek(at)
+        opcode, length = HEAD.unpack(file.read(HEAD.size))
+        at += HEAD.size
+        if opcode == Opcode.DATA_END:
+            return
+        if length > size - at or (opcode == Opcode.MESSAGE and length < MESSAGE.size):
+            raise McapError(f"the record at byte {at - HEAD.size} goes beyond the end")
+        yield opcode, at, length
+        at += length
+
+
+def whole_summary(
+    file: IO[bytes], damage: tuple[type[Exception], ...]
+) -> tuple[Summary, Statistics]:
+    """Return the summary of a file, with its statistics.
+
+    A writer may leave out any part of it, as rosbag2 does by ``noSummary``, ``noStatistics``,
+    ``noChunkIndex`` and ``noRepeatedChannels``: then all records of the file are read.
+
+    Args:
+        file: The file.
+        damage: Exceptions for a damaged chunk, whose messages are not counted then.
+
+    Raises:
+        McapError: the file is damaged, or was not closed; so are errors of the libraries.
+    """
+    found = read_summary(file)
+    told = found.statistics
+    if (
+        told is not None
+        and told.chunk_count == len(found.chunks)
+        and (told.channel_message_counts or not told.message_count)
+        and told.channel_message_counts.keys() <= found.channels.keys()
+        and all(each.schema_id in {0, *found.schemas} for each in found.channels.values())
+    ):
+        return found, told
+    return summary_of_content(file, damage)
+
+
+def summary_of_content(
+    file: IO[bytes], damage: tuple[type[Exception], ...]
+) -> tuple[Summary, Statistics]:
+    """Return what the summary of a file should have, from all its records."""
+    found = Summary(None, {}, {}, [])
+    counts: Counter[int] = Counter()
+    first_ns, last_ns = 1 << 64, 0
+
+    def take(opcode: int, body: bytes) -> None:
+        nonlocal first_ns, last_ns
+        if opcode == Opcode.MESSAGE:
+            channel, _, time_ns, _ = MESSAGE.unpack_from(body)
+            counts[channel] += 1
+            first_ns, last_ns = min(first_ns, time_ns), max(last_ns, time_ns)
+        elif opcode == Opcode.SCHEMA:
+            schema = Schema.read(ReadDataStream(BytesIO(body)))
+            found.schemas[schema.id] = schema
+        elif opcode == Opcode.CHANNEL:
+            known = Channel.read(ReadDataStream(BytesIO(body)))
+            found.channels[known.id] = known
+
+    for opcode, at, length in heads_of(file):
+        file.seek(at)
+        if opcode != Opcode.CHUNK:
+            take(opcode, file.read(MESSAGE.size if opcode == Opcode.MESSAGE else length))
+            continue
+        chunk = Chunk.read(ReadDataStream(BytesIO(file.read(length))))
+        found.chunks.append(index_of(chunk, at - HEAD.size, length + HEAD.size))
+        with suppress(*damage):
+            for kind, body in records_from(checked_content(chunk)):
+                take(kind, body)
+    count = sum(counts.values())
+    statistics = Statistics(
+        attachment_count=0,
+        channel_count=len(found.channels),
+        channel_message_counts=dict(counts),
+        chunk_count=len(found.chunks),
+        message_count=count,
+        message_end_time=last_ns,
+        message_start_time=first_ns if count else 0,
+        metadata_count=0,
+        schema_count=len(found.schemas),
+    )
+    return found._replace(statistics=statistics), statistics
+
+
+def index_of(chunk: Chunk, start: int, length: int) -> ChunkIndex:
+    """Return the index of a chunk, without those of its messages."""
+    return ChunkIndex(
+        chunk_length=length,
+        chunk_start_offset=start,
+        compression=chunk.compression,
+        compressed_size=len(chunk.data),
+        message_end_time=chunk.message_end_time,
+        message_index_length=0,
+        message_index_offsets={},
+        message_start_time=chunk.message_start_time,
+        uncompressed_size=chunk.uncompressed_size,
+    )

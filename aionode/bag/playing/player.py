@@ -392,7 +392,8 @@ class Player:
 
     def _records(self, start_ns: int, end_ns: int) -> Iterator[tuple[int, Record]]:
         """Return the records that are played, in order, each after its time."""
-        start, end = time_of(start_ns), None if end_ns == MOST_NS else time_of(end_ns)
+        start = None if start_ns <= self.start.nanoseconds else time_of(start_ns)
+        end = None if end_ns == MOST_NS else time_of(end_ns)
         records = merged_records(self.bags, self._selection, start, end)
         if self._in_order_sent:
             return in_order_sent(records)
