@@ -32,6 +32,8 @@ __all__ = [
     "Graph",
     "Mismatch",
     "NodeInfo",
+    "Offered",
+    "is_infrastructure",
 ]
 
 K = TypeVar("K")
@@ -90,6 +92,23 @@ class NodeInfo:
     def fully_qualified_name(self) -> str:
         """Namespace and name in one."""
         return names.fully_qualified_name(self.namespace, self.name)
+
+
+@dataclass(frozen=True, slots=True)
+class Offered:
+    """What there is in a graph, by name.
+
+    Attributes:
+        nodes: Full names of nodes.
+        topics: Topics that a node publishes or subscribes to, with their types.
+        services: Services that a node serves, with their types.
+        actions: Actions that a node serves, with their types.
+    """
+
+    nodes: list[str]
+    topics: dict[str, list[str]]
+    services: dict[str, list[str]]
+    actions: dict[str, list[str]]
 
 
 class Mismatch(NamedTuple):
@@ -467,9 +486,56 @@ class Graph:
             types[endpoint.name].add(endpoint.type_name)
         return [(name, sorted(types[name])) for name in sorted(types)]
 
+    def offered(self, *, user_only: bool = True) -> Offered:
+        """Return what the nodes offer, sorted: the question of tools, agents and pages.
+
+        Most of the names of a system are of its infrastructure: every node serves its parameters,
+        publishes its log and describes its types, and an action is three services and two topics.
+
+        Args:
+            user_only: Whether to leave infrastructure out, as `is_infrastructure` tells, and hidden
+                nodes with all that only they have. Otherwise everything is there, and actions also
+                with the services and topics that they consist of.
+        """
+
+        def is_left_out(name: str) -> bool:
+            return user_only and names.is_hidden(name)
+
+        topics, services, actions = (defaultdict[str, set[str]](set) for _ in range(3))
+        for endpoint in self._endpoints:
+            kind, name = endpoint.kind, endpoint.name
+            if kind is EndpointKind.CLIENT or is_left_out(endpoint.node.fully_qualified_name):
+                continue
+            action = name.removesuffix(SEND_GOAL) if kind is EndpointKind.SERVER else name
+            if action != name and not is_left_out(action):
+                actions[action].add(endpoint.type_name.removesuffix(SEND_GOAL_TYPE))
+            if not (user_only and is_infrastructure(endpoint)):
+                of_kind = topics if kind in TOPIC_KINDS else services
+                of_kind[name].add(endpoint.type_name)
+        nodes = {node.fully_qualified_name for node in self._nodes}
+        return Offered(
+            sorted(node for node in nodes if not is_left_out(node)),
+            *(
+                {name: sorted(types[name]) for name in sorted(types)}
+                for types in (topics, services, actions)
+            ),
+        )
+
     def find_nodes(self, fully_qualified_name: str) -> Iterator[NodeInfo]:
         """Return an iterator over the nodes of this full name; names need not be unique."""
         return iter(self.nodes_named(fully_qualified_name))
+
+
+def is_infrastructure(endpoint: EndpointInfo) -> bool:
+    """Return whether an endpoint is part of how ROS works, and nothing that its author has written.
+
+    These are hidden names, which those of actions are, ``/rosout`` and ``/parameter_events``, the
+    services of parameters, loggers and type descriptions, questions about the states of managed
+    nodes, and rosapi. What changes the state of a managed node is none: that is what it offers.
+    """
+    if names.is_hidden(endpoint.name) or endpoint.name in INFRASTRUCTURE_TOPICS:
+        return True
+    return endpoint.kind in SERVICE_KINDS and endpoint.type_name.startswith(INFRASTRUCTURE_TYPES)
 
 
 def end(waiter: asyncio.Future[None]) -> None:
@@ -488,3 +554,16 @@ def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:
 
 TOPIC_KINDS = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION)
 SERVICE_KINDS = (EndpointKind.SERVER, EndpointKind.CLIENT)
+
+INFRASTRUCTURE_TOPICS = frozenset({"/rosout", "/parameter_events"})
+
+INFRASTRUCTURE_TYPES = (
+    "rcl_interfaces/srv/",
+    "type_description_interfaces/srv/",
+    "rosapi_msgs/srv/",
+    "lifecycle_msgs/srv/GetAvailable",
+)
+"""How the types of services begin that are questions about nodes, whoever has written these."""
+
+SEND_GOAL = "/_action/send_goal"
+SEND_GOAL_TYPE = "_SendGoal"

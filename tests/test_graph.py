@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from typing import Any
 
-from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo
+from aionode.action import ServerGoalHandle
+from aionode.graph import EndpointInfo, EndpointKind, Graph, NodeInfo, Offered
+from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.interfaces.std_srvs.srv import Trigger
+from aionode.lifecycle import LifecycleNode
 from aionode.node import Node
 from aionode.qos import QoSProfile
 from aionode.testing import local_context, settle
@@ -117,3 +121,46 @@ async def test_a_client_that_waits_for_a_service_does_not_look_at_new_topics() -
         node.create_service(Trigger, "wanted", lambda _, response: response)
 
     assert asked == 2
+
+
+async def test_what_is_offered_is_without_infrastructure_and_hidden_nodes() -> None:
+    """Of a small robot, nine of ten services are those that every node has."""
+    context = local_context()
+    robot = Node("base", context=context)
+    tool = Node("_tool", context=context)
+    async with robot, tool:
+        robot.create_publisher(Int32, "count", 1)
+        robot.create_service(Trigger, "reset", lambda _: Trigger.Response(success=True))
+        robot.create_client(Trigger, "elsewhere")
+        robot.create_action_server(Fibonacci, "fibonacci", fibonacci)
+        robot.create_service(Trigger, "_debug", lambda _: Trigger.Response())
+        tool.create_subscription(Int32, "seen_by_a_tool_alone")
+        tool.create_service(Trigger, "of_a_tool", lambda _: Trigger.Response())
+
+        offered, everything = robot.graph.offered(), robot.graph.offered(user_only=False)
+
+    assert offered == Offered(
+        nodes=["/base"],
+        topics={"/count": ["std_msgs/msg/Int32"]},
+        services={"/reset": ["std_srvs/srv/Trigger"]},
+        actions={"/fibonacci": ["example_interfaces/action/Fibonacci"]},
+    )
+    assert everything.nodes == ["/_tool", "/base"]
+    assert {"/rosout", "/seen_by_a_tool_alone", "/fibonacci/_action/status"} <= set(
+        everything.topics
+    )
+    assert {"/base/get_parameters", "/_debug", "/of_a_tool"} <= set(everything.services)
+
+
+async def test_managed_nodes_offer_the_change_of_their_state() -> None:
+    """Which states there are at all is a question about the node."""
+    async with LifecycleNode("camera", context=local_context()) as node:
+        offered = node.graph.offered()
+
+    assert set(offered.services) == {"/camera/change_state", "/camera/get_state"}
+
+
+def fibonacci(handle: ServerGoalHandle[Any, Any, Any]) -> Fibonacci.Result:
+    """Execute a goal; none is sent here."""
+    handle.succeed()
+    return Fibonacci.Result()

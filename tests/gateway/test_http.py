@@ -737,6 +737,20 @@ async def test_the_document_has_what_the_caller_may_do(
     assert "post" not in document["paths"]["/topics/scan"]
 
 
+async def test_the_openapi_document_leaves_infrastructure_out_unless_all_is_asked_for(
+    client: httpx.AsyncClient, robot: Node
+) -> None:
+    """Of a robot with three nodes, 21 of 23 services would be how ROS works."""
+    robot.create_service(AddTwoInts, "/add", lambda _: AddTwoInts.Response())
+    of_user = (await client.get("/openapi.json")).json()["paths"]
+    everything = (await client.get("/openapi.json?all=1")).json()["paths"]
+
+    assert "/services/add" in of_user
+    assert not {"/services/robot/get_parameters", "/topics/rosout"} & set(of_user)
+    assert {"/services/add", "/services/robot/get_parameters", "/topics/rosout"} <= set(everything)
+    assert "/parameters/robot/{parameter}" in of_user
+
+
 async def test_metrics_count_what_the_endpoints_count(
     client: httpx.AsyncClient, robot: Node
 ) -> None:

@@ -95,6 +95,21 @@ async def test_lists_have_what_the_robot_has(client: RosbridgeClient) -> None:
     assert "std_msgs/msg/String" in interfaces
 
 
+async def test_pages_ask_for_what_is_offered_without_infrastructure(
+    client: RosbridgeClient,
+) -> None:
+    """The page shows the log and parameters of nodes in panels of their own."""
+    offered = (await client.call("/rosapi/offered"))["values"]
+
+    types = dict(zip(offered["topics"], offered["types"], strict=True))
+    assert types["/words"] == "std_msgs/msg/String"
+    assert not {"/rosout", "/parameter_events"} & set(types)
+    assert "/add" in offered["services"]
+    assert "/robot_node/get_parameters" not in offered["services"]
+    assert offered["actions"] == ["/fibonacci"]
+    assert "/robot_node" in offered["nodes"]
+
+
 async def test_node_details_name_the_endpoints_of_a_node(client: RosbridgeClient) -> None:
     """Of an unknown node there are none: rosapi gives no answer at all."""
     details = (await client.call("/rosapi/node_details", node="/robot_node"))["values"]

@@ -31,12 +31,18 @@ def may(session: Session, verb: Verb, name: str, type_name: str) -> bool:
     return session.decision(verb, name, type_name).allowed
 
 
-async def offers(session: Session) -> list[Offer]:
-    """Return the names that the caller may use, with the classes of their types."""
+async def offers(session: Session, *, user_only: bool = True) -> list[Offer]:
+    """Return the names that the caller may use, with the classes of their types.
+
+    Args:
+        session: The session of the caller.
+        user_only: Whether infrastructure is left out.
+    """
+    found = session.offered(user_only=user_only)
     graph: dict[Kind, dict[str, list[str]]] = {
-        "topic": session.topics(),
-        "service": session.services(),
-        "action": session.actions(),
+        "topic": found.topics,
+        "service": found.services,
+        "action": found.actions,
     }
     used: list[tuple[Kind, str, str, frozenset[str]]] = []
     for kind, names in graph.items():
@@ -48,8 +54,9 @@ async def offers(session: Session) -> list[Offer]:
     offered = [
         Offer(kind, name, verbs, classes.get(type_name)) for kind, name, type_name, verbs in used
     ]
-    for node in session.nodes():
-        if f"{node}/list_parameters" in graph["service"]:
+    services = session.services()
+    for node in found.nodes:
+        if f"{node}/list_parameters" in services:
             sets = may(session, "parameter", node, "")
             offered.append(Offer("node", node, frozenset({"parameter"} if sets else ())))
     return offered

@@ -219,10 +219,12 @@ class HttpApi:
         self._gateway = gateway
 
     async def openapi(self, asked: Asked) -> Response:
-        """Return the document of the requests that the caller may send."""
+        """Return the document of the requests that the caller may send; ``?all=1`` has all."""
+        user_only = asked.request.query_params.get("all", "0") in {"0", "false", ""}
+        offered = await offers(asked.session, user_only=user_only)
         version = importlib.metadata.version("aionode")
         title = f"aionode gateway {self._gateway.node.get_fully_qualified_name()}"
-        return json_response(openapi(title, version, await offers(asked.session)))
+        return json_response(openapi(title, version, offered))
 
     async def metrics(self, asked: Asked) -> Response:
         """Return the counts of nodes and of the gateway, for Prometheus."""

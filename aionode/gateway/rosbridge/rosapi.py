@@ -147,6 +147,19 @@ async def services(session: Session, _: Args) -> dict[str, Any]:
     return {"services": [*session.services(), *(f"/rosapi/{name}" for name in SERVICES)]}
 
 
+@service("offered")
+async def offered(session: Session, _: Args) -> dict[str, Any]:
+    """Answer for pages what there is without infrastructure; rosapi itself has no such service."""
+    found = session.offered()
+    return {
+        "nodes": found.nodes,
+        "topics": list(found.topics),
+        "types": [types[0] for types in found.topics.values()],
+        "services": list(found.services),
+        "actions": list(found.actions),
+    }
+
+
 @service("services_for_type", "type")
 async def services_for_type(session: Session, args: Args) -> dict[str, Any]:
     return {"services": of_type(session.services(), args["type"])}

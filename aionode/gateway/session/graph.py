@@ -14,7 +14,7 @@ from aionode.errors import AionodeError, NodeNameNonExistentError, ServiceError
 from aionode.gateway.session.base import SessionBase
 from aionode.gateway.session.encoding.client_json import check_items
 from aionode.gateway.session.encoding.parameters import depends_on_type, parameter_of
-from aionode.graph import TOPIC_KINDS, EndpointKind
+from aionode.graph import TOPIC_KINDS, EndpointKind, Offered
 from aionode.parameter import Parameter, ParameterType
 from aionode.parameter_client import AsyncParameterClient
 
@@ -57,6 +57,15 @@ class SessionGraph(SessionBase):
     """The part of `Session` that shows the graph, and reads and sets parameters."""
 
     # The graph, without names that the policy hides
+
+    def offered(self, *, user_only: bool = True) -> Offered:
+        """Return what there is that the client may see, as `aionode.graph.Graph.offered` does."""
+        found = self._robot.node.graph.offered(user_only=user_only)
+        named = (
+            self._visible(of.items(), hidden=True)
+            for of in (found.topics, found.services, found.actions)
+        )
+        return Offered([node for node in found.nodes if self._sees(node, [])], *named)
 
     def topics(self, *, hidden: bool = False) -> dict[str, list[str]]:
         """Return the topics that the client may see, with the names of their types."""

@@ -6,8 +6,6 @@ const LEVELS = { 10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL" }
 const MOST_LINES = 500;
 const LIST_MS = 5000;
 const AT_ONCE = 8; // parameters that are asked for
-// Services that every node has for tools: the other panels stand for them.
-const BUILT_IN = /^\/rosapi\/|\/(describe_parameters|get_parameters|get_parameter_types|list_parameters|set_parameters|set_parameters_atomically|get_type_description|get_logger_levels|set_logger_levels)$|\/_action\//;
 
 export function log(robot) {
   const root = document.getElementById("log");
@@ -43,8 +41,8 @@ export function parameters(robot) {
 
   async function list() {
     if (!robot.isOpen || document.hidden) return;
-    const { nodes } = await robot.call("/rosapi/nodes").catch(() => ({}));
-    if (nodes) fill(select, [...nodes].sort(), "choose a node");
+    const { nodes } = await robot.call("/rosapi/offered").catch(() => ({}));
+    if (nodes) fill(select, nodes, "choose a node");
   }
 
   async function show() {
@@ -99,8 +97,8 @@ export function services(robot) {
 
   async function list() {
     if (!robot.isOpen || document.hidden) return;
-    const { services: names } = await robot.call("/rosapi/services").catch(() => ({}));
-    if (names) fill(select, names.filter((name) => !BUILT_IN.test(name)).sort(), "choose a service");
+    const { services: names } = await robot.call("/rosapi/offered").catch(() => ({}));
+    if (names) fill(select, names, "choose a service");
   }
 
   async function choose() {

@@ -30,7 +30,7 @@ export class Topics extends EventTarget {
 
   async list() {
     if (!this.robot.isOpen || document.hidden) return;
-    const { topics, types } = await this.robot.call("/rosapi/topics").catch(() => ({}));
+    const { topics, types } = await this.robot.call("/rosapi/offered").catch(() => ({}));
     if (!topics) return;
     this.types = new Map(topics.map((name, index) => [name, types[index]]).sort());
     this.show();
