@@ -61,7 +61,7 @@ def debugging_loop() -> asyncio.AbstractEventLoop:
 
 
 PROCESSES = (
-    "tests/processes/",
+    "tests/end_to_end/",
     "tests/faults/",
     "tests/attacks/",
     "tests/gateway/test_foreign_page.py",
@@ -89,7 +89,7 @@ BOTH_LOOPS = (
     "tests/node/test_embedding.py",
     "tests/node/test_end.py",
     "tests/node/test_threads.py",
-    "tests/processes/",
+    "tests/end_to_end/",
     "tests/process/test_concurrency.py",
     "tests/engine/test_context.py",
     "tests/test_runner.py",

@@ -1,6 +1,6 @@
 """Routes that end with the browser that asked: the server and the browser are played by tests.
 
-`tests/processes/test_browsers.py` has a real server, and browsers that are killed.
+`tests/end_to_end/test_browsers.py` has a real server, and browsers that are killed.
 """
 
 from __future__ import annotations

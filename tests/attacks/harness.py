@@ -23,10 +23,10 @@ import msgspec
 import trustme
 
 from tests.attacks.programs import FORGED
+from tests.end_to_end.process import Process
 from tests.faults.faults import replace
 from tests.faults.harness import ROOT, Case, Child, Outcome, Stage, run_case
 from tests.faults.roles import Role, stream_key
-from tests.processes.process import Process
 from tests.support.peers import free_ports
 
 __all__ = ["GAP_LIMIT_S", "MEMORY_LIMIT", "AccessControl", "Attack", "Found"]

@@ -8,11 +8,11 @@ import sys
 
 import pytest
 
-from tests.processes.process import Process
+from tests.end_to_end.process import Process
 
 pytestmark = pytest.mark.one_loop
 
-PROGRAM = "tests/processes/lease_member.py"
+PROGRAM = "tests/end_to_end/lease_member.py"
 TTL_SEC = 0.3
 LATE_SEC = 1.2
 """What it may take longer on a busy machine; the block of the loop lasts longer than both."""

@@ -1,6 +1,6 @@
 """A participant for tests: says its name fifty times a second, and tells on stdout what it hears.
 
-``python tests/processes/member.py NAME``. Lines are ``started``, ``open``, ``heard NAME``,
+``python tests/end_to_end/member.py NAME``. Lines are ``started``, ``open``, ``heard NAME``,
 ``gone NAME`` when a node leaves the graph, ``sum N`` or ``error TYPE: TEXT`` for a call, and
 ``stopped``. A line ``call N`` on stdin calls /add_NAME of the member N.
 """

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.processes.process import Process
+from tests.end_to_end.process import Process
 
 LARGE_BYTES = "300000"
 WRITERS = 3
@@ -21,7 +21,7 @@ def test_a_reader_keeps_nothing_of_publishers_that_have_ended(
 ) -> None:
     """Zenoh keeps the shared memory of a peer for ever: two descriptors for each restart of it."""
     monkeypatch.setenv("AIONODE_LINK", "off")
-    with Process("tests/processes/flow_member.py", "lister", "large", "10") as reader:
+    with Process("tests/end_to_end/flow_member.py", "lister", "large", "10") as reader:
         reader.expect("open")
         send_large(reader, 1)  # what comes with the first one stays
         before = descriptors(reader.pid)
@@ -34,7 +34,7 @@ def test_a_reader_keeps_nothing_of_publishers_that_have_ended(
 
 def send_large(reader: Process, number: int) -> None:
     """Let a process send ten large messages, end it, and start the next one after that."""
-    with Process("tests/processes/flow_member.py", "sender", "large", "10", LARGE_BYTES) as writer:
+    with Process("tests/end_to_end/flow_member.py", "sender", "large", "10", LARGE_BYTES) as writer:
         until(lambda: int(reader.ask("count", "count")) == number * 10)
         writer.stop()
 

@@ -1,6 +1,6 @@
 """A participant made with zenoh-ros2-sdk, which shares no code with aionode.
 
-``python tests/processes/sdk_peer.py PORT`` says ``sdk`` on /hello, tells ``heard NAME`` of what it
+``python tests/end_to_end/sdk_peer.py PORT`` says ``sdk`` on /hello, tells ``heard NAME`` of what it
 hears there, serves /add_sdk, calls /add_ours with 2 and 3 and tells ``sum N``.
 """
 

@@ -14,8 +14,8 @@ from aionode.clock import MachineTime, SteadyClock
 from aionode.engine.context import Context
 from aionode.interfaces.std_msgs.msg import Int64
 from aionode.node import Node
-from tests.processes.process import Process
-from tests.processes.silence_member import TOPIC
+from tests.end_to_end.process import Process
+from tests.end_to_end.silence_member import TOPIC
 from tests.support.links import folder
 from tests.support.peers import quiet_node, ros_router
 
@@ -97,7 +97,7 @@ async def wheels(route: str) -> AsyncIterator[Node]:
 
 def mover() -> Process:
     """Start a process that commands at 50 Hz."""
-    return Process("tests/processes/silence_member.py", "mover")
+    return Process("tests/end_to_end/silence_member.py", "mover")
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT])
@@ -153,7 +153,7 @@ async def test_wheels_that_were_frozen_stop_before_anything_else(route: str) -> 
     context = Context(link=route == "link")
     async with quiet_node("mover", context) as node:
         publisher = node.create_publisher(Int64, TOPIC, 10)
-        with Process("tests/processes/silence_member.py", "wheels") as process:
+        with Process("tests/end_to_end/silence_member.py", "wheels") as process:
             await publisher.wait_for_subscribers()
             await asyncio.gather(command(publisher, 0.5), asyncio.to_thread(drives, process))
             process.send(signal.SIGSTOP)

@@ -12,8 +12,8 @@ from aionode.endpoints.events import QoSLivelinessChangedInfo
 from aionode.engine.context import Context
 from aionode.engine.rules.liveliness import PublisherLiveliness
 from aionode.interfaces.std_msgs.msg import Int32
-from tests.processes.process import Process
-from tests.processes.qos_member import PROFILE
+from tests.end_to_end.process import Process
+from tests.end_to_end.qos_member import PROFILE
 from tests.support.links import folder
 from tests.support.peers import quiet_node
 from tests.support.spies import returns_of
@@ -38,7 +38,7 @@ async def test_a_frozen_process_is_not_alive_within_its_lease(
     asserted = returns_of(monkeypatch, PublisherLiveliness, "note_assertion")
     context = Context(link=link)
     setting = {"AIONODE_LINK": "on" if link else "off"}
-    with Process("tests/processes/qos_member.py", env=setting) as member:
+    with Process("tests/end_to_end/qos_member.py", env=setting) as member:
         async with context, quiet_node("node", context) as node:
             subscription = node.create_subscription(Int32, "n", None, PROFILE)
             changes = liveliness(subscription.events)

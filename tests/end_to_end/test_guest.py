@@ -19,7 +19,7 @@ from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import Int32
 from aionode.node import Node
-from tests.processes.process import Process
+from tests.end_to_end.process import Process
 from tests.support.guest import guest
 from tests.support.links import Counting, Two, folder, link_of, two_nodes, writer_of
 from tests.support.peers import quiet_node, ros_router
@@ -188,7 +188,7 @@ async def test_an_end_beside_a_frozen_peer_leaves_the_process_as_it_was(
 @pytest.mark.parametrize("end", ["SIGINT", "SIGTERM", "failure", "return"])
 def test_a_program_is_left_as_it_was_when_run_returns(end: str, tmp_path: Path) -> None:
     """It may go on; its handlers, settings of `gc` and loggers are its own."""
-    with Process("tests/processes/guest_member.py", str(tmp_path), end, fresh=True) as program:
+    with Process("tests/end_to_end/guest_member.py", str(tmp_path), end, fresh=True) as program:
         program.expect("runs")
         if end.startswith("SIG"):
             program.send(signal.Signals[end])

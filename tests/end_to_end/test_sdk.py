@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from tests.processes.process import Process, member
+from tests.end_to_end.process import Process, member
 
 
 def test_messages_and_calls_go_both_ways() -> None:
@@ -15,7 +15,7 @@ def test_messages_and_calls_go_both_ways() -> None:
     port = os.environ["AIONODE_MEETING_PORTS"].split(",")[0]
     with member("ours") as ours:
         ours.expect("open")
-        with Process("tests/processes/sdk_peer.py", port) as sdk:
+        with Process("tests/end_to_end/sdk_peer.py", port) as sdk:
             sdk.expect("open", "heard ours", "sum 5")
             ours.expect("heard sdk")
             ours.write("call sdk 7")

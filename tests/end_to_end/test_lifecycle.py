@@ -19,7 +19,7 @@ from aionode.lifecycle import (
     State,
     TransitionCallbackReturn,
 )
-from tests.processes.process import ROOT, Process
+from tests.end_to_end.process import ROOT, Process
 
 PEER = str(Path(__file__).with_name("lifecycle_peer.py"))
 

@@ -26,7 +26,7 @@ from aionode.engine.transport.link._subscription import Route
 from aionode.engine.transport.link._transport import LinkTransport
 from aionode.interfaces.std_msgs.msg import Int32, UInt8MultiArray
 from aionode.node import Node
-from tests.processes.link_member import STREAMED_BYTES
+from tests.end_to_end.link_member import STREAMED_BYTES
 from tests.support import fork_server
 from tests.support.arrivals import reader_of, writers_of
 from tests.support.links import fd_of, freeze, thaw

@@ -1,6 +1,6 @@
 """A program that has much of its own, and goes on after `aionode.run`.
 
-``python tests/processes/guest_member.py FOLDER END`` tells ``runs``, ends by a signal, by a
+``python tests/end_to_end/guest_member.py FOLDER END`` tells ``runs``, ends by a signal, by a
 ``failure`` of a callback or by a ``return``, and tells ``as before`` if all is as it was.
 """
 

@@ -9,7 +9,7 @@ from contextlib import ExitStack, contextmanager
 
 import pytest
 
-from tests.processes.process import Process
+from tests.end_to_end.process import Process
 
 STANDS_MS = 1000.0
 """The longest stall of a loop beside other tests, in ms; the defects took seconds."""
@@ -41,7 +41,7 @@ def members(*each: tuple[object, ...]) -> Iterator[list[Process]]:
         for role, *rest in each:
             script = "plain_reader" if role == "plain" else "flow_member"
             words = [str(word) for word in (rest if role == "plain" else (role, *rest))]
-            process = Process(f"tests/processes/{script}.py", *words)
+            process = Process(f"tests/end_to_end/{script}.py", *words)
             stack.enter_context(process)
             process.expect("open")
             started.append(process)

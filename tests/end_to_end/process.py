@@ -182,4 +182,4 @@ class Process:
 
 def member(name: str) -> Process:
     """Return a member of the group that hear each other."""
-    return Process("tests/processes/member.py", name)
+    return Process("tests/end_to_end/member.py", name)

@@ -1,6 +1,6 @@
 """A participant that sends, reads or serves as fast as it can, and watches its loop.
 
-``python tests/processes/flow_member.py ROLE NAME [COUNT [SIZE]]``. Lines on stdout are ``open``,
+``python tests/end_to_end/flow_member.py ROLE NAME [COUNT [SIZE]]``. Lines on stdout are ``open``,
 ``matched``, ``sent N``, ``heard N`` or ``wrong TEXT``, and ``answered N``. A line ``gap`` on stdin
 is answered with ``gap MILLISECONDS``, the longest time that the loop stood still since the last
 question, and ``count`` with ``count N``; ``pause SECONDS`` makes a reader take nothing for so long.

@@ -1,6 +1,6 @@
 """A subscription as a ROS 2 node on rmw_zenoh_cpp has it, which acknowledges nothing.
 
-``python tests/processes/plain_reader.py TOPIC COUNT [bare]``, and with ``bare`` without a token.
+``python tests/end_to_end/plain_reader.py TOPIC COUNT [bare]``, and with ``bare`` without a token.
 Lines on stdout are ``open``, ``heard N`` when all have come, ``wrong`` if not in order, and
 ``count N`` for each line on stdin.
 """

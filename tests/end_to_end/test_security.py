@@ -12,7 +12,7 @@ import psutil
 import pytest
 import trustme
 
-from tests.processes.process import ROOT, Process, member
+from tests.end_to_end.process import ROOT, Process, member
 from tests.support.peers import free_ports
 
 LOOPBACK = ("127.0.0.1", "::1")
@@ -153,7 +153,7 @@ def join(tmp_path: Path) -> Iterator[Join]:
             config = tmp_path / f"{name}.json5"
             config.write_text(text.replace("certs/", f"{tmp_path}/"), encoding="utf-8")
             env = {"ZENOH_SESSION_CONFIG_URI": str(config), "AIONODE_LINK": "off"}
-            return stack.enter_context(Process(f"tests/processes/{program}", name, env=env))
+            return stack.enter_context(Process(f"tests/end_to_end/{program}", name, env=env))
 
         yield start
 

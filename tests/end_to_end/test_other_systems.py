@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.processes.process import ROOT, Process
+from tests.end_to_end.process import ROOT, Process
 from tests.support.peers import isolated_environment
 
 OTHER_SYSTEM = str(Path(__file__).with_name("other_system.py"))

@@ -8,9 +8,9 @@ import threading
 
 import pytest
 
-from tests.processes.process import SOON_S, Process
+from tests.end_to_end.process import SOON_S, Process
 
-PROGRAM = "tests/processes/stopping_member.py"
+PROGRAM = "tests/end_to_end/stopping_member.py"
 TOPICS = ("/timer", "/thread", "/goal")
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.processes.process import SOON_S, Process, member
+from tests.end_to_end.process import SOON_S, Process, member
 from tests.support.peers import ros_router, ros_session
 
 ATTEMPTS = 4

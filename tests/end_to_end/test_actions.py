@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from tests.processes.action_member import CLIENT_LOST_SEC
-from tests.processes.process import SOON_S, Process
+from tests.end_to_end.action_member import CLIENT_LOST_SEC
+from tests.end_to_end.process import SOON_S, Process
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
-PROGRAM = "tests/processes/action_member.py"
+PROGRAM = "tests/end_to_end/action_member.py"
 LONG = "100000"
 """Steps of a goal that does not end by itself."""
 

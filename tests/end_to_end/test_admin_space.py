@@ -10,7 +10,7 @@ from contextlib import ExitStack, contextmanager
 import pytest
 import zenoh  # noqa: TID251  # plays the router and who listens behind it, without aionode
 
-from tests.processes.process import Process, member
+from tests.end_to_end.process import Process, member
 from tests.support.peers import ros_router, router_client
 
 CONTROL = "@/control/router"

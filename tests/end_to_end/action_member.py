@@ -1,6 +1,6 @@
 """One end of an action for tests, in a process of its own; it tells on stdout what happens.
 
-``python tests/processes/action_member.py server`` serves /count and tells ``open``, ``executing``,
+``python tests/end_to_end/action_member.py server`` serves /count and tells ``open``, ``executing``,
 ``ended STATUS``; a line with a word on stdin makes it tell ``WORD GOALS RESULTS REQUESTS``, the
 sizes of its tables. ``… server cancel`` cancels the goals of lost clients. ``… client STEPS``
 sends one goal of so many steps and tells ``open``, ``ready``, ``accepted``, ``feedback N``,

@@ -1,6 +1,6 @@
 """A robot for tests that is stopped: each of its callbacks drives, and stops driving in `finally`.
 
-``python tests/processes/stopping_member.py robot END`` publishes 1.0 on /timer, /thread and /goal
+``python tests/end_to_end/stopping_member.py robot END`` publishes 1.0 on /timer, /thread and /goal
 from a coroutine, a callback in a thread and a goal, and 0.0 when these end; it tells ``driving``
 and ``stopped``. With END ``signal`` it ends with a signal, with ``destroy`` it destroys its node
 when a line comes, with ``leave`` it leaves the node's block then.

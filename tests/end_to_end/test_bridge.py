@@ -9,7 +9,7 @@ import pytest
 from aionode.graph import EndpointKind
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
-from tests.processes.process import Process
+from tests.end_to_end.process import Process
 from tests.support.peers import isolated_environment, quiet_node
 
 

@@ -1,10 +1,10 @@
 """A robot for tests whose commander holds a lease.
 
-``python tests/processes/lease_member.py commander TTL WHAT`` publishes 1.0 on /speed every 20 ms in
-a lease of TTL seconds with the stop 0.0, and tells ``driving``. When a line comes, it does WHAT:
-``sleep`` and ``spin`` block its event loop for 2 s, ``fork`` ends the lease in a forked child,
-``orphan`` ends the loop without ending the block, ``hang`` blocks the loop for ever. Then it tells
-``blocked``. It tells the name of the error that ends the block, and does not end.
+``python tests/end_to_end/lease_member.py commander TTL WHAT`` publishes 1.0 on /speed every 20 ms
+in a lease of TTL seconds, with the stop 0.0, and tells ``driving``. When a line comes, it does
+WHAT: ``sleep`` and ``spin`` block its event loop for 2 s, ``fork`` ends the lease in a forked
+child, ``orphan`` ends the loop without ending the block, ``hang`` blocks the loop for ever. Then it
+tells ``blocked``. It tells the name of the error that ends the block, and does not end.
 ``… wheels`` tells ``speed VALUE`` for each message on /speed.
 """
 

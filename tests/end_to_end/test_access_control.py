@@ -18,7 +18,7 @@ import zenoh  # noqa: TID251  # plays all participants, without aionode
 from aionode.engine.transport.zenoh.connections.handlers import direct
 from aionode.engine.transport.zenoh.delivery.acknowledgements import submessage_key
 from aionode.engine.wire._key_expression import Side, side_key
-from tests.processes.test_security import CONFIGS, router, write
+from tests.end_to_end.test_security import CONFIGS, router, write
 from tests.support.peers import free_ports
 
 WAIT_S = 20.0
