@@ -22,6 +22,7 @@ from aionode.engine.transport.base import SampleInfo
 from aionode.engine.transport.local import LocalWriter
 from aionode.errors import EntityDestroyedError, QueueFullError
 from aionode.graph import EndpointKind
+from aionode.message import unserialized
 from aionode.qos import KEEP_ALL_DEPTH
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
         Call,
         Reader,
         Registration,
+        Request,
         Requester,
         Serve,
         Writer,
@@ -251,8 +253,8 @@ class BareCall:
 class BareNode:
     """A node in the graph, and the owner of bare endpoints.
 
-    Names are used as they are given: valid, complete and remapped. It has no services of its own:
-    other processes find types that only it uses if its owner serves ``get_type_description``.
+    Names are used as they are given: valid, complete and remapped. It has no services of its own,
+    but for what `describe_types` adds.
 
     Args:
         context: The context that it joins.
@@ -273,7 +275,7 @@ class BareNode:
     ) -> None:
         self.context = context
         self.info = context._describe_node(name, namespace, enclave)
-        self._endpoints: dict[BareEndpoint, None] = {}
+        self._endpoints: dict[BareEndpoint, Any] = {}  # each with its type
         self._destroyed = False
         context._add_node(self, self._abandon)
         self._registrations = self.context._register(
@@ -291,7 +293,7 @@ class BareNode:
         writers = self.context._register(
             lambda transport: transport.create_writer(endpoint, msg_type)
         )
-        return self._add(BarePublisher(self, endpoint, writers))
+        return self._add(BarePublisher(self, endpoint, writers), msg_type)
 
     def create_subscription(
         self, msg_type: Any, topic: str, profile: QoSProfile, reader: Reader
@@ -309,7 +311,7 @@ class BareNode:
         registrations = self.context._register(
             lambda transport: transport.create_reader(endpoint, msg_type, reader)
         )
-        return self._add(BareEndpoint(self, endpoint, registrations))
+        return self._add(BareEndpoint(self, endpoint, registrations), msg_type)
 
     def create_server(
         self, srv_type: Any, service: str, profile: QoSProfile, serve: Serve
@@ -323,7 +325,7 @@ class BareNode:
         registrations = self.context._register(
             lambda transport: transport.create_server(endpoint, srv_type, serve)
         )
-        return self._add(BareEndpoint(self, endpoint, registrations))
+        return self._add(BareEndpoint(self, endpoint, registrations), srv_type)
 
     def create_client(self, srv_type: Any, service: str, profile: QoSProfile) -> BareClient:
         """Return a client.
@@ -335,7 +337,27 @@ class BareNode:
         requesters = self.context._register(
             lambda transport: transport.create_requester(endpoint, srv_type)
         )
-        return self._add(BareClient(self, endpoint, requesters))
+        return self._add(BareClient(self, endpoint, requesters), srv_type)
+
+    def describe_types(self) -> None:
+        """Serve ``get_type_description``, so that other processes find types that only it uses.
+
+        Nodes of Humble have no such service: in a context of Humble, this has no effect.
+
+        Raises:
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        # Imported on demand: only needed here.
+        from aionode.engine.type_descriptions import describe_type
+        from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
+
+        def serve(request: Request, inline_deadline_ns: int = 0) -> None:  # noqa: ARG001  # part of Serve
+            used = [unserialized(ros_type) for ros_type in self._endpoints.values()]
+            request.reply(describe_type(used, request.message, GetTypeDescription.Response()))
+
+        if self.context.ros_distro != "humble":
+            name = f"{self.info.fully_qualified_name}/get_type_description"
+            self.create_server(GetTypeDescription, name, qos.qos_profile_services_default, serve)
 
     def destroy_node(self) -> None:
         """Destroy the endpoints, newest first, and leave the graph; again has no effect."""
@@ -370,8 +392,8 @@ class BareNode:
             profile = qos.best_available_for_subscription(profile, others)
         return self.context._describe_endpoint(kind, self.info, name, ros_type, profile.resolved())
 
-    def _add(self, endpoint: EndpointT) -> EndpointT:
-        self._endpoints[endpoint] = None
+    def _add(self, endpoint: EndpointT, ros_type: Any) -> EndpointT:
+        self._endpoints[endpoint] = ros_type
         self.context.graph.add_endpoint(endpoint.endpoint)
         return endpoint
 

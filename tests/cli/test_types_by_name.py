@@ -14,6 +14,7 @@ from aionode.cli._nouns.interface import proto
 from aionode.cli._nouns.service import call
 from aionode.cli._nouns.topic.echo import echo
 from aionode.cli._support.lookup import topic_type
+from aionode.cli._support.session import make_node
 from aionode.engine.wire.typehash import type_hash
 from aionode.errors import CommandError
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -159,6 +160,16 @@ async def test_a_goal_of_defaults_has_those_that_the_server_describes(
 
     assert goals == [Drive.Goal()]
     assert json.loads(screen.text.splitlines()[-1]) == to_builtins(Drive.Goal())
+
+
+async def test_commands_describe_the_types_that_they_use(node_factory: Any) -> None:
+    """Of a topic that only a command listens to, no other node knows the type."""
+    other = node_factory("other")
+    async with make_node(other.context) as own:
+        own.create_subscription(Words, "/words")
+        own.create_client(Reverse, "/reverse")
+        assert (await other.find_type("foreign/msg/Words"))(text="a").text == "a"
+        assert (await other.find_type("foreign/srv/Reverse")).Request(text="a").text == "a"
 
 
 async def test_a_type_that_no_node_describes_is_an_error_with_a_way_out(

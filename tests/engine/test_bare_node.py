@@ -12,10 +12,15 @@ from aionode import Context, Node
 from aionode.engine.bare_node import BareNode
 from aionode.engine.transport.base import SampleInfo
 from aionode.engine.wire import cdr
-from aionode.errors import EntityDestroyedError, QueueFullError, ServiceError
+from aionode.errors import (
+    EntityDestroyedError,
+    InterfaceNotFoundError,
+    QueueFullError,
+    ServiceError,
+)
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
 from aionode.interfaces.std_msgs.msg import String
-from aionode.message import serialized
+from aionode.message import Message, serialized
 from aionode.qos import KEEP_ALL_DEPTH, DurabilityPolicy, HistoryPolicy, QoSProfile
 
 if TYPE_CHECKING:
@@ -111,6 +116,38 @@ async def test_the_end_of_the_context_destroys_bare_nodes(context: Context) -> N
         BareNode(context, "bare")
 
     assert context.graph.nodes() == []
+
+
+class Words(Message, typename="foreign/msg/Words", by_name=False):
+    """A message that is found by its description only, as if it were another process's."""
+
+    text: str = "none"
+
+
+@pytest.mark.parametrize("kind", [Words, serialized(Words)])
+async def test_a_bare_node_describes_the_types_of_its_endpoints(
+    kind: Any, context: Context
+) -> None:
+    """Nobody else may know them; those of an endpoint that has gone are not described."""
+    async with context, Node("curious", context=context) as curious:
+        node = BareNode(context, "bare", "/robot")
+        node.describe_types()
+        publisher = node.create_publisher(kind, "/words", TEN)
+
+        found = await curious.find_type("foreign/msg/Words")
+        assert found is not Words
+        assert found().text == "none"
+
+        publisher.destroy()
+        with pytest.raises(InterfaceNotFoundError):
+            await curious.find_type("foreign/msg/Words")
+
+
+async def test_a_bare_node_of_humble_describes_nothing() -> None:
+    """Humble has neither the service nor its type."""
+    async with Context(transport="local", ros_distro="humble") as context:
+        BareNode(context, "bare").describe_types()
+        assert context.graph.endpoints() == []
 
 
 async def test_serialized_and_typed_endpoints_hear_each_other(context: Context) -> None:

@@ -70,7 +70,7 @@ def gateway_command(
         problem = "--limit is for a gateway without --policy: write it under [limits] there"
         raise click.UsageError(problem, ctx)
     serve = serving(path, allow_write, host, port, limits)
-    run_verb(serve, node_name="gateway", endless=True, busy=True, asks=False, describes=True)
+    run_verb(serve, node_name="gateway", endless=True, busy=True, asks=False)
 
 
 def serving(

@@ -45,7 +45,6 @@ def command(
     endless: bool | Callable[[Mapping[str, Any]], bool] = False,
     busy: bool = False,
     asks: bool = True,
-    describes: bool = False,
     stop_s: float = STOP_S,
     **settings: Any,
 ) -> Callable[[VerbT], VerbT]:
@@ -68,7 +67,6 @@ def command(
         endless: Whether Ctrl-C is the normal end, also as a function of the prepared values.
         busy: As for `run_verb`.
         asks: As for `run_verb`.
-        describes: As for `run_verb`.
         stop_s: As for `run_verb`.
         settings: Passed on to click.
     """
@@ -95,7 +93,6 @@ def command(
                 endless=endless(values) if callable(endless) else endless,
                 busy=busy,
                 asks=asks,
-                describes=describes,
                 stop_s=stop_s,
             )
 

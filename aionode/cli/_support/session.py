@@ -47,26 +47,25 @@ def make_node(
     node_name: str | None = None,
     *,
     use_sim_time: bool = False,
-    describes: bool = False,
 ) -> Node:
-    """Return the node of a command: hidden, and without services or logs of its own.
+    """Return the node of a command: hidden, without a log, and with one service of its own.
 
     Without a `context` it gets one of its own: the default context of the process has the
-    environment of its first use, and belongs to the program that runs the command. What publishes
-    or serves any types `describes` them: others may not know them.
+    environment of its first use, and belongs to the program that runs the command. Its service
+    describes the types that it uses, as others may not know them: of a topic that nobody but
+    ``topic echo --interfaces`` uses, for example.
     """
     # Imported when a command runs; its help does not need them.
     from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.parameter import Parameter
 
-    settings = {"start_type_description_service": describes, "use_sim_time": use_sim_time}
     return Node(
         node_name or f"_aionode_cli_{os.getpid()}",
         context=Context() if context is None else context,
         enable_rosout=False,
         start_parameter_services=False,
-        parameter_overrides=[Parameter(name, value=value) for name, value in settings.items()],
+        parameter_overrides=[Parameter("use_sim_time", value=use_sim_time)],
         callback_budget_ms=UNLIMITED_MS,
     )
 
@@ -80,7 +79,6 @@ def run_verb(
     endless: bool = False,
     busy: bool = False,
     asks: bool = True,
-    describes: bool = False,
     stop_s: float = STOP_S,
 ) -> None:
     """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
@@ -93,7 +91,6 @@ def run_verb(
         endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, which makes the faster loop worth its import.
         asks: Whether the verb needs a complete graph, so that discovery is awaited first.
-        describes: Whether its node describes the types that it uses.
         stop_s: Timeout for the exit after a signal, in seconds.
 
     Raises:
@@ -109,9 +106,7 @@ def run_verb(
     deadline = Deadline(armed=owns_process())
 
     async def work() -> int | None:
-        async with make_node(
-            node_name=node_name, use_sim_time=use_sim_time, describes=describes
-        ) as node:
+        async with make_node(node_name=node_name, use_sim_time=use_sim_time) as node:
             try:
                 if asks:
                     await wait_until_known(node, output)

@@ -244,7 +244,6 @@ def prepare_pub(options: dict[str, Any]) -> None:
     endless=lambda options: options["times"] == 0,
     busy=True,
     asks=False,
-    describes=True,
 )  # fmt: skip
 async def pub(
     node: Node,
