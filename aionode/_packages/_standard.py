@@ -20,6 +20,12 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "topic_tools": {
         name: f"_{name}" for name in ("delay", "drop", "mux", "relay", "throttle", "transform")
     },
+    "turtlesim": {
+        "draw_square": "_turtlesim.draw_square",
+        "mimic": "_turtlesim.mimic",
+        "turtle_teleop_key": "_turtlesim.teleop_key",
+        "turtlesim_node": "_turtlesim.node",
+    },
     "twist_mux": {"twist_mux": "_twist_mux"},
 }
 """The module of `aionode.programs` that is an executable, by package and name."""

@@ -1,0 +1,1 @@
+"""``turtlesim``: turtles that draw, and programs that move them."""
