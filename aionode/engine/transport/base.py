@@ -411,6 +411,10 @@ class Transport(ABC):
         """Return in words which processes have not answered `all_known`, as far as can be told."""
         return []
 
+    async def other_domains(self) -> frozenset[int]:
+        """Look for domains other than this one; most transports know of none."""
+        return frozenset()
+
     def abandon(self) -> None:  # noqa: B027  # most have nothing to let go of
         """Release what a forked child inherited from its parent, without telling anyone.
 

@@ -23,6 +23,7 @@ __all__ = [
     "ROUTER_PORT",
     "DiscoveryRange",
     "Network",
+    "domain_of_port",
     "is_near",
     "network_from",
     "new_participant",
@@ -32,10 +33,22 @@ __all__ = [
 ]
 
 MEETING_PORTS: Final = (17449, 17450, 17451)
-"""Ports where processes of one machine meet: below the ephemeral ports, and not a ROS router's."""
+"""Where processes of domain 0 meet on one machine; each further domain has the next ports.
+
+They are below the ephemeral ports, and a ROS router uses none of them.
+"""
 
 SPARE_PORTS: Final = (17452, 17453, 17454)
-"""Ports where they meet if other programs have taken all of those."""
+"""Where processes of domain 0 meet if other programs have taken all of those."""
+
+PORTS_OF_A_DOMAIN: Final = len(MEETING_PORTS) + len(SPARE_PORTS)
+
+DOMAINS_WITH_PORTS: Final = 2500
+"""Number of domains with ports of their own: all that fit below the ephemeral ports.
+
+Domain 2500 shares those of domain 0, and so on. Such processes are connected, but only receive what
+belongs to their own domain, as everywhere in ROS 2 on Zenoh.
+"""
 
 ROUTER_PORT: Final = 7447
 """The port of `rmw_zenohd` and `aionode router`."""
@@ -98,7 +111,7 @@ class Network:
         config_source: Where its path comes from, for error texts.
         overrides: Settings that win over all others: key path and JSON5 text.
         override_source: Where the overrides come from, for error texts.
-        meeting_ports: Ports on which processes of one machine meet.
+        meeting_ports: Ports on which processes of one machine and domain meet.
         spare_ports: Further ones, for when other programs have taken all of those.
         router_port: Port of a router on this machine.
         queue_bytes: How many bytes of messages may wait in each queue from and to other processes.
@@ -166,7 +179,8 @@ def network_from(
     Raises:
         ConfigurationError: one of them does not fit; the text names it.
     """
-    ports, spare_ports = meeting_ports(environ)
+    domain_id = choose_domain_id(environ, domain_id)
+    ports, spare_ports = meeting_ports(environ, domain_id)
     router_port = port(
         environ.get("AIONODE_ROUTER_PORT") or str(ROUTER_PORT), "AIONODE_ROUTER_PORT"
     )
@@ -192,7 +206,7 @@ def network_from(
         if isinstance(static_peers, str):  # a string is iterable too, and never meant so
             static_peers = static_peers.split(";")
     return Network(
-        domain_id=choose_domain_id(environ, domain_id),
+        domain_id=domain_id,
         discovery_range=choose_range(environ, discovery_range),
         static_peers=tuple(
             endpoint
@@ -319,14 +333,24 @@ def port(text: str, source: str) -> int:
     return int(text)
 
 
-def meeting_ports(environ: Mapping[str, str]) -> tuple[tuple[int, ...], tuple[int, ...]]:
+def domain_of_port(first: int) -> int | None:
+    """Return the domain whose processes meet on a port and the next ones, by default; else None."""
+    domain_id, rest = divmod(first - MEETING_PORTS[0], PORTS_OF_A_DOMAIN)
+    return domain_id if rest == 0 and 0 <= domain_id < DOMAINS_WITH_PORTS else None
+
+
+def meeting_ports(
+    environ: Mapping[str, str], domain_id: int
+) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """Return the ports to meet on, and spare ones.
 
-    Tests set others, so as not to hear what else runs.
+    By default each domain has its own, so that processes of different domains are not even
+    connected. Where the variable sets them, processes of all domains meet there.
     """
     text = environ.get(MEETING_PORTS_VARIABLE, "")
     if not text:
-        return MEETING_PORTS, SPARE_PORTS
+        shift = domain_id % DOMAINS_WITH_PORTS * PORTS_OF_A_DOMAIN
+        return tuple(p + shift for p in MEETING_PORTS), tuple(p + shift for p in SPARE_PORTS)
     ports = tuple(port(p.strip(), MEETING_PORTS_VARIABLE) for p in text.split(","))
     return ports[: len(MEETING_PORTS)], ports[len(MEETING_PORTS) :]
 

@@ -9,10 +9,12 @@ import pytest
 import zenoh  # noqa: TID251  # asks Zenoh whether it knows the settings
 
 from aionode.engine.transport.network import (
+    DOMAINS_WITH_PORTS,
     MEETING_PORTS,
     ROUTER_PORT,
     DiscoveryRange,
     Network,
+    domain_of_port,
     is_near,
     network_from,
 )
@@ -148,6 +150,40 @@ def test_meeting_ports_beyond_three_are_spare() -> None:
 
     assert network.meeting_ports == (1, 2, 3)
     assert network.spare_ports == (4, 5)
+
+
+def test_each_domain_has_ports_of_its_own() -> None:
+    """Processes of other domains are not connected, and cost nothing."""
+    domains = [network_from({}, domain_id=domain_id) for domain_id in range(DOMAINS_WITH_PORTS)]
+    ports = [p for each in domains for p in (*each.meeting_ports, *each.spare_ports)]
+
+    assert len(set(ports)) == len(ports)
+    assert max(ports) < 32_768  # where the ephemeral ports begin
+    assert [domain_of_port(each.meeting_ports[0]) for each in domains] == list(
+        range(DOMAINS_WITH_PORTS)
+    )
+    assert domains[0].meeting_ports == MEETING_PORTS
+
+
+@pytest.mark.parametrize("domain_id", [DOMAINS_WITH_PORTS + 3, 2**32 - 1])
+def test_domains_beyond_those_with_ports_share_them(domain_id: int) -> None:
+    """ROS allows four thousand million of them."""
+    shared = network_from({}, domain_id=domain_id % DOMAINS_WITH_PORTS)
+
+    assert network_from({}, domain_id=domain_id).meeting_ports == shared.meeting_ports
+
+
+def test_all_domains_meet_at_ports_that_are_set() -> None:
+    """So that domains can be joined on purpose."""
+    environ = {"AIONODE_MEETING_PORTS": "1,2,3"}
+
+    assert network_from(environ, domain_id=7).meeting_ports == (1, 2, 3)
+
+
+@pytest.mark.parametrize("first", [0, 17448, 17450, 17449 + 6 * DOMAINS_WITH_PORTS])
+def test_other_ports_belong_to_no_domain(first: int) -> None:
+    """They were set, or are another program's."""
+    assert domain_of_port(first) is None
 
 
 def settings(network: Network, *answering: int) -> dict[str, Any]:

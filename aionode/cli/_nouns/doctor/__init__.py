@@ -17,7 +17,6 @@ from aionode.cli._support import lookup
 from aionode.cli._support.completion import complete_names
 from aionode.cli._support.options import interfaces_option, json_option, ros2_options
 from aionode.cli._support.session import run_verb, silent_processes
-from aionode.clock import perf_ns
 from aionode.engine.transport.network import DiscoveryRange, unheard_middleware
 from aionode.errors import FAST_DDS_REMEDY, FAST_DDS_SILENCE
 from aionode.graph import SERVICE_KINDS, TOPIC_KINDS, EndpointKind
@@ -34,12 +33,6 @@ __all__ = ["doctor", "doctor_command", "network_findings"]
 
 PROBE_S = 0.2
 """Timeout for a router on this machine to accept a connection, in seconds; it takes 0.1 ms."""
-
-DOMAINS_S = 1.0
-"""Time for finding nodes of other domains if the own domain has none, in seconds."""
-
-DOMAINS_AGAIN_S = 0.02
-"""Interval between two looks for nodes of other domains, in seconds."""
 
 ZENOH = "rmw_zenoh_cpp"
 
@@ -87,7 +80,7 @@ async def doctor(
     nodes, endpoints = chosen(node, names)
     links = await query_links(node)
     bridges = bridges_of(node)
-    domains = await other_domains(node, keep_looking=not nodes and not bridges)
+    domains = await other_domains(node)
     wanted = full_names(names)
     pairs = [
         pair
@@ -162,6 +155,7 @@ def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
         ]
     return [
         f"Domain: {record['domain_id']}",
+        f"Other domains here: {', '.join(map(str, record['other_domains'])) or 'none'}",
         f"Discovery range: {record['discovery_range']}",
         f"Static peers: {', '.join(record['static_peers']) or 'none'}",
         *reached,
@@ -212,22 +206,10 @@ def middleware_of(node: Node) -> str:
     return next(filter(None, names), "")
 
 
-async def other_domains(node: Node, *, keep_looking: bool) -> list[int]:
-    """Return the other domains in which reachable nodes have been seen.
-
-    Args:
-        node: The command's node.
-        keep_looking: Whether to look for `DOMAINS_S`. Where this domain is empty, other domains
-            are the likely explanation, and on a busy machine finding them takes time.
-    """
-    ends_ns = perf_ns() + int(DOMAINS_S * 1e9)
-    while True:
-        domains: set[int] = set()
-        for transport in node.context.transports:
-            domains |= set(getattr(transport, "other_domains", ()))
-        if domains or not keep_looking or perf_ns() >= ends_ns:
-            return sorted(domains)
-        await node.get_clock().sleep(DOMAINS_AGAIN_S)
+async def other_domains(node: Node) -> list[int]:
+    """Return the other domains on this machine, and those whose nodes can be reached."""
+    found = [await transport.other_domains() for transport in node.context.transports]
+    return sorted(frozenset().union(*found))
 
 
 def bridges_of(node: Node) -> dict[str, bool]:
@@ -266,14 +248,14 @@ def network_findings(
 ) -> list[Finding]:
     """Return the findings about settings that prevent discovery."""
     findings = []
-    if domains:
+    if domains and alone:
         others = ", ".join(map(str, domains))
         findings.append(
             Finding(
                 "hint",
                 "domain",
-                f"there are nodes in domain {others}, but this is domain {network.domain_id}: "
-                "domains do not communicate",
+                f"there is no other node in domain {network.domain_id}, but there are programs in "
+                f"domain {others}: domains do not communicate",
                 f"set ROS_DOMAIN_ID={domains[0]}",
             )
         )

@@ -70,10 +70,9 @@ class LinkTransport(Transport):
     def __repr__(self) -> str:
         return f"<LinkTransport links={len(self.manager.links)} beside {self.zenoh!r}>"
 
-    @property
-    def other_domains(self) -> frozenset[int]:
-        """Other domains whose nodes can be reached; they do not hear nodes of this domain."""
-        return frozenset(getattr(self.zenoh, "other_domains", ()))
+    async def other_domains(self) -> frozenset[int]:
+        """Look for domains other than this one."""
+        return await self.zenoh.other_domains()
 
     async def open(self, graph: Graph) -> None:
         """Connect; without a folder for sockets, or descriptors, over the other transport only."""

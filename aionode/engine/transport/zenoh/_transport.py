@@ -8,6 +8,8 @@ from functools import partial
 from itertools import filterfalse
 from typing import TYPE_CHECKING, Any
 
+import zenoh
+
 from aionode.clock import perf_ns
 from aionode.engine.transport.base import Transport
 from aionode.engine.transport.drops import Drop, Drops
@@ -19,6 +21,7 @@ from aionode.engine.transport.zenoh._defects.stale_transports import StaleTransp
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.engine.transport.zenoh.connections.sockets import arrived_bytes, pair_of
 from aionode.engine.transport.zenoh.discovery.graph_watcher import NodeDeclaration, Watcher
+from aionode.engine.transport.zenoh.discovery.other_domains import other_domains
 from aionode.engine.transport.zenoh.discovery.peer_directory import ZenohPeerDirectory
 from aionode.engine.transport.zenoh.discovery.router_matching import RouterMatching
 from aionode.engine.transport.zenoh.endpoints.publisher import ZenohWriter
@@ -37,8 +40,6 @@ if TYPE_CHECKING:
     import socket
     from collections import Counter
     from collections.abc import Set as AbstractSet
-
-    import zenoh
 
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import (
@@ -123,10 +124,18 @@ class ZenohTransport(Transport):
         """What is dropped of what others send."""
         return self._state.drops
 
-    @property
-    def other_domains(self) -> frozenset[int]:
-        """The domains of nodes that can be reached, but do not hear this one."""
-        return self._watcher.other_domains
+    async def other_domains(self) -> frozenset[int]:
+        """Look for other domains on this machine, and wherever nodes of them can be reached.
+
+        Returns:
+            A hundred domain ids at most; none if the transport is closed.
+        """
+        session = self._state.session
+        if session is None:
+            return frozenset()
+        with suppress(zenoh.ZError):  # closed meanwhile
+            return await run_in_own_thread(partial(other_domains, session, self.network))
+        return frozenset()
 
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have."""
@@ -164,7 +173,6 @@ class ZenohTransport(Transport):
         with suppress(TimeoutError):
             async with asyncio.timeout(KNOWN_S):
                 await asyncio.shield(answered)
-        self._watcher.note_domains()
         self._state.graph_is_known()
 
     async def all_known(self, quiet_s: float) -> bool:

@@ -15,6 +15,7 @@ from aionode.engine.transport import network as _network
 from aionode.engine.transport.network import new_participant
 from aionode.engine.transport.zenoh.session.local_sessions import (
     announce,
+    groups,
     holder_of,
     listed,
     processes,
@@ -55,6 +56,14 @@ def test_sessions_of_other_groups_are_not_listed(group: int) -> None:
     """They listen at other ports, and need not be reachable."""
     with closing(announce(group + 16_384, 4711)):
         assert listed(group) == set()
+
+
+def test_the_groups_with_sessions_are_listed(group: int) -> None:
+    """`aionode doctor` names their domains."""
+    with closing(announce(group, 4711)), closing(announce(group + 16_384, 4711)):
+        assert {group, group + 16_384} <= groups()
+
+    assert group not in groups()
 
 
 def test_a_session_is_not_listed_any_more_when_its_process_was_killed(group: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import logging
+import os
 import threading
 from collections.abc import Iterable
 from contextlib import ExitStack
@@ -442,116 +443,65 @@ async def test_strange_tokens_are_counted_and_the_graph_goes_on(
         assert sum("unknown form" in record.message for record in caplog.records) == 1
 
 
-async def test_another_domain_is_named_and_not_heard(caplog: pytest.LogCaptureFixture) -> None:
-    """The commonest reason why two terminals do not hear each other."""
-    clock = ManualClock()
-    with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
-        async with (
-            Context(domain_id=DOMAIN_ID + 1) as elsewhere,
-            quiet_node("there", elsewhere),
-            quiet_node("again", elsewhere),
-            quiet_node("here", Context(clock=clock)) as here,
-        ):
-            await until(lambda: bool(transport_of(here).other_domains))
-            assert [n.name for n in here.graph.nodes()] == ["here"]
-            assert caplog.messages == []  # nodes of its own domain may be starting, too
-            await clock.advance(2.0)
-    (told,) = [text for text in caplog.messages if f"nodes of domain {DOMAIN_ID + 1} can" in text]
-    assert "--log-level aionode.transport.zenoh:=error" in told
-
-
-async def test_a_context_with_nodes_that_hear_each_other_does_not_warn_of_other_domains(
+async def test_domains_that_meet_do_not_hear_each_other_or_say_anything(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    """A program such as `make demo` is complete: nobody of its domain is missing."""
+    """A setting or a router may join them; `aionode doctor` names them when it is asked."""
     clock = ManualClock()
-    with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"):
+    with caplog.at_level(logging.INFO, "aionode"):
         async with (
             quiet_node("there", Context(domain_id=DOMAIN_ID + 1)),
-            Context(clock=clock) as context,
-            quiet_node("talker", context) as talker,
-            quiet_node("listener", context),
+            quiet_node("here", Context(clock=clock)) as here,
         ):
-            await until(lambda: bool(transport_of(talker).other_domains))
-            await clock.advance(2.0)
-    assert domain_lines(caplog) == []
-
-
-def domain_lines(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
-    """Return level and beginning of each line about other domains."""
-    return [
-        (record.levelno, record.getMessage().partition(" can be reached")[0])
-        for record in caplog.records
-        if "can be reached" in record.getMessage()
-    ]
-
-
-async def test_many_other_domains_make_one_line(caplog: pytest.LogCaptureFixture) -> None:
-    """It names a few, and counts the rest; they are forgotten when they are gone."""
-    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
-        async with quiet_node("here") as here, quiet_node("elsewhere") as near:
             transport = transport_of(here)
-            tokens = announced(session, range(200, 260))
-            await until(lambda: len(transport.other_domains) >= 60)
-            before = domain_lines(caplog)
-            for token in tokens:
-                token.undeclare()
-            await until(lambda: not transport.other_domains)
-            assert near.context.ok()
-
-    assert len(before) <= 2 * 2  # of each of two contexts the first, and one with ten times as many
-    assert all(level == logging.DEBUG for level, _ in before)
+            await until(lambda: bool(transport.session_state.connections.kinds))
+            assert await transport.other_domains() == {DOMAIN_ID + 1}
+            await clock.advance(10.0)
+            assert [n.name for n in here.graph.nodes()] == ["here"]
+    assert [text for text in caplog.messages if "domain" in text] == []
 
 
-async def test_other_domains_are_a_warning_once_in_a_context_that_hears_no_other(
-    caplog: pytest.LogCaptureFixture,
+async def test_processes_of_different_domains_are_not_connected(
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Then the domain is likely to be a mistake."""
-    clock = ManualClock()
-    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
-        _tokens = announced(session, range(200, 208))
-        async with quiet_node("here", Context(clock=clock)) as here:
+    """Twenty simulated robots of one machine cost each other nothing."""
+    monkeypatch.delenv("AIONODE_MEETING_PORTS")
+    first = 1000 + os.getpid() % 1000  # other tests have others
+    async with (
+        Context(domain_id=first) as here,
+        Context(domain_id=first + 1) as there,
+        Context(domain_id=first) as twin,
+        quiet_node("here", here),
+        quiet_node("there", there),
+        quiet_node("twin", twin) as node,
+    ):
+        await node.graph.until(lambda: len(node.graph.nodes()) == 2)
+        transports: list[Any] = [each.transports[1] for each in (here, there, twin)]
+        connected = [set(each.session_state.connections.kinds) for each in transports]
+        assert connected == [{twin.participant}, set(), {here.participant}]
+        assert first + 1 in await here.transports[1].other_domains()
+
+
+async def test_a_hundred_domains_are_named_at_most() -> None:
+    """A peer can announce nodes in as many as it likes."""
+    with raw_session() as session:
+        _tokens = announced(session, range(200, 350))
+        async with quiet_node("here") as here:
             transport = transport_of(here)
-            await until(lambda: len(transport.other_domains) == 8)
-            await clock.advance(2.0)
-            _more = announced(session, range(100, 180))
-            await until(lambda: len(transport.other_domains) == 88)
+            await until(lambda: bool(transport.session_state.connections.kinds))
 
-    lines = [text for level, text in domain_lines(caplog) if level == logging.WARNING]
-    assert lines == ["nodes of domain 200, 201, 202, 203, 204 and 3 more"]
+            assert len(await transport.other_domains()) == 100
 
 
-async def test_hidden_nodes_of_another_domain_are_not_missed(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
+async def test_hidden_nodes_of_another_domain_are_not_named() -> None:
     """The daemon of ros2cli runs on for hours in each domain that was asked for anything."""
-    clock = ManualClock()
-    with caplog.at_level(logging.DEBUG, "aionode.transport.zenoh"), raw_session() as session:
+    with raw_session() as session:
         _tokens = announced(session, [DOMAIN_ID], "sign")
         _tokens += announced(session, [200], "_ros2cli_daemon_200_5f4dcc3b")
-        endpoint = f"@ros2_lv/200/{session.zid()}/0/1/MP/%/%/_ros2cli_9/%t/p::msg::dds_::T_/h"
-        _tokens.append(session.liveliness().declare_token(f"{endpoint}/::,1:,:,:,,"))
-        async with quiet_node("here", Context(clock=clock)) as here:
+        async with quiet_node("here") as here:
             await here.graph.until(lambda: "sign" in {node.name for node in here.graph.nodes()})
-            await clock.advance(2.0)
 
-            assert transport_of(here).other_domains == frozenset()
-    assert domain_lines(caplog) == []
-
-
-async def test_a_context_that_hears_only_hidden_nodes_warns_of_other_domains(
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    """A daemon of ros2cli in its own domain is not what a program looks for."""
-    clock = ManualClock()
-    with caplog.at_level(logging.WARNING, "aionode.transport.zenoh"), raw_session() as session:
-        _tokens = announced(session, [DOMAIN_ID], f"_ros2cli_daemon_{DOMAIN_ID}_5f4dcc3b")
-        _tokens += announced(session, [200])
-        async with quiet_node("here", Context(clock=clock)) as here:
-            await here.graph.until(lambda: len(here.graph.nodes()) == 2)
-            await until(lambda: bool(transport_of(here).other_domains))
-            await clock.advance(2.0)
-    assert domain_lines(caplog) == [(logging.WARNING, "nodes of domain 200")]
+            assert await transport_of(here).other_domains() == frozenset()
 
 
 def announced(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import logging
 from functools import partial
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -16,17 +15,12 @@ from aionode.engine.transport.zenoh._session_state import Declaration
 from aionode.engine.transport.zenoh.connections.handlers import direct, translated
 from aionode.engine.wire._liveliness import PREFIX, is_node_token, node_token, parse_token
 from aionode.graph import EndpointInfo, NodeInfo
-from aionode.names import is_hidden
 
 if TYPE_CHECKING:
-    from aionode.clock import Alarm
     from aionode.engine.transport.zenoh._session_state import SessionState
     from aionode.engine.transport.zenoh.connections.connections import ConnectionChange
 
 __all__ = ["NodeDeclaration", "Watcher"]
-
-logger = logging.getLogger("aionode.transport.zenoh")
-
 
 CHECK_S: Final = 2.0
 """Timeout for the tokens of others, in seconds; they take a millisecond."""
@@ -38,15 +32,6 @@ ANSWER_S: Final = 60.0
 """Time for which Zenoh waits for the tokens of all peers, in seconds; a frozen peer is cut long
 before."""
 
-EXPECTED_NS: Final = 2_000_000_000
-"""Time for which nodes of this domain are expected; meanwhile other domains are not told of."""
-
-NAMED: Final = 5
-"""Number of other domains that are named in the log."""
-
-MAX_FOREIGN: Final = 100
-"""Number of other domains that are remembered, and of tokens of each."""
-
 FILL_S: Final = 5.0
 """Longest time until tokens that were left out take the place of tokens that have gone."""
 
@@ -57,12 +42,6 @@ SHOWN: Final = 200
 def participant_of(key: str) -> str:
     """Return the participant that a liveliness token names; empty without one."""
     return key.split("/", 3)[2] if key.count("/") > 1 else ""
-
-
-def is_of_tool(info: NodeInfo | EndpointInfo) -> bool:
-    """Return whether it is a hidden node or an endpoint of one, which nobody misses."""
-    node = info if isinstance(info, NodeInfo) else info.node
-    return is_hidden(node.fully_qualified_name)
 
 
 class NodeDeclaration(Declaration):
@@ -139,15 +118,10 @@ class Watcher:
     def __init__(self, state: SessionState) -> None:
         self.newest_ns = 0
         self._state = state
+        self._tokens = f"{PREFIX}/{state.domain_id}/**"
         self._check: Check | None = None
         self._missing: set[str] = set()
         self._known: dict[str, NodeInfo | EndpointInfo] = {}
-        # The tokens of nodes in other domains, as far as they are of interest.
-        self._foreign: dict[int, set[str]] = {}
-        self._tell_from = 1
-        self._warned = False
-        self._may_tell = False
-        self._expected: Alarm | None = None
         self._filling = Later()
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._asking = SendThread("aionode-graph", state.waker)
@@ -157,9 +131,8 @@ class Watcher:
     def start(self, session: zenoh.Session) -> None:
         """Subscribe to the tokens; existing ones arrive at once."""
         with translated("the graph"):
-            # Of all domains, so that a node with another domain id can be named in the log.
             self._subscriber = session.liveliness().declare_subscriber(
-                f"{PREFIX}/**", direct(self._hand_over), history=True
+                self._tokens, direct(self._hand_over), history=True
             )
 
     def stop(self) -> None:
@@ -174,17 +147,6 @@ class Watcher:
         self._check = None
         self._missing = set()
         self._known.clear()
-        self._foreign.clear()
-        self._tell_from = 1
-        self._may_tell = False
-        if self._expected is not None:
-            self._expected.cancel()
-            self._expected = None
-
-    @property
-    def other_domains(self) -> frozenset[int]:
-        """The domains of reachable nodes that are not hidden; a hundred at most."""
-        return frozenset(self._foreign)
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[bool]) -> None:
         """Resolve `answered` when the tokens of all connected peers are in the graph.
@@ -196,7 +158,7 @@ class Watcher:
         # The subscriber gets the same tokens, and a reply may be older than an undeclaration that
         # it has got since: only the end of the replies is of interest, and whether one failed.
         session.liveliness().get(
-            f"{PREFIX}/{self._state.domain_id}/**",
+            self._tokens,
             direct(answer.take, lambda: self._queue.put(answer)),
             timeout=ANSWER_S,
         )
@@ -232,7 +194,7 @@ class Watcher:
         """Ask, in a thread: Zenoh takes 0.2 ms for each token that it knows, before it returns."""
         try:
             session.liveliness().get(
-                f"{PREFIX}/{self._state.domain_id}/**",
+                self._tokens,
                 direct(self._queue.put, lambda: self._queue.put(check)),
                 timeout=CHECK_S,
             )
@@ -305,10 +267,7 @@ class Watcher:
         """Add a token to the graph; return whether it belongs there."""
         token = parse_token(key)
         if token is None:
-            self._state.note_malformed(f"{PREFIX}/**", f"the liveliness token {key[:SHOWN]}")
-        elif token.domain_id != self._state.domain_id:
-            if not is_of_tool(token.info):
-                self._note_domain(token.domain_id, key)
+            self._state.note_malformed(self._tokens, f"the liveliness token {key[:SHOWN]}")
         elif self._state.graph is not None:
             info = self._known[key] = token.info
             if isinstance(info, NodeInfo):
@@ -322,7 +281,6 @@ class Watcher:
     def _remove(self, key: str) -> None:
         info = self._known.pop(key, None)
         if info is None:
-            self._forget_domain(key)
             return
         self._state.announced.release(participant_of(key), key)
         if self._state.announced.left_out and not self._filling.waits:
@@ -339,53 +297,3 @@ class Watcher:
         """Ask for what was left out: there is room again."""
         self._state.announced.begin_to_fill()
         self.check()
-
-    def _forget_domain(self, key: str) -> None:
-        for domain_id, keys in list(self._foreign.items()):
-            keys.discard(key)
-            if not keys:
-                del self._foreign[domain_id]
-
-    def note_domains(self) -> None:
-        """Log nodes of other domains once those of this one had time, and when more appear."""
-        time_base = self._state.time_base
-        self._expected = time_base.call_at(time_base.steady_ns() + EXPECTED_NS, self._begin_to_tell)
-
-    def _begin_to_tell(self) -> None:
-        self._may_tell = True
-        self._tell_domains()
-
-    def _note_domain(self, domain_id: int, key: str) -> None:
-        keys = self._foreign.get(domain_id)
-        if keys is not None:
-            if len(keys) < MAX_FOREIGN:
-                keys.add(key)
-        elif len(self._foreign) < MAX_FOREIGN:
-            self._foreign[domain_id] = {key}
-            if self._may_tell:
-                self._tell_domains()
-
-    def _tell_domains(self) -> None:
-        """Log a few of the other domains; again only when there are ten times as many.
-
-        One warning, if this context hears no other and has a single node: then the domain id may be
-        a mistake.
-        """
-        count = len(self._foreign)
-        own = sum(map(is_node_token, self._state.own_tokens()))
-        hears = not all(map(is_of_tool, self._known.values()))
-        warns = bool(count) and own < 2 and not hears and not self._warned
-        if count < self._tell_from and not warns:
-            return
-        self._tell_from = 10 * max(count, 1)
-        self._warned = self._warned or warns
-        named = sorted(self._foreign)[:NAMED]
-        logger.log(
-            logging.WARNING if warns else logging.DEBUG,
-            "nodes of domain %s%s can be reached, but this is domain %d: they do not hear each "
-            "other. ROS_DOMAIN_ID or Context(domain_id=...) changes the domain; in a "
-            "program, --ros-args --log-level aionode.transport.zenoh:=error hides this",
-            ", ".join(map(str, named)),
-            f" and {count - len(named)} more" if count > len(named) else "",
-            self._state.domain_id,
-        )

@@ -26,7 +26,15 @@ from aionode.engine.transport.network import udp_sockets
 from aionode.engine.transport.zenoh.connections.config import LOOPBACK
 from aionode.errors import escaped, shortened
 
-__all__ = ["LocalProcess", "announce", "holder_of", "listed", "processes", "reserve_port"]
+__all__ = [
+    "LocalProcess",
+    "announce",
+    "groups",
+    "holder_of",
+    "listed",
+    "processes",
+    "reserve_port",
+]
 
 PROCESSES: Final = Path("/proc")
 
@@ -66,6 +74,17 @@ def listed(group: int) -> set[int] | None:
         if remote.startswith(start):
             ports.add(int(remote.removeprefix(start), 16))
     return ports
+
+
+def groups() -> set[int]:
+    """Return the groups that have sessions on this machine, as far as it lists them."""
+    found = set()
+    for line in udp_sockets() or ():
+        remote = line.split(maxsplit=3)[2].partition(":")[0]
+        net, presence, high, low = int(remote, 16).to_bytes(4, sys.byteorder)
+        if (net, presence) == (127, PRESENCE):
+            found.add(high << 8 | low)
+    return found
 
 
 class LocalProcess(NamedTuple):
