@@ -35,6 +35,7 @@ from aionode.errors import (
     GoalCanceledError,
     GoalError,
     GoalLostError,
+    GoalRejected,
     GoalRejectedError,
     GoalTransitionError,
 )
@@ -49,6 +50,7 @@ __all__ = [
     "GoalCanceledError",
     "GoalError",
     "GoalLostError",
+    "GoalRejected",
     "GoalRejectedError",
     "GoalResponse",
     "GoalStatus",

@@ -7,7 +7,15 @@ application with ``python examples/web_control.py``.
 from __future__ import annotations
 
 import aionode
-from aionode import CancelResponse, Context, GoalResponse, Node, ServerGoalHandle, Supervisor
+from aionode import (
+    CancelResponse,
+    Context,
+    GoalRejected,
+    GoalResponse,
+    Node,
+    ServerGoalHandle,
+    Supervisor,
+)
 from aionode.interfaces.geometry_msgs.msg import Twist, Vector3
 from aionode.interfaces.std_msgs.msg import Float32
 from aionode.message import ActionType, Message, ServiceType, float64
@@ -81,7 +89,9 @@ class Robot(Node):
 
     def decide(self, _goal: Drive.Goal) -> GoalResponse:
         """Accept one goal at a time: two would both control the wheels."""
-        return GoalResponse.REJECT if self.busy else GoalResponse.ACCEPT
+        if self.busy:
+            raise GoalRejected("it drives to another goal")
+        return GoalResponse.ACCEPT
 
     async def drive(self, handle: Handle) -> Drive.Result:
         """Drive until the goal is reached or canceled or the node ends; then stop."""

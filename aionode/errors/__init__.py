@@ -24,6 +24,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     │   ├── GoalCanceledError
     │   ├── GoalLostError
     │   └── GoalRejectedError
+    ├── GoalRejected (RuntimeError)
     ├── GoalTransitionError (RuntimeError)
     ├── IdlError (ValueError)
     ├── InterfaceNotFoundError (LookupError)
@@ -90,6 +91,7 @@ from aionode.errors._calls import (
     GoalCanceledError,
     GoalError,
     GoalLostError,
+    GoalRejected,
     GoalRejectedError,
     GoalTransitionError,
     RequestRefusedError,
@@ -190,6 +192,7 @@ __all__ = [
     "GoalCanceledError",
     "GoalError",
     "GoalLostError",
+    "GoalRejected",
     "GoalRejectedError",
     "GoalTransitionError",
     "IdlError",

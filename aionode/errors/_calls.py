@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from aionode.errors._base import AionodeError
+from aionode.errors._base import AionodeError, brief, shortened
 
 __all__ = [
     "FAST_DDS_REMEDY",
@@ -11,6 +11,7 @@ __all__ = [
     "GoalCanceledError",
     "GoalError",
     "GoalLostError",
+    "GoalRejected",
     "GoalRejectedError",
     "GoalTransitionError",
     "RequestRefusedError",
@@ -19,6 +20,10 @@ __all__ = [
     "ServiceUnavailableError",
     "silence",
 ]
+
+
+MAX_REASON = 1000
+"""Most characters of the reason of a rejection: servers keep some of them."""
 
 
 class ServiceError(AionodeError, RuntimeError):
@@ -106,16 +111,41 @@ class GoalError(AionodeError, RuntimeError):
         super().__init__(f"{action}: goal {goal_id} {what}")
 
 
-class GoalRejectedError(GoalError):
-    """The action server rejected a goal."""
+class GoalRejected(AionodeError, RuntimeError):  # an answer, as GoalResponse.REJECT
+    """Raised by a `goal_callback` to reject a goal with a reason: ``too far: 12 m of at most 5``.
 
-    def __init__(self, action: str, goal_id: str) -> None:
-        super().__init__(
-            action,
-            goal_id,
-            "was rejected by the server, by its goal_callback or because max_goals are active; "
-            "ROS sends no reason, so see the server's log, and have goal_callback log why",
+    To ROS it is ``GoalResponse.REJECT``. Clients of aionode get the reason with their
+    `GoalRejectedError`, and the log of the server has it.
+
+    Attributes:
+        reason: Why, in words for the caller; the first 1000 characters.
+
+    Raises:
+        TypeError: `reason` is no str.
+    """
+
+    def __init__(self, reason: str) -> None:
+        if not isinstance(reason, str):
+            raise TypeError(f"GoalRejected: reason={brief(reason)}; a str is needed")
+        self.reason = shortened(reason, MAX_REASON)
+        super().__init__(self.reason)
+
+
+class GoalRejectedError(GoalError):
+    """The action server rejected a goal.
+
+    Attributes:
+        reason: Why, as its `goal_callback` has said by `GoalRejected`; empty if it has not, or if
+            the server does not send it, as those of ROS.
+    """
+
+    def __init__(self, action: str, goal_id: str, reason: str = "") -> None:
+        self.reason = reason
+        unknown = (
+            " by the server, by its goal_callback or because max_goals are active; ROS sends no "
+            "reason, so see the server's log, or have goal_callback raise GoalRejected with one"
         )
+        super().__init__(action, goal_id, f"was rejected{f': {reason}' if reason else unknown}")
 
 
 class GoalAbortedError(GoalError):

@@ -15,6 +15,7 @@ from aionode.action import (
     ActionServer,
     CancelResponse,
     ClientGoalHandle,
+    GoalRejected,
     GoalResponse,
 )
 from aionode.cli._nouns.action import info, send_goal
@@ -104,6 +105,20 @@ async def test_a_rejected_goal_is_reported(tool: Node, server: Node, screen: Any
 
     assert status == 1
     assert screen.text.endswith("Goal was rejected.\n")
+
+
+async def test_the_reason_of_a_rejection_is_printed(tool: Node, server: Node, screen: Any) -> None:
+    """On one line, whatever the server writes."""
+
+    def judge(_goal: Fibonacci.Goal) -> GoalResponse:
+        raise GoalRejected("too far:\n\x1b[1m12 m")
+
+    server.create_action_server(Fibonacci, "elsewhere", print, goal_callback=judge)
+
+    status = await send_goal(tool, "/elsewhere", FIBONACCI, values="{}", output=screen.output)
+
+    assert status == 1
+    assert screen.text.endswith("Goal was rejected: too far:\\n\\x1b[1m12 m\n")
 
 
 async def test_an_aborted_goal_is_no_success(tool: Node, server: Node, screen: Any) -> None:

@@ -15,7 +15,7 @@ import pytest
 
 import rclpy
 from aionode import Context, Node
-from aionode.action import GoalRejectedError, GoalStatus
+from aionode.action import GoalRejected, GoalRejectedError, GoalStatus
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.lifecycle_msgs.msg import TransitionEvent
 from aionode.interfaces.std_msgs.msg import String
@@ -172,6 +172,22 @@ async def test_aionode_s_client_learns_that_a_goal_is_rejected(
     await client.wait_for_server(PATIENCE_S)
 
     with pytest.raises(GoalRejectedError):
+        await client.send_goal(Fibonacci.Goal(order=1))
+
+
+async def test_aionode_s_client_learns_why_a_goal_is_rejected(
+    native: Node, serve: Callable[..., Any]
+) -> None:
+    """A goal callback of rclpy's API may raise what says it, and rejects the goal for others."""
+
+    def judge(_goal: Any) -> GoalResponse:
+        raise GoalRejected("too far: 12 m of at most 5")
+
+    serve(goal_callback=judge)
+    client = native.create_action_client(Fibonacci, "fibonacci")
+    await client.wait_for_server(PATIENCE_S)
+
+    with pytest.raises(GoalRejectedError, match="was rejected: too far: 12 m of at most 5"):
         await client.send_goal(Fibonacci.Goal(order=1))
 
 

@@ -13,7 +13,7 @@ from aionode.cli._support.completion import name_argument, values_parameters
 from aionode.cli._support.nouns import ACTION, with_types
 from aionode.cli._support.options import count_option, positive, read_values, types_option
 from aionode.cli._support.yaml_messages import message_from_yaml
-from aionode.errors import CommandError, EntityDestroyedError, GoalRejectedError
+from aionode.errors import CommandError, EntityDestroyedError, GoalRejectedError, escaped
 from aionode.graph import EndpointKind
 from aionode.message import to_builtins, to_yaml
 
@@ -145,8 +145,9 @@ async def send_goal(
     output.text(f"Sending goal:\n     {to_yaml(goal)}")
     try:
         handle = await client.send_goal(goal)
-    except GoalRejectedError:
-        output.item("Goal was rejected.", {"status": "REJECTED"})
+    except GoalRejectedError as error:
+        why = f": {escaped(error.reason, one_line=True)}" if error.reason else "."
+        output.item(f"Goal was rejected{why}", {"status": "REJECTED", "reason": error.reason})
         return 1
     output.text(f"Goal accepted with ID: {handle.text}\n")
     try:

@@ -259,7 +259,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 is in its field ``feedback``. Sync or async.
 
         Raises:
-            GoalRejectedError: the server rejected the goal.
+            GoalRejectedError: the server rejected the goal; carries the reason, if known.
             GoalAbortedError: the server aborted the goal; carries the reason, if known.
             GoalCanceledError: the goal was canceled by a request of another client, or by the
                 server because it had lost this one; carries the reason, if known.
@@ -301,7 +301,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             goal_uuid: The id as unique_identifier_msgs/msg/UUID; by default a random one.
 
         Raises:
-            GoalRejectedError: the server rejected the goal.
+            GoalRejectedError: the server rejected the goal; carries the reason, if known.
             TypeError: `goal` is of another type.
             MessageError: a value does not fit its field.
             ServiceError: the server's goal_callback failed, or the server went away.
@@ -311,7 +311,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """
         handle = await self._send(goal, feedback_callback, goal_uuid)
         if not handle.accepted:
-            raise GoalRejectedError(self.action_name, handle.text)
+            raise GoalRejectedError(self.action_name, handle.text, handle.reason)
         return handle
 
     def send_goal_async(
@@ -368,6 +368,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         handle._sending.cancel()  # it is answered
         if not response.accepted:
             self._forget(handle)
+            handle.reason = await self._told(handle)
             handle._end(lost=GoalLostError(self.action_name, handle.text, "the server rejected it"))
             return handle
         handle.accepted = True
@@ -556,6 +557,12 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         """Return why the server ended `goal`, if it runs aionode and knows; else ""."""
         is_own_wish = status is GoalStatus.CANCELED and goal._cancel_requested
         if is_own_wish or status not in (GoalStatus.ABORTED, GoalStatus.CANCELED):
+            return ""
+        return await self._told(goal)
+
+    async def _told(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> str:
+        """Return why the server rejected or ended `goal`, if it runs aionode and knows; else ""."""
+        if not self._get_result.service_is_ready():
             return ""
         try:
             await self._ask(uuid_message(reason_id(goal._key)), ANSWER_LIMIT_S)

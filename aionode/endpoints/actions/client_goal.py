@@ -103,6 +103,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         status: Its last known state.
         accepted: Whether the server accepted it; False only for handles of `send_goal_async`, since
             `send_goal` raises GoalRejectedError.
+        reason: Why the server rejected it, if it runs aionode and said so; else empty.
     """
 
     def __init__(
@@ -115,6 +116,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self.stamp: Any = None
         self.status = GoalStatus.UNKNOWN
         self.accepted = False
+        self.reason = ""
         self._feedback_callback = feedback_callback
         # The exchange that sends the goal, from when that begins.
         self._sending: Exchange | None = None

@@ -1,4 +1,4 @@
-"""The shared parts of action servers and clients: argument checks, stamps, abort reasons."""
+"""The shared parts of action servers and clients: argument checks, stamps, reasons."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 from aionode.endpoints.client import Client
 from aionode.endpoints.core.entity import EndStage, Entity
 from aionode.endpoints.service import Service
-from aionode.engine.reports.limits import REJECTED_SEC
 from aionode.engine.rules.goal import is_sign
 from aionode.errors import brief, shortened
 from aionode.interfaces import fitting
@@ -19,7 +18,6 @@ if TYPE_CHECKING:
     from aionode.clock import Clock
     from aionode.endpoints.core.callback_runner import CallbackContext
     from aionode.endpoints.service_introspection import ServiceIntrospectionState
-    from aionode.logging import RcutilsLogger
     from aionode.qos import QoSProfile
 
 __all__ = [
@@ -31,7 +29,6 @@ __all__ = [
     "pass_reason",
     "seconds_to_ns",
     "stamp_ns",
-    "tell_rejected",
     "uuid_message",
 ]
 
@@ -83,11 +80,11 @@ class ActionEntity(Entity):
                 part.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
 
-# Why a goal was aborted
+# Why a goal was rejected or aborted
 
 
 class AbortReason(Exception):  # noqa: N818  # a message to the client, which reads its name
-    """Why a goal was aborted, sent to the client as a service error: see `reason_id`."""
+    """Why a goal was rejected or aborted, as a service error for its client: see `reason_id`."""
 
 
 def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: ARG001  # an OnError
@@ -98,11 +95,6 @@ def pass_reason(error: Exception, context: CallbackContext) -> None:  # noqa: AR
     """
     if not isinstance(error, AbortReason):
         raise error
-
-
-def tell_rejected(logger: RcutilsLogger, subject: str) -> None:
-    """Log that a server rejected a goal; once a second at most, whatever clients send."""
-    logger.info(f"{subject}: goal_callback rejected a goal", throttle_duration_sec=REJECTED_SEC)
 
 
 # Arguments

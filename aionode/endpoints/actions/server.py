@@ -8,6 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Generic, Literal, TypeVar, cast
 
 from aionode._process.concurrency import is_cancelled_task
+from aionode._process.recent import Recent
 from aionode.clock import perf_ns
 from aionode.endpoints.actions._cancel_decision import OWNER_LOST, agrees, ends_for_lost_owner
 from aionode.endpoints.actions._client_watch import ClientWatch, announcing
@@ -20,7 +21,6 @@ from aionode.endpoints.actions.common import (
     pass_reason,
     seconds_to_ns,
     stamp_ns,
-    tell_rejected,
 )
 from aionode.endpoints.actions.server_goal import ServerGoalHandle
 from aionode.endpoints.core.callback_runner import accepts, checked_concurrency, consume
@@ -28,9 +28,10 @@ from aionode.endpoints.core.message_queue import MessageQueue
 from aionode.endpoints.core.node_core import core_of, in_thread_of_node
 from aionode.endpoints.core.node_tasks import create_own_task
 from aionode.endpoints.stats import CallbackStats
-from aionode.engine.reports.limits import tell_full
+from aionode.engine.reports.limits import tell_full, tell_rejected
 from aionode.engine.rules.early_cancels import EarlyCancels
 from aionode.engine.rules.goal import (
+    MOST_REJECTIONS,
     CancelCode,
     GoalKey,
     GoalResponse,
@@ -46,7 +47,7 @@ from aionode.engine.rules.goal_store import (
     checked_max_goals,
 )
 from aionode.engine.rules.status_pace import StatusPace
-from aionode.errors import CallbackCancelledError, QueueFullError, brief
+from aionode.errors import CallbackCancelledError, GoalRejected, QueueFullError, brief
 from aionode.message import Message, snapshotter, type_name
 from aionode.qos import (
     qos_profile_action_status_default,
@@ -104,7 +105,8 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         execute_callback: Called with a `ServerGoalHandle` for each goal; returns the result. Sync
             or async.
         goal_callback: Called with each goal message, one after the other; returns
-            `GoalResponse.ACCEPT` or ``REJECT``. Without it all are accepted. Sync or async.
+            `GoalResponse.ACCEPT` or ``REJECT``, or raises `GoalRejected` with a reason, which the
+            client gets if it runs aionode. Without it all are accepted. Sync or async.
         handle_accepted_callback: Called with the handle of each accepted goal, after the client has
             been told; calls ``goal_handle.execute()``, then or later. Without it, goals are
             executed at once. Sync or async.
@@ -198,6 +200,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._goals = AlarmedGoalStore(self._time_base, goals_limit, timeout_ns, limit_bytes)
         self._status_pace = StatusPace(self._send_status, self._goals)
         self._early_cancels = EarlyCancels(self._time_base)
+        self._rejections: Recent[bytes, str] = Recent(MOST_REJECTIONS)
         kept: dict[str, Any] = {"keep_all": True, "slice_ns": self._callbacks.slice_ns}
         self._accepted: MessageQueue[Any] = MessageQueue(UNLIMITED, CallbackStats(), **kept)
         self._waiting: MessageQueue[Any] = MessageQueue(UNLIMITED, self.stats, **kept)
@@ -320,13 +323,22 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _on_goal(self, request: Any) -> Any:
         response = self.action_type.Impl.SendGoalService.Response()
         goal_id = request.goal_id.uuid.tobytes()
-        if self._is_refused(goal_id) or self._is_too_much(request.goal):
+        if self._is_refused(goal_id):
+            return response
+        if why := self._goals.refusal(request.goal):
+            tell_full(self._logger, self._subject, why)
+            self._rejections.put(goal_id, why)
             return response
         self._client_watch.add(goal_id, self._send_goal._client_gid)
         try:
             # It may be refused now because of a request that came during the callback.
             if not await self._welcomes(request.goal) or self._is_refused(goal_id):
                 return response
+        except GoalRejected as rejected:
+            tell_rejected(self._logger, self._subject, rejected.reason)
+            self._rejections.put(goal_id, rejected.reason)
+            return response
+        else:
             response.accepted = True
             response.stamp = self._clock.now().to_msg()
             goal = self._accept(goal_id, request, response.stamp)
@@ -343,12 +355,6 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _is_refused(self, goal_id: bytes) -> bool:
         """Return whether the goal is known already, or was cancelled before it came."""
         return goal_id in self._goals or goal_id in self._early_cancels
-
-    def _is_too_much(self, goal: GoalT) -> bool:
-        """Return whether there is no room for a goal; if so, say why it is rejected."""
-        if why := self._goals.refusal(goal):
-            tell_full(self._logger, self._subject, why)
-        return bool(why)
 
     async def _welcomes(self, goal: GoalT) -> bool:
         if self._goal_callback is None:
@@ -516,9 +522,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         response = self.action_type.Impl.GetResultService.Response()
         goal = self._goals.get(goal_id)
         if goal is None:
-            ended = self._goals.get(reason_id(goal_id))
-            if ended is not None and ended._end_text:
-                raise AbortReason(ended._end_text)
+            asked_id = reason_id(goal_id)
+            ended = self._goals.get(asked_id)
+            reason = ended._end_text if ended is not None else self._rejections.get(asked_id)
+            if reason:
+                raise AbortReason(reason)
             self._client_watch.take(goal_id)
             return response
         status, result = await goal._outcome()

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from aionode.errors import escaped
+
 if TYPE_CHECKING:
     from aionode.logging import RcutilsLogger
 
-__all__ = ["REJECTED_SEC", "heavy_text", "tell_full"]
+__all__ = ["heavy_text", "tell_full", "tell_rejected"]
 
 REJECTED_SEC = 1.0
 """The shortest time between two reports of rejected goals, in seconds."""
@@ -33,3 +35,10 @@ def tell_full(logger: RcutilsLogger, subject: str, why: str) -> None:
         f"{subject}: rejected a goal, as {why}",
         throttle_duration_sec=REJECTED_SEC,
     )
+
+
+def tell_rejected(logger: RcutilsLogger, subject: str, reason: str = "") -> None:
+    """Log that a server rejected a goal; once a second at most, whatever clients send."""
+    why = f": {escaped(reason)}" if reason else ""
+    text = f"{subject}: goal_callback rejected a goal{why}"
+    logger.info(text, throttle_duration_sec=REJECTED_SEC)

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "ALL_GOALS",
+    "MOST_REJECTIONS",
     "TRANSITIONS",
     "CancelCode",
     "CancelResponse",
@@ -77,16 +78,20 @@ class CancelResponse(Enum):
     ACCEPT = 2
 
 
-# Why a goal was aborted
+# Why a goal was rejected or aborted
+
+
+MOST_REJECTIONS = 100
+"""Most rejected goals whose reason a server keeps: their clients ask for it at once."""
 
 
 def reason_id(goal_id: bytes) -> bytes:
-    """Return the id under which an aionode server tells why a goal was aborted.
+    """Return the id under which an aionode server tells why a goal was rejected or aborted.
 
-    A ROS result has no field for it. An aionode client therefore calls ``get_result`` once more,
-    with all bits of the id inverted, and gets the reason as a service error. No goal has such an
-    id (it is not a version 4 UUID), so other servers answer that they do not know it. This needs
-    no endpoint that ROS does not have, and works over every transport.
+    A ROS response or result has no field for it. An aionode client therefore calls ``get_result``
+    once more, with all bits of the id inverted, and gets the reason as a service error. No goal has
+    such an id (it is not a version 4 UUID), so other servers answer that they do not know it. This
+    needs no endpoint that ROS does not have, and works over every transport.
     """
     return bytes(byte ^ 0xFF for byte in goal_id)
 

@@ -13,7 +13,7 @@ import numpy as np
 from msgspec import Meta
 
 import aionode
-from aionode import CancelResponse, GoalResponse, Node, ServerGoalHandle, Time
+from aionode import CancelResponse, GoalRejected, GoalResponse, Node, ServerGoalHandle, Time
 from aionode.examples.rover.interfaces import DriveTo
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.sensor_msgs.msg import LaserScan
@@ -65,11 +65,11 @@ class Driver(Node):
 
     def judge(self, goal: DriveTo.Goal) -> GoalResponse:
         """Refuse what is too far away, and a second goal: nobody can drive to two places."""
-        if self.is_driving or not math.hypot(goal.x, goal.y) <= FARTHEST:
-            self.get_logger().warning(
-                "refused: a goal is under way" if self.is_driving else f"refused: {goal} is too far"
-            )
-            return GoalResponse.REJECT
+        if self.is_driving:
+            raise GoalRejected("a goal is under way")
+        distance = math.hypot(goal.x, goal.y)
+        if not distance <= FARTHEST:
+            raise GoalRejected(f"too far: {distance:.1f} m of at most {FARTHEST:g}")
         self.is_driving = True
         return GoalResponse.ACCEPT
 

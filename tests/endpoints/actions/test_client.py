@@ -25,6 +25,7 @@ from aionode.errors import (
     GoalAbortedError,
     GoalCanceledError,
     GoalLostError,
+    GoalRejected,
     GoalRejectedError,
     MessageError,
     ServiceError,
@@ -296,6 +297,49 @@ async def test_a_rejected_goal_raises(ends: Ends) -> None:
     with pytest.raises(GoalRejectedError):
         await ends.client.call(Fibonacci.Goal())
     assert "goals=0>" in repr(ends.client)
+
+
+async def test_a_rejected_goal_carries_its_reason(
+    ends: Ends, caplog: pytest.LogCaptureFixture
+) -> None:
+    """The caller can mend the goal, and people find the reason in the log of the server as well."""
+
+    def judge(_goal: Fibonacci.Goal) -> GoalResponse:
+        raise GoalRejected("too far: 12 m of at most 5")
+
+    ends.server.register_goal_callback(judge)
+
+    with (
+        caplog.at_level(logging.INFO),
+        pytest.raises(GoalRejectedError, match=r"was rejected: too far: 12 m of") as error,
+    ):
+        await ends.client.call(Fibonacci.Goal())
+    assert error.value.reason == "too far: 12 m of at most 5"
+    assert "goal_callback rejected a goal: too far: 12 m of at most 5" in caplog.text
+    handle = await ends.client.send_goal_async(Fibonacci.Goal())
+    assert (handle.accepted, handle.reason) == (False, "too far: 12 m of at most 5")
+    assert "goals=0>" in repr(ends.client)
+
+
+async def test_a_goal_callback_that_awaits_rejects_with_a_reason_too(ends: Ends) -> None:
+    """And neither its error count nor the node takes that for a failure."""
+
+    async def judge(_goal: Fibonacci.Goal) -> GoalResponse:
+        await settle()
+        raise GoalRejected("the battery is low")
+
+    ends.server.register_goal_callback(judge)
+
+    with pytest.raises(GoalRejectedError, match="the battery is low"):
+        await ends.client.send_goal(Fibonacci.Goal())
+    assert ends.server.stats.errors == 0
+
+
+def test_the_reason_of_a_rejection_is_bounded_text() -> None:
+    """A server keeps the newest hundred."""
+    assert len(GoalRejected("x" * 10**6).reason) < 1100
+    with pytest.raises(TypeError, match="a str is needed"):
+        GoalRejected(5)  # type: ignore[arg-type]
 
 
 async def test_a_server_logs_rejected_goals_once_a_second(

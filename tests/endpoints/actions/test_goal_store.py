@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from aionode.action import ActionServer, GoalResponse, GoalStatus
+from aionode.action import ActionServer, GoalRejectedError, GoalResponse, GoalStatus
 from aionode.engine.rules.goal_store import GoalStore
 from aionode.engine.rules.status_pace import StatusPace
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -159,6 +159,16 @@ def test_all_goals_that_make_room_for_a_large_one_are_told_of() -> None:
     goals[b"large"] = Large(9_000)
 
     assert goals.keep(b"large") == small
+
+
+async def test_a_full_server_tells_its_client_why_it_rejects(node: Node) -> None:
+    """The caller waits and sends the goal again, or the robot's owner allows more."""
+    serve(node, Worker(), 1)
+    client = node.create_action_client(Fibonacci, "fibonacci")
+    await client.send_goal(Fibonacci.Goal(order=1))
+
+    with pytest.raises(GoalRejectedError, match="was rejected: 1 are active: max_goals=1"):
+        await client.send_goal(Fibonacci.Goal(order=2))
 
 
 async def test_a_full_server_says_why_it_rejects_once_a_second(

@@ -8,8 +8,10 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any, Generic
 
-from aionode.engine.reports.limits import tell_full
+from aionode._process.recent import Recent
+from aionode.engine.reports.limits import tell_full, tell_rejected
 from aionode.engine.rules.goal import (
+    MOST_REJECTIONS,
     CancelResponse,
     GoalEvent,
     GoalResponse,
@@ -18,7 +20,7 @@ from aionode.engine.rules.goal import (
     reason_id,
 )
 from aionode.engine.rules.goal_store import MAX_GOALS, checked_max_goals
-from aionode.errors import GoalTransitionError
+from aionode.errors import GoalRejected, GoalTransitionError
 from rclpy._impl.actions import ActionServerHandle
 from rclpy._impl.errors import RCLError
 from rclpy._impl.typesupport import message_like
@@ -268,6 +270,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
                 max_goals=checked_max_goals(max_goals, f"action server {action_name}"),
             )
         self._ActionServer__action_name = action_name
+        self._ActionServer__rejections: Recent[bytes, str] = Recent(MOST_REJECTIONS)
         self._goal_handles: dict[bytes, AnyGoalHandle] = self._handle.goals
         self._logger = node.get_logger().get_child("action_server")
         node.add_waitable(self)
@@ -285,9 +288,15 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         info.goal_id = goal_id
         accepted = False
         if bytes(goal_id.uuid) not in self._goal_handles and not self._ActionServer__is_full(
-            request.goal
+            request
         ):
-            answer = await await_or_execute(self._goal_callback, request.goal)
+            try:
+                answer = await await_or_execute(self._goal_callback, request.goal)
+            except GoalRejected as rejected:  # rclpy has no such answer
+                subject = f"action server {self._ActionServer__action_name}"
+                tell_rejected(self._logger, subject, rejected.reason)
+                self._ActionServer__rejections.put(bytes(goal_id.uuid), rejected.reason)
+                answer = GoalResponse.REJECT
             if isinstance(answer, GoalResponse):
                 accepted = answer is GoalResponse.ACCEPT
             else:
@@ -303,11 +312,12 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             self._handle.publish_status()
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
-    def _ActionServer__is_full(self, goal: Any) -> bool:
+    def _ActionServer__is_full(self, request: Any) -> bool:
         """Return whether there is no room for a goal; if so, say why it is rejected."""
-        why: str = self._handle.goals.refusal(goal)
+        why: str = self._handle.goals.refusal(request.goal)
         if why:
             tell_full(self._logger, f"action server {self._ActionServer__action_name}", why)
+            self._ActionServer__rejections.put(bytes(request.goal_id.uuid), why)
         return bool(why)
 
     def _ActionServer__accept(self, info: Any, goal: Any) -> AnyGoalHandle | None:
@@ -366,11 +376,11 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
 
     def _execute_get_result_request(self, header: Any, request: Any) -> None:
         goal_id = bytes(request.goal_id.uuid)
-        aborted = self._goal_handles.get(reason_id(goal_id))  # if a client of aionode asks why
-        if aborted is not None and aborted._reason:
-            self._handle.result.service_send_error(
-                "AbortReason", aborted._reason, header.request_id
-            )
+        asked_id = reason_id(goal_id)  # if a client of aionode asks why
+        aborted = self._goal_handles.get(asked_id)
+        rejection = self._ActionServer__rejections.get(asked_id)
+        if reason := rejection if aborted is None else aborted._reason:
+            self._handle.result.service_send_error("AbortReason", reason, header.request_id)
             return
         goal_handle = self._goal_handles.get(goal_id)
         if goal_handle is None:
