@@ -9,10 +9,12 @@ from aionode._packages._executables import Executable
 __all__ = ["program_module", "remark_on", "standard_executables"]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "joy": {"joy_node": "_joy.joy_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
     "robot_state_publisher": {"robot_state_publisher": "_robot_state_publisher"},
     "teleop_twist_keyboard": {"teleop_twist_keyboard": "_teleop_twist_keyboard"},
+    "teleop_twist_joy": {"teleop_node": "_joy.teleop_node"},
     "tf2_ros": {
         "buffer_server": "_buffer_server",
         "static_transform_publisher": "_static_transform_publisher",

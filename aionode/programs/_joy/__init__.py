@@ -1,0 +1,1 @@
+"""Joysticks: what reads them, and what drives a base by them."""

@@ -1,0 +1,139 @@
+"""``joy joy_node``: publishes where the axes of a joystick are, and which buttons are pressed."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from collections.abc import Callable, Iterable
+from typing import Final
+
+import aionode
+from aionode import Node
+from aionode.errors import CommandError
+from aionode.interfaces.sensor_msgs.msg import Joy
+from aionode.interfaces.std_msgs.msg import Header
+from aionode.programs._joy.joystick import Device, Joystick, input_devices
+
+__all__ = ["JoyNode", "main"]
+
+SEARCH_SEC: Final = 0.5
+"""How often a joystick is looked for while there is none."""
+
+FASTEST_HZ: Final = 1000.0
+
+
+class JoyNode(Node):
+    """Publishes a joystick on `joy`, as soon as it is plugged in and until it is pulled out.
+
+    Args:
+        devices: Returns the devices of this machine.
+
+    Raises:
+        CommandError: A parameter does not fit.
+    """
+
+    joystick: Joystick | None = None
+
+    def __init__(self, devices: Callable[[], Iterable[Device]] = input_devices) -> None:
+        super().__init__("joy_node")
+        self.number = self.declare_parameter("device_id", 0).value
+        self.name = self.declare_parameter("device_name", "").value
+        self.deadzone = self.declare_parameter("deadzone", 0.05).value
+        if not 0.0 <= self.deadzone < 1.0:
+            raise CommandError("Deadzone must be between 0.0 and 1.0")
+        rate = self.declare_parameter("autorepeat_rate", 20.0).value
+        if not 0.0 <= rate < math.inf:
+            raise CommandError("Autorepeat rate must be >= 0.0")
+        if rate > FASTEST_HZ:
+            raise CommandError("Autorepeat rate must be <= 1000.0")
+        self.is_sticky = self.declare_parameter("sticky_buttons", False).value
+        coalesce_ms = self.declare_parameter("coalesce_interval_ms", 1).value
+        if coalesce_ms < 0:
+            raise CommandError("coalesce_interval_ms must be positive")
+        self.devices = devices
+        self.loop = asyncio.get_running_loop()
+        self.has_warned = False
+        self.publisher = self.create_publisher(Joy, "joy", 10)
+        self.soon = self.create_timer(coalesce_ms / 1e3, self.publish_once, autostart=False)
+        if rate:
+            self.create_timer(1.0 / rate, self.publish)
+        self.create_timer(SEARCH_SEC, self.search)
+        self.search()
+
+    def search(self) -> None:
+        """Look for the joystick, if there is none."""
+        if self.joystick is not None:
+            return
+        devices = list(self.devices())
+        found = [each for each in devices if Joystick.is_one(each)]
+        chosen = [
+            each
+            for at, each in enumerate(found)
+            if (each.name == self.name if self.name else at == self.number)
+        ][:1]
+        for each in devices:
+            if each not in chosen:
+                each.close()
+        if chosen:
+            self.open(chosen[0])
+        elif self.name and found and not self.has_warned:
+            names = ", ".join(repr(each.name) for each in found)
+            self.get_logger().warning(
+                f"Could not get joystick with name {self.name!r}; there are {names}"
+            )
+            self.has_warned = True
+
+    def open(self, device: Device) -> None:
+        """Read a device from now on."""
+        self.joystick = Joystick(device, self.deadzone, is_sticky=self.is_sticky)
+        self.loop.add_reader(device.fd, self.read)
+        self.get_logger().info(f"Opened joystick: {device.name!r}.  deadzone: {self.deadzone:f}")
+
+    def read(self) -> None:
+        """Take the events that have come; publish at once if a button has changed."""
+        joystick = self.joystick
+        if joystick is None:
+            return
+        try:
+            events = list(joystick.device.read())
+        except BlockingIOError:
+            return
+        except OSError as error:
+            self.get_logger().warning(f"Lost joystick {joystick.device.name!r}: {error.strerror}")
+            self.close()
+            return
+        for event in events:
+            has_moved, is_pressed = joystick.take(event)
+            if is_pressed:
+                self.publish_once()
+            elif has_moved and self.soon.is_canceled():
+                self.soon.reset()
+
+    def publish_once(self) -> None:
+        """Publish now what has changed."""
+        self.soon.cancel()
+        self.publish()
+
+    def publish(self) -> None:
+        """Publish the state of the joystick, if there is one."""
+        if self.joystick is not None:
+            header = Header(stamp=self.get_clock().now().to_msg(), frame_id="joy")
+            axes, buttons = self.joystick.axes, self.joystick.buttons
+            self.publisher.publish(Joy(header=header, axes=axes, buttons=buttons))
+
+    def close(self) -> None:
+        """Read the device no more."""
+        if self.joystick is not None:
+            self.loop.remove_reader(self.joystick.device.fd)
+            self.joystick.device.close()
+            self.joystick = None
+
+    def destroy_node(self) -> None:
+        """End the node, and close the device."""
+        self.close()
+        super().destroy_node()
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(JoyNode)

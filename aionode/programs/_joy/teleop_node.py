@@ -1,0 +1,148 @@
+"""``teleop_twist_joy teleop_node``: drives a base by a joystick while a button is held."""
+
+from __future__ import annotations
+
+import asyncio
+import math
+from typing import Any, Final
+
+import aionode
+from aionode import Node
+from aionode.errors import LeaseExpiredError
+from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from aionode.interfaces.sensor_msgs.msg import Joy
+
+__all__ = ["TeleopTwistJoy", "main"]
+
+LINEAR: Final = {"x": (5, 0.5, 1.0), "y": (-1, 0.0, 0.0), "z": (-1, 0.0, 0.0)}
+"""The axis of each direction, and its scales: the usual one and that of the turbo button."""
+
+ANGULAR: Final = {"yaw": (2, 0.5, 1.0), "pitch": (-1, 0.0, 0.0), "roll": (-1, 0.0, 0.0)}
+
+START_SEC: Final = 0.01
+
+TTL_SEC: Final = 0.3
+"""After how long without a message of the joystick the wheels stop."""
+
+
+class TeleopTwistJoy(Node):
+    """Publishes on `cmd_vel` what the joystick says while its button is held, under a lease."""
+
+    def __init__(self) -> None:
+        super().__init__("teleop_twist_joy_node")
+        self.is_stamped = self.declare_parameter("publish_stamped_twist", False).value
+        self.frame_id = self.declare_parameter("frame", "teleop_twist_joy").value
+        self.declare_parameter("require_enable_button", True)
+        self.declare_parameter("enable_button", 5)
+        self.declare_parameter("enable_turbo_button", -1)
+        self.declare_parameter("inverted_reverse", False)
+        for kind, directions in (("linear", LINEAR), ("angular", ANGULAR)):
+            for name, (axis, scale, turbo) in directions.items():
+                self.declare_parameter(f"axis_{kind}.{name}", axis)
+                self.declare_parameter(f"scale_{kind}.{name}", scale)
+                self.declare_parameter(f"scale_{kind}_turbo.{name}", turbo)
+        command: Any = TwistStamped if self.is_stamped else Twist
+        self.publisher = self.create_publisher(command, "cmd_vel", 10)
+        self.command: Twist | None = None
+        self.is_due = asyncio.Event()
+        self.is_leased = False
+        self.has_stopped = False
+        self.tell()
+        self.create_subscription(Joy, "joy", self.on_joy, 10)
+        self.create_timer(START_SEC, self.drive)
+
+    def value(self, name: str) -> Any:
+        """Return the value of a parameter."""
+        return self.get_parameter(name).value
+
+    def tell(self) -> None:
+        """Log which buttons and axes are used."""
+        log = self.get_logger().get_child("TeleopTwistJoy")
+        turbo = self.value("enable_turbo_button")
+        if self.value("require_enable_button"):
+            log.info(f"Teleop enable button {self.value('enable_button')}.")
+        if turbo >= 0:
+            log.info(f"Turbo on button {turbo}.")
+        for kind, directions in (("linear", LINEAR), ("angular", ANGULAR)):
+            for name in sorted(directions):
+                axis = self.value(f"axis_{kind}.{name}")
+                if axis == -1:
+                    continue
+                scale = self.value(f"scale_{kind}.{name}")
+                log.info(f"{kind.capitalize()} axis {name} on {axis} at scale {scale:f}.")
+                if turbo >= 0:
+                    scale = self.value(f"scale_{kind}_turbo.{name}")
+                    log.info(f"Turbo for {kind} axis {name} is scale {scale:f}.")
+
+    def on_joy(self, joy: Joy) -> None:
+        """Command what a joystick says, or stop."""
+        if self.is_pressed(joy, "enable_turbo_button"):
+            self.command = self.twist(joy, "_turbo")
+        elif not self.value("require_enable_button") or self.is_pressed(joy, "enable_button"):
+            self.command = self.twist(joy, "")
+        else:
+            self.command = None
+            if not (self.is_leased or self.has_stopped):
+                # The end of a lease is a stop by itself; what others have commanded ends, too.
+                self.publisher.publish(self.message(Twist()))
+                self.has_stopped = True
+        self.is_due.set()
+
+    def is_pressed(self, joy: Joy, name: str) -> bool:
+        """Return whether the button of a parameter is pressed."""
+        number = self.value(name)
+        return 0 <= number < len(joy.buttons) and bool(joy.buttons[number])
+
+    def twist(self, joy: Joy, which: str) -> Twist:
+        """Return the command that the axes say."""
+        x, y, z = (self.scaled(joy, "linear", name, which) for name in LINEAR)
+        yaw, pitch, roll = (self.scaled(joy, "angular", name, which) for name in ANGULAR)
+        if x < 0 and self.value("inverted_reverse"):
+            yaw = -yaw
+        return Twist(linear=Vector3(x=x, y=y, z=z), angular=Vector3(x=roll, y=pitch, z=yaw))
+
+    def scaled(self, joy: Joy, kind: str, name: str, which: str) -> float:
+        """Return the part of a command that an axis says; 0 if there is none, or no number."""
+        axis = self.value(f"axis_{kind}.{name}")
+        if not 0 <= axis < len(joy.axes):
+            return 0.0
+        value = float(joy.axes[axis]) * float(self.value(f"scale_{kind}{which}.{name}"))
+        return value if math.isfinite(value) else 0.0
+
+    def message(self, twist: Twist) -> Any:
+        """Return a command as the robot takes it."""
+        if not self.is_stamped:
+            return twist
+        stamped = TwistStamped(twist=twist)
+        stamped.header.frame_id = self.frame_id
+        stamped.header.stamp = self.get_clock().now().to_msg()
+        return stamped
+
+    async def drive(self) -> None:
+        """Publish commands until the node ends; whatever ends them, a stop goes out."""
+        while True:
+            await self.is_due.wait()
+            self.is_due.clear()
+            if self.command is None:
+                continue
+            try:
+                async with self.publisher.lease(self.message(Twist()), TTL_SEC) as lease:
+                    self.is_leased = True
+                    while self.command is not None:
+                        lease.publish(self.message(self.command))
+                        await self.is_due.wait()
+                        self.is_due.clear()
+            except LeaseExpiredError:
+                self.command = None
+                self.get_logger().warning(
+                    f"stopped: nothing came from the joystick for {TTL_SEC:g} s; it is pulled out, "
+                    "or its autorepeat_rate is too low"
+                )
+            finally:
+                self.is_leased = False
+                self.has_stopped = True
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    aionode.run(TeleopTwistJoy)

@@ -1,0 +1,395 @@
+"""The programs that read a joystick, and drive a base by it."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import AsyncIterator, Callable
+from typing import Any, NamedTuple
+
+import pytest
+
+from aionode.errors import CommandError
+from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped
+from aionode.interfaces.sensor_msgs.msg import Joy
+from aionode.programs._joy.joy_node import JoyNode
+from aionode.programs._joy.joystick import Joystick, input_devices
+from aionode.programs._joy.teleop_node import TeleopTwistJoy
+from aionode.testing import ManualClock, settle
+from tests.programs.conftest import Start
+
+KEY, ABS = 1, 3
+X, Y, TRIGGER, HAT_X, HAT_Y = 0, 1, 2, 0x10, 0x11
+SOUTH, EAST, SELECT, EXTRA = 0x130, 0x131, 0x13A, 0x100
+
+
+class Limits(NamedTuple):
+    """What evdev says of an axis."""
+
+    value: int
+    min: int
+    max: int
+
+
+class Event(NamedTuple):
+    """What evdev says has happened."""
+
+    type: int
+    code: int
+    value: int
+
+
+PAD: dict[int, list[Any]] = {
+    0: [0, KEY, ABS],
+    KEY: [EXTRA, SOUTH, EAST, SELECT],
+    ABS: [
+        (X, Limits(0, -32768, 32767)),
+        (Y, Limits(0, -32768, 32767)),
+        (TRIGGER, Limits(0, 0, 255)),
+        (HAT_X, Limits(0, -1, 1)),
+        (HAT_Y, Limits(0, -1, 1)),
+    ],
+}
+"""The capabilities of a game pad, as evdev reports them."""
+
+RECORDED = [
+    Event(ABS, X, -3000), Event(0, 0, 0), Event(ABS, X, -9500), Event(ABS, Y, -16384),
+    Event(0, 0, 0), Event(KEY, SOUTH, 1), Event(0, 0, 0), Event(ABS, HAT_Y, -1), Event(0, 0, 0),
+    Event(KEY, SOUTH, 0), Event(0, 0, 0), Event(ABS, HAT_Y, 0), Event(0, 0, 0),
+]  # fmt: skip
+"""What a thumb and a finger did, as evdev read it."""
+
+
+class Pad:
+    """A device that plays events; its descriptor is that of a pipe."""
+
+    def __init__(self, name: str = "Pad", capabilities: Any = PAD) -> None:
+        self.name = name
+        self.known = capabilities
+        self.events: list[Event] = []
+        self.fd, self.other_end = os.pipe()
+        self.is_there = True
+        self.is_closed = False
+
+    def capabilities(self, verbose: bool = False, absinfo: bool = True) -> Any:
+        """Return what it has, as evdev does."""
+        axes = self.known[ABS]
+        return self.known | {ABS: axes if absinfo else [code for code, _ in axes]}
+
+    def read(self) -> list[Event]:
+        """Return what has happened."""
+        if not self.is_there:
+            raise OSError(errno.ENODEV, os.strerror(errno.ENODEV))
+        events, self.events = self.events, []
+        return events
+
+    def close(self) -> None:
+        """Note that nobody reads it any more."""
+        if not self.is_closed:
+            os.close(self.fd)
+            os.close(self.other_end)
+        self.is_closed = True
+
+
+class Desk:
+    """A joystick, the program that reads it, and what it publishes."""
+
+    def __init__(self, start: Start, node: Any, clock: ManualClock) -> None:
+        self.start = start
+        self.clock = clock
+        self.plugged = [Pad()]
+        self.heard: list[Joy] = []
+        self.node: Any = None
+        node.create_subscription(Joy, "joy", self.heard.append)
+
+    async def begin(self, **parameters: Any) -> None:
+        """Start the program."""
+        self.node = self.start(JoyNode, lambda: list(self.plugged), **parameters)
+        await settle()
+
+    async def play(self, *events: Event) -> None:
+        """Have the hand do something."""
+        self.plugged[-1].events.extend(events)
+        self.node.read()
+        await self.wait(0.002)
+
+    async def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        await self.clock.advance(seconds)
+        await settle()
+
+    @property
+    def state(self) -> tuple[list[float], list[int]]:
+        """The newest axes and buttons."""
+        joy = self.heard[-1]
+        return [round(float(each), 3) for each in joy.axes], [int(each) for each in joy.buttons]
+
+
+@pytest.fixture
+async def desk(
+    manual_clock: ManualClock, start: Start, node_factory: Callable[..., Any]
+) -> AsyncIterator[Desk]:
+    """Return a desk with a joystick on it."""
+    desk = Desk(start, node_factory("listener"), manual_clock)
+    yield desk
+    for pad in desk.plugged:
+        pad.close()
+
+
+async def test_recorded_events_become_axes_and_buttons(desk: Desk) -> None:
+    """Left and forward are positive, hats come last, buttons as SDL counts them."""
+    await desk.begin(autorepeat_rate=0.0)
+    await desk.play(*RECORDED)
+
+    pressed = [tuple(int(each) for each in joy.buttons) for joy in desk.heard]
+    assert pressed == [(1, 0, 0, 0), (1, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 0)]
+    hats = [float(joy.axes[4]) for joy in desk.heard]
+    assert hats == [0.0, 1.0, 1.0, 0.0]
+    axes, _ = desk.state
+    assert axes == [0.253, 0.474, 1.0, 0.0, 0.0]
+    assert desk.heard[0].header.frame_id == "joy"
+
+
+async def test_the_ends_of_an_axis_are_one(desk: Desk) -> None:
+    """Also the lower one, which is one step further away."""
+    await desk.begin(autorepeat_rate=0.0)
+    await desk.play(Event(ABS, X, -32768), Event(ABS, Y, 32767))
+
+    assert desk.state[0][:2] == [1.0, -1.0]
+
+
+async def test_what_does_not_change_is_repeated(desk: Desk) -> None:
+    """Twenty times a second, so that who listens knows that it is still there."""
+    await desk.begin()
+    await desk.wait(1.0)
+
+    assert len(desk.heard) == 20
+
+
+async def test_movements_within_a_moment_are_one_message(desk: Desk) -> None:
+    """The kernel says each axis alone."""
+    await desk.begin(autorepeat_rate=0.0, coalesce_interval_ms=10)
+    for value in range(5000, 20000, 1000):
+        await desk.play(Event(ABS, X, value))
+
+    assert len(desk.heard) in (2, 3)
+
+
+async def test_sticky_buttons_change_with_each_press(desk: Desk) -> None:
+    """And not with the release."""
+    await desk.begin(autorepeat_rate=0.0, sticky_buttons=True)
+    for value in (1, 0, 1, 0, 1, 0):
+        await desk.play(Event(KEY, EAST, value))
+
+    assert [int(joy.buttons[1]) for joy in desk.heard] == [1, 0, 1]
+
+
+async def test_a_joystick_that_is_pulled_out_falls_silent_until_it_is_back(desk: Desk) -> None:
+    """Nothing says what a hand does that is not there."""
+    await desk.begin()
+    pad = desk.plugged.pop()
+    pad.is_there = False
+    desk.node.read()
+    desk.heard.clear()
+    await desk.wait(2.0)
+    assert desk.heard == []
+    assert pad.is_closed
+
+    desk.plugged.append(Pad())
+    await desk.wait(1.0)
+    assert len(desk.heard) >= 9
+
+
+async def test_a_joystick_is_chosen_by_its_name_or_its_number(desk: Desk) -> None:
+    """What is no joystick does not count, and others are closed."""
+    keyboard = Pad("Keyboard", PAD | {KEY: [30, 31], ABS: []})
+    desk.plugged = [keyboard, Pad("One"), Pad("Two")]
+    await desk.begin(device_id=1)
+    assert [pad.is_closed for pad in desk.plugged] == [True, True, False]
+
+    desk.plugged = [Pad("One"), Pad("Two")]
+    await desk.begin(device_name="One")
+    assert [pad.is_closed for pad in desk.plugged] == [False, True]
+
+
+async def test_a_name_that_no_joystick_has_is_said(
+    desk: Desk, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Once, with those that there are."""
+    desk.plugged = [Pad("One")]
+    await desk.begin(device_name="Two")
+
+    assert "Could not get joystick with name 'Two'; there are 'One'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("deadzone", 1.5, "Deadzone must be between 0.0 and 1.0"),
+        ("autorepeat_rate", -1.0, "Autorepeat rate must be >= 0.0"),
+        ("autorepeat_rate", 2000.0, "Autorepeat rate must be <= 1000.0"),
+        ("coalesce_interval_ms", -1, "coalesce_interval_ms must be positive"),
+    ],
+)
+async def test_parameters_that_do_not_fit_are_refused(
+    desk: Desk, name: str, value: float, text: str
+) -> None:
+    """In the words of the original."""
+    with pytest.raises(CommandError, match=text):
+        await desk.begin(**{name: value})
+
+
+def test_an_axis_without_a_range_stays_in_its_middle() -> None:
+    """Some devices claim such axes."""
+    pad = Pad(capabilities=PAD | {ABS: [(X, Limits(3, 0, 0)), (Y, Limits(0, -1, 1))]})
+    joystick = Joystick(pad, 0.05, is_sticky=False)
+    joystick.take(Event(ABS, X, 5))
+    pad.close()
+
+    assert joystick.axes == [0.0, 0.0]
+
+
+def test_without_evdev_the_program_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is an extra."""
+    monkeypatch.setitem(sys.modules, "evdev", None)
+
+    with pytest.raises(CommandError, match=r"pip install 'aionode\[joy\]'"):
+        list(input_devices())
+
+
+# The wheels
+
+
+class Base:
+    """What a base hears, and the thumb."""
+
+    def __init__(self, node: Any, clock: ManualClock, kind: Any = Twist) -> None:
+        self.clock = clock
+        self.twists: list[Any] = []
+        self.joy = node.create_publisher(Joy, "joy", 10)
+        node.create_subscription(kind, "cmd_vel", self.twists.append)
+
+    async def hold(self, *buttons: int, axes: tuple[float, ...] = (), seconds: float = 0.0) -> None:
+        """Hold buttons and axes for a time, with what is repeated twenty times a second."""
+        pressed = [int(number in buttons) for number in range(8)]
+        for _ in range(1 + round(seconds / 0.05)):
+            self.joy.publish(Joy(axes=list(axes), buttons=pressed))
+            await settle()
+            await self.wait(0.05 if seconds else 0.0)
+
+    async def wait(self, seconds: float) -> None:
+        """Let time pass."""
+        await self.clock.advance(seconds)
+        await settle()
+
+    @property
+    def speeds(self) -> list[float]:
+        """The speeds that were commanded."""
+        return [getattr(each, "twist", each).linear.x for each in self.twists]
+
+
+@pytest.fixture
+def base(
+    manual_clock: ManualClock, start: Start, node_factory: Callable[..., Any]
+) -> Callable[..., Any]:
+    """Start the program, with the axes of the tests."""
+
+    async def make(kind: Any = Twist, **parameters: Any) -> Base:
+        base = Base(node_factory("base"), manual_clock, kind)
+        given = {"axis_linear.x": 1, "axis_angular.yaw": 0, "enable_turbo_button": 4}
+        start(TeleopTwistJoy, **given | parameters)
+        await settle()
+        await base.wait(0.02)
+        return base
+
+    return make
+
+
+async def test_the_robot_moves_while_the_button_is_held(base: Callable[..., Any]) -> None:
+    """And stops at once when it is released, with one message."""
+    wheels = await base()
+    await wheels.hold(5, axes=(0.5, 1.0), seconds=0.5)
+    assert set(wheels.speeds) == {0.5}
+    assert wheels.twists[-1].angular.z == 0.25
+
+    await wheels.hold(axes=(0.5, 1.0), seconds=0.5)
+    assert wheels.speeds.count(0.0) == 1
+    assert wheels.speeds[-1] == 0.0
+
+
+async def test_the_turbo_button_has_scales_of_its_own(base: Callable[..., Any]) -> None:
+    """And needs no other button."""
+    wheels = await base()
+    await wheels.hold(4, axes=(0.0, 1.0))
+
+    assert wheels.speeds == [1.0]
+
+
+async def test_without_a_button_the_robot_stands(base: Callable[..., Any]) -> None:
+    """One stop says so, as in the original, then others may drive it."""
+    wheels = await base()
+    await wheels.hold(axes=(0.0, 1.0), seconds=1.0)
+
+    assert wheels.speeds == [0.0]
+
+
+async def test_no_button_may_be_required(base: Callable[..., Any]) -> None:
+    """Whoever wants it so."""
+    wheels = await base(require_enable_button=False)
+    await wheels.hold(axes=(0.0, 1.0))
+
+    assert wheels.speeds == [0.5]
+
+
+async def test_a_joystick_that_falls_silent_stops_the_robot(base: Callable[..., Any]) -> None:
+    """It was pulled out, or its program has ended: within 0.35 s."""
+    wheels = await base()
+    await wheels.hold(5, axes=(0.0, 1.0), seconds=0.5)
+    assert wheels.speeds[-1] == 0.5
+    await wheels.wait(0.3)
+
+    assert wheels.speeds[-1] == 0.0
+    await wheels.hold(5, axes=(0.0, 1.0), seconds=0.1)
+    assert wheels.speeds[-1] == 0.5
+
+
+async def test_the_end_of_the_program_stops_the_robot(
+    base: Callable[..., Any], start: Start, manual_clock: ManualClock
+) -> None:
+    """However it ends: the lease says it."""
+    wheels = await base(require_enable_button=False)
+    other = start(TeleopTwistJoy, **{"axis_linear.x": 1, "require_enable_button": False})
+    await settle()
+    await wheels.wait(0.02)
+    await wheels.hold(axes=(0.0, 1.0))
+    wheels.twists.clear()
+    other.destroy_node()
+    await settle()
+
+    assert wheels.speeds == [0.0]
+
+
+async def test_axes_that_are_no_numbers_command_nothing(base: Callable[..., Any]) -> None:
+    """NaN is no speed, and an axis that is not there has none."""
+    wheels = await base()
+    await wheels.hold(5, axes=(float("nan"),))
+
+    assert wheels.twists == [Twist()]
+
+
+async def test_backwards_the_turn_may_be_inverted(base: Callable[..., Any]) -> None:
+    """As a car is steered."""
+    wheels = await base(inverted_reverse=True)
+    await wheels.hold(5, axes=(1.0, -1.0))
+
+    assert wheels.twists[-1].angular.z == -0.5
+
+
+async def test_stamped_commands_are_an_option(base: Callable[..., Any]) -> None:
+    """With a frame, as since Jazzy."""
+    wheels = await base(TwistStamped, publish_stamped_twist=True, frame="base")
+    await wheels.hold(5, axes=(0.0, 1.0))
+
+    assert wheels.speeds == [0.5]
+    assert wheels.twists[-1].header.frame_id == "base"
