@@ -82,11 +82,17 @@ def run(
             own errors the node, entity, file and line; for any other exception its traceback,
             without the lines inside aionode. ``AIONODE_TRACEBACK=1`` in the environment shows the
             whole traceback of either.
-        TypeError: there is nothing to run.
+        TypeError: there is nothing to run, or a coroutine was given in place of its function.
         RuntimeError: it was called inside a running event loop.
     """
     if not nodes:
         raise TypeError("run: pass at least one node, or a function that returns one")
+    given: tuple[object, ...] = nodes
+    for each in given:
+        if inspect.iscoroutine(each):
+            each.close()
+            name = each.__name__
+            raise TypeError(f"run: {name}() was called; pass the function itself: run({name})")
     if asyncio._get_running_loop() is not None:  # get_running_loop raises instead
         raise RuntimeError(
             "run: an event loop is already running; use `await node.run()` or `async with node:` "

@@ -322,6 +322,18 @@ def test_running_nothing_is_a_mistake() -> None:
         aionode.run()
 
 
+def test_a_coroutine_in_place_of_its_function_is_a_mistake() -> None:
+    """`asyncio.run` takes one, so it is often tried; Python's own error says nothing of that."""
+
+    async def main() -> None:
+        raise NotImplementedError
+
+    with pytest.raises(
+        TypeError, match=r"main\(\) was called; pass the function itself: run\(main"
+    ):
+        aionode.run(main())  # type: ignore[arg-type]  # the mistake
+
+
 def test_a_factory_that_makes_something_else_is_a_mistake(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

@@ -291,6 +291,22 @@ async def test_an_op_that_fails_is_in_the_log_of_the_gateway(
     assert any(said in line for line in lines(caplog)), lines(caplog)
 
 
+@pytest.mark.parametrize(
+    ("op", "field"), [("subscribe", "topic"), ("call_service", "service"), ("fly\n[ERROR]", "x")]
+)
+async def test_a_refusal_is_one_line_whatever_the_client_calls_things(
+    bench: Bench, op: str, field: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A name with a new line would look like another line of the log; some errors have several."""
+    async with rosbridge_client(bench.robot) as page:
+        page.send(op, **{field: "/a b\n[ERROR] [1.0] [robot]: \x1b[31mon fire"})
+        await bench.advance(2.0)
+
+    (line,) = lines(caplog)
+    assert "\n" not in line
+    assert "\x1b" not in line
+
+
 async def test_a_half_of_a_pair_of_characters_is_in_the_log(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:

@@ -160,7 +160,8 @@ class Refusals:
         where = f"{identity.address or 'this process'}, {way}"
         more = f" ({unsaid} more since the last line)" if unsaid else ""
         text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
-        self._node.get_logger().warning(f"gateway: {escaped(text)}{more}")
+        # On one line, so that a name of a client cannot look like another line of the log.
+        self._node.get_logger().warning(f"gateway: {escaped(' '.join(text.split()))}{more}")
 
     def _window(self, client: tuple[str, str], now_ns: int) -> Window:
         """Return the window of a client's lines; those that are over are told of and forgotten."""
