@@ -291,6 +291,31 @@ def test_an_offset_beyond_the_file_is_damage_with_its_place(at: int, tmp_path: P
     assert bag.check(file)[0].messages == 8
 
 
+def test_a_database_with_a_damaged_page_is_read_up_to_it(tmp_path: Path) -> None:
+    """The error after it names a tool for the rest: `bag check` repairs no databases."""
+    make_sqlite3(tmp_path / "run", 4, 9)
+    file = tmp_path / "run" / "run_0.db3"
+    sql(
+        file,
+        "WITH RECURSIVE n(i) AS (SELECT 4 UNION ALL SELECT i + 1 FROM n WHERE i < 5000) "
+        "INSERT INTO messages(topic_id, timestamp, data) "
+        "SELECT 1, 2000000000000000000 + i, (SELECT data FROM messages WHERE id = 1) FROM n",
+    )
+    data = bytearray(file.read_bytes())
+    page = 4096
+    for at in range(len(data) // 2 // page * page, len(data), page):
+        data[at : at + 16] = b"\xff" * 16
+    file.write_bytes(data)
+
+    heard, error = heard_before_error(tmp_path / "run")
+
+    assert heard[:3] == ALL
+    assert len(heard) > 500
+    assert ".recover" in str(error)
+    with pytest.raises(BagError, match="recover"):
+        bag.check(tmp_path / "run")
+
+
 def test_a_view_in_place_of_a_table_is_refused(tmp_path: Path) -> None:
     """It may count for ever."""
     make_sqlite3(tmp_path / "run", 4, 9)

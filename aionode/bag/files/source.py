@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 __all__ = ["CHECK", "DAMAGE", "McapSource", "Source", "damaged", "topic_of"]
 
 CHECK: Final = "`aionode bag check` repairs what a power cut left"
+RECOVER: Final = "`sqlite3 OLD.db3 .recover | sqlite3 NEW.db3` saves what it can"
 DAMAGE: Final = (
     McapError,
     struct.error,
@@ -284,4 +285,5 @@ def damaged(path: Path, error: Exception, where: str = "the file") -> BagError:
         remedy = f"{LIMIT_VARIABLE} raises the limit"
         return BagError(str(path), f"{where} is not read: {what}", remedy)
     or_open = ", or was not closed" if where == "the file" else ""
-    return BagError(str(path), f"{where} is damaged{or_open} ({what})", CHECK)
+    remedy = RECOVER if ".db3" in path.suffixes else CHECK
+    return BagError(str(path), f"{where} is damaged{or_open} ({what})", remedy)

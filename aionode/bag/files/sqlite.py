@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
 
@@ -29,6 +29,9 @@ LEAST_STEPS: Final = 10_000_000
 COUNT: Final = (
     "SELECT topic_id, COUNT(*), MIN(timestamp), MAX(timestamp) FROM messages "
     "WHERE typeof(timestamp) = 'integer' GROUP BY topic_id"
+)
+ROWS: Final = (
+    "SELECT topic_id, timestamp FROM messages NOT INDEXED WHERE typeof(timestamp) = 'integer'"
 )
 BROKEN: Final = "SELECT id FROM messages WHERE typeof(timestamp) != 'integer' LIMIT 1"
 ENCODINGS: Final = frozenset({"ros2msg", "ros2idl"})
@@ -88,13 +91,28 @@ class SqliteSource:
         """Count the messages of each topic."""
         self.start_ns, self.end_ns = MOST_NS, 0
         self._strays: list[tuple[object, int]] = []
-        for number, count, first_ns, last_ns in self._base.execute(COUNT):
+        try:
+            counted = self._base.execute(COUNT).fetchall()
+            self._is_whole = True
+        except sqlite3.DatabaseError:
+            counted = self._counted()
+            self._is_whole = False
+        for number, count, first_ns, last_ns in counted:
             if number in self._topics:
                 self._topics[number].message_count = count
                 self.start_ns = min(self.start_ns, max(first_ns, 0))
                 self.end_ns = max(self.end_ns, last_ns)
             else:
                 self._strays.append((number, count))
+
+    def _counted(self) -> list[tuple[object, int, int, int]]:
+        """Count the messages of a damaged file up to the damage: its index may lie behind that."""
+        found: dict[object, tuple[int, int, int]] = {}
+        with suppress(sqlite3.DatabaseError):
+            for number, time_ns in self._base.execute(ROWS):
+                count, first_ns, last_ns = found.get(number, (0, time_ns, time_ns))
+                found[number] = (count + 1, min(first_ns, time_ns), max(last_ns, time_ns))
+        return [(number, *counts) for number, counts in found.items()]
 
     def records(
         self,
@@ -118,15 +136,16 @@ class SqliteSource:
         # A time before 1970 counts as 0, and one that no `Time` shows is the last.
         first_ns = start_ns if start_ns > 0 else -(2**63)
         last_ns = min(end_ns - 1, SQL_END_NS)
-        text = "SELECT id, topic_id, timestamp, data FROM messages "
+        indexed, order = ("", "timestamp") if self._is_whole else ("NOT INDEXED", "id")
+        text = f"SELECT id, topic_id, timestamp, data FROM messages {indexed} "  # noqa: S608  # of these words
         if start_ns > 0 or end_ns <= SQL_END_NS:
             first_ns = min(first_ns, SQL_END_NS)
             text += f"WHERE timestamp >= {first_ns} AND timestamp <= {last_ns} "
         try:
-            if bad := self._base.execute(BROKEN).fetchone():
+            if self._is_whole and (bad := self._base.execute(BROKEN).fetchone()):
                 wrong = TypeError("its time is no number")
                 problems.append(damaged(self.path, wrong, f"the message {bad[0]}"))
-            with closing(self._base.execute(f"{text}ORDER BY timestamp")) as rows:
+            with closing(self._base.execute(f"{text}ORDER BY {order}")) as rows:
                 for row, number, time_ns, data in rows:
                     info = wanted.get(number)
                     if info is None or not isinstance(time_ns, int):
