@@ -17,10 +17,12 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "teleop_twist_joy": {"teleop_node": "_joy.teleop_node"},
     "tf2_ros": {
         "buffer_server": "_buffer_server",
+        "tf2_echo": "_tf2_echo",
         "static_transform_publisher": "_static_transform_publisher",
     },
     "topic_tools": {
-        name: f"_{name}" for name in ("delay", "drop", "mux", "relay", "throttle", "transform")
+        name: f"_{name}"
+        for name in ("delay", "demux", "drop", "mux", "relay", "throttle", "transform")
     },
     "turtlesim": {
         "draw_square": "_turtlesim.draw_square",

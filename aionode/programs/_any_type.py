@@ -94,9 +94,9 @@ class AnyTypeNode(Node):
 
     def listen(self, topic: str) -> None:
         """Read another topic from now on."""
-        if self.resolve_topic_name(topic) != self.resolve_topic_name(self.input_topic):
-            if self.__input is not None:
-                self.__input.destroy()
+        full = self.resolve_topic_name(topic)
+        if self.__input is not None and full != self.resolve_topic_name(self.input_topic):
+            self.__input.destroy()
             self.__input = None
         self.input_topic = topic
 

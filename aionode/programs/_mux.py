@@ -12,23 +12,141 @@ from aionode.errors import CommandError
 from aionode.idl import define
 from aionode.programs._any_type import AnyTypeNode
 
-__all__ = ["SERVICES", "Mux", "main"]
+__all__ = ["SERVICES", "Mux", "Selector", "main", "services_of"]
 
 NONE_TOPIC: Final = "__none"
 """Stands for no topic."""
 
-PREFIX: Final = "topic_tools_interfaces/srv/Mux"
 
-SERVICES: Final[dict[str, Any]] = {
-    "add": define(f"{PREFIX}Add", "string topic\n---\nbool success"),
-    "delete": define(f"{PREFIX}Delete", "string topic\n---\nbool success"),
-    "list": define(f"{PREFIX}List", "---\nstring[] topics"),
-    "select": define(f"{PREFIX}Select", "string topic\n---\nstring prev_topic\nbool success"),
-}
-"""The types of the services, by their names below the node's."""
+def services_of(tool: str) -> dict[str, Any]:
+    """Return the types of the services of ``mux`` or ``demux``, by their names below the node's."""
+    prefix = f"topic_tools_interfaces/srv/{tool.capitalize()}"
+    return {
+        "add": define(f"{prefix}Add", "string topic\n---\nbool success"),
+        "delete": define(f"{prefix}Delete", "string topic\n---\nbool success"),
+        "list": define(f"{prefix}List", "---\nstring[] topics"),
+        "select": define(f"{prefix}Select", "string topic\n---\nstring prev_topic\nbool success"),
+    }
 
 
-class Mux(AnyTypeNode):
+SERVICES: Final = services_of("mux")
+"""The types of the services."""
+
+
+class Selector(AnyTypeNode):
+    """Has one of several topics selected, and services that say which.
+
+    Args:
+        tool: ``mux`` or ``demux``.
+        services: The types of its services.
+        given: The parameters that arguments say.
+
+    Attributes:
+        topics: Those that can be selected.
+        selected: The one that is.
+    """
+
+    def __init__(self, tool: str, services: dict[str, Any], given: dict[str, Any]) -> None:
+        super().__init__(tool, given)
+        self.tool = tool
+        self.topics: list[str] = []
+        self.selected = NONE_TOPIC
+        callbacks = {
+            "add": self.add,
+            "delete": self.delete,
+            "list": self.list_topics,
+            "select": self.select,
+        }
+        for name, callback in callbacks.items():
+            self.create_service(services[name], f"~/{name}", callback)
+
+    def declare_selection(self, name: str) -> None:
+        """Declare which topics there are, and which one is selected at first.
+
+        Raises:
+            CommandError: There is none.
+        """
+        initial = self.declare_parameter("initial_topic", "").value
+        self.topics = list(self.needed(name, Parameter.Type.STRING_ARRAY))
+        if not self.topics:
+            raise CommandError(f"{name} is empty; name a topic")
+        self.use(initial or self.topics[0])
+
+    def use(self, topic: str) -> None:
+        """Select a topic."""
+        self.selected = topic
+
+    async def discover(self) -> None:
+        """Find the publishers of the input, if a topic is selected."""
+        if self.selected == NONE_TOPIC:
+            self.forget()
+        else:
+            await super().discover()
+
+    def known(self, topic: str) -> str | None:
+        """Return a topic by its name, however it is written."""
+        full = self.resolve_topic_name(topic)
+        return next((each for each in self.topics if self.resolve_topic_name(each) == full), None)
+
+    def add(self, request: Any, response: Any) -> Any:
+        """Add a topic."""
+        topic, log = request.topic, self.get_logger()
+        log.info(f"trying to add {topic} to {self.tool}")
+        if topic == NONE_TOPIC:
+            log.warning(
+                f"failed to add topic {topic} to {self.tool}, because it's reserved for special use"
+            )
+        elif topic in self.topics:
+            log.warning(
+                f"tried to add a topic that {self.tool} was already listening to: [{topic}]"
+            )
+        else:
+            self.resolve_topic_name(topic)  # refuses what is no name, and its client is told
+            self.topics.append(topic)
+            log.info(f"added {topic} to {self.tool}")
+            response.success = True
+        return response
+
+    def delete(self, request: Any, response: Any) -> Any:
+        """Remove a topic that is not selected."""
+        topic, log = request.topic, self.get_logger()
+        log.info(f"trying to delete {topic} to {self.tool}")
+        known = self.known(topic)
+        if known is None:
+            log.warning(f"tried to delete non-subscribed topic {topic} from {self.tool}")
+        elif self.selected != NONE_TOPIC and known == self.known(self.selected):
+            log.warning(f"tried to delete currently selected topic {topic} from {self.tool}")
+        else:
+            self.topics.remove(known)
+            log.info(f"deleted topic {topic} from {self.tool}")
+            response.success = True
+        return response
+
+    def list_topics(self, _request: Any, response: Any) -> Any:
+        """List the topics."""
+        response.topics = self.topics
+        return response
+
+    async def select(self, request: Any, response: Any) -> Any:
+        """Select a topic, or none."""
+        topic, log = request.topic, self.get_logger()
+        if self.selected != NONE_TOPIC and self.known(self.selected) is not None:
+            response.prev_topic = self.selected
+        if topic == NONE_TOPIC:
+            log.info(f"{self.tool} selected to no input.")
+            self.selected = NONE_TOPIC
+        else:
+            log.info(f"trying to switch {self.tool} to {topic}")
+            if self.known(topic) is None:
+                return response
+            self.use(topic)
+            log.info(f"{self.tool} selected input: [{topic}]")
+        response.success = True
+        await self.discover()
+        return response
+
+
+class Mux(Selector):
     """Publishes the messages of the input that is selected; the first one at the beginning.
 
     Args:
@@ -39,88 +157,15 @@ class Mux(AnyTypeNode):
         given: dict[str, Any] = {}
         if len(words) > 1:
             given = {"output_topic": words[0], "input_topics": list(words[1:])}
-        super().__init__("mux", given)
-        initial = self.declare_parameter("initial_topic", "").value
+        super().__init__("mux", SERVICES, given)
         self.output_topic = self.declare_parameter("output_topic", "~/selected").value
         self.is_lazy = self.declare_parameter("lazy", False).value
-        self.inputs: list[str] = list(self.needed("input_topics", Parameter.Type.STRING_ARRAY))
-        if not self.inputs:
-            raise CommandError("input_topics is empty; name a topic")
-        self.input_topic = initial or self.inputs[0]
-        for name, callback in (
-            ("add", self.add),
-            ("delete", self.delete),
-            ("list", self.list_inputs),
-            ("select", self.select),
-        ):
-            self.create_service(SERVICES[name], f"~/{name}", callback)
+        self.declare_selection("input_topics")
 
-    async def discover(self) -> None:
-        """Find the publishers of the input, if one is selected."""
-        if self.input_topic == NONE_TOPIC:
-            self.forget()
-        else:
-            await super().discover()
-
-    def known(self, topic: str) -> str | None:
-        """Return an input by its name, however it is written."""
-        full = self.resolve_topic_name(topic)
-        return next((each for each in self.inputs if self.resolve_topic_name(each) == full), None)
-
-    def add(self, request: Any, response: Any) -> Any:
-        """Add an input."""
-        topic, log = request.topic, self.get_logger()
-        log.info(f"trying to add {topic} to mux")
-        if topic == NONE_TOPIC:
-            log.warning(
-                f"failed to add topic {topic} to mux, because it's reserved for special use"
-            )
-        elif topic in self.inputs:
-            log.warning(f"tried to add a topic that mux was already listening to: [{topic}]")
-        else:
-            self.resolve_topic_name(topic)  # refuses what is no name, and its client is told
-            self.inputs.append(topic)
-            log.info(f"added {topic} to mux")
-            response.success = True
-        return response
-
-    def delete(self, request: Any, response: Any) -> Any:
-        """Remove an input that is not selected."""
-        topic, log = request.topic, self.get_logger()
-        log.info(f"trying to delete {topic} to mux")
-        known = self.known(topic)
-        if known is None:
-            log.warning(f"tried to delete non-subscribed topic {topic} from mux")
-        elif self.input_topic != NONE_TOPIC and known == self.known(self.input_topic):
-            log.warning(f"tried to delete currently selected topic {topic} from mux")
-        else:
-            self.inputs.remove(known)
-            log.info(f"deleted topic {topic} from mux")
-            response.success = True
-        return response
-
-    def list_inputs(self, _request: Any, response: Any) -> Any:
-        """List the inputs."""
-        response.topics = self.inputs
-        return response
-
-    async def select(self, request: Any, response: Any) -> Any:
-        """Select an input, or none."""
-        topic, log = request.topic, self.get_logger()
-        if self.input_topic != NONE_TOPIC and self.known(self.input_topic) is not None:
-            response.prev_topic = self.input_topic
-        if topic == NONE_TOPIC:
-            log.info("mux selected to no input.")
-            self.input_topic = NONE_TOPIC
-        else:
-            log.info(f"trying to switch mux to {topic}")
-            if self.known(topic) is None:
-                return response
-            self.listen(topic)
-            log.info(f"mux selected input: [{topic}]")
-        response.success = True
-        await self.discover()
-        return response
+    def use(self, topic: str) -> None:
+        """Read another input from now on."""
+        super().use(topic)
+        self.listen(topic)
 
 
 def main() -> None:

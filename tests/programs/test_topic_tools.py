@@ -12,6 +12,8 @@ from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import Imu
 from aionode.interfaces.std_msgs.msg import Float64, String
 from aionode.programs._delay import Delay
+from aionode.programs._demux import SERVICES as DEMUX_SERVICES
+from aionode.programs._demux import Demux
 from aionode.programs._drop import Drop
 from aionode.programs._mux import SERVICES, Mux
 from aionode.programs._relay import Relay
@@ -262,3 +264,40 @@ async def test_what_is_no_expression_is_refused_at_the_start(
     """Not at the first message."""
     with pytest.raises(CommandError, match=text):
         start(Transform, parser().parse_args(words))
+
+
+async def test_demux_publishes_on_the_output_that_is_selected(
+    bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
+) -> None:
+    """Or on none; topics are added while it runs, and the one that is selected stays."""
+    publisher = bench.node.create_publisher(String, "in", 10)
+    start(Demux, "in", "one", "two")
+    one = bench.node.create_subscription(String, "one", lambda msg: bench.heard.append(msg.data))
+    bench.node.create_subscription(String, "two", lambda msg: bench.heard.append(msg.data * 2))
+    ask = {
+        name: bench.node.create_client(kind, f"/demux/{name}")
+        for name, kind in DEMUX_SERVICES.items()
+    }
+    types = {name: kind.Request for name, kind in DEMUX_SERVICES.items()}
+    await ready()
+    assert await bench.say(publisher, "a") == ["a"]
+
+    chosen = await ask["select"].call(types["select"](topic="/two"))
+    assert (chosen.success, chosen.prev_topic) == (True, "one")
+    await ready()
+    assert await bench.say(publisher, "b") == ["a", "bb"]
+    assert not (await ask["delete"].call(types["delete"](topic="two"))).success
+    assert not (await ask["select"].call(types["select"](topic="four"))).success
+    assert (await ask["add"].call(types["add"](topic="three"))).success
+    assert (await ask["list"].call(types["list"]())).topics == ["one", "two", "three"]
+
+    assert (await ask["select"].call(types["select"](topic="__none"))).success
+    await ready()
+    assert await bench.say(publisher, "c") == ["a", "bb"]
+    assert one.get_publisher_count() == 0
+
+
+async def test_demux_needs_an_output(start: Start) -> None:
+    """It would publish nowhere."""
+    with pytest.raises(CommandError, match="parameter 'output_topics' is needed"):
+        start(Demux)

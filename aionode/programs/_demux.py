@@ -1,0 +1,53 @@
+"""``topic_tools demux``: a topic is published on one of several others; services say which."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any, Final
+
+import aionode
+from aionode.arguments import remove_ros_args
+from aionode.programs._mux import Selector, services_of
+
+__all__ = ["SERVICES", "Demux", "main"]
+
+SERVICES: Final = services_of("demux")
+"""The types of the services."""
+
+
+class Demux(Selector):
+    """Publishes the messages of its input on the output that is selected, at first the first one.
+
+    Args:
+        *words: The input topic, and the outputs; fewer than two say nothing.
+    """
+
+    def __init__(self, *words: str) -> None:
+        given: dict[str, Any] = {}
+        if len(words) > 1:
+            given = {"input_topic": words[0], "output_topics": list(words[1:])}
+        super().__init__("demux", SERVICES, given)
+        self.input_topic = self.declare_parameter("input_topic", "~/input").value
+        self.declare_selection("output_topics")
+
+    def use(self, topic: str) -> None:
+        """Publish on another output from now on."""
+        super().use(topic)
+        self.forget()
+        self.output_topic = topic
+
+
+def main() -> None:
+    """Run the node until Ctrl-C.
+
+    Raises:
+        SystemExit: With status 1: there are too few arguments.
+    """
+    words = remove_ros_args(sys.argv)[1:]
+    if len(words) < 2:
+        sys.stderr.write(
+            "Incorrect number of arguments. Usage: "
+            "aionode run topic_tools demux <intopic> <outtopic1> [outtopic2...]\n"
+        )
+        raise SystemExit(1)
+    aionode.run(lambda: Demux(*words))
