@@ -98,7 +98,7 @@ class Clients:
                 yield session
             finally:
                 del self._sessions[session]
-                self._refused += session.refused
+                self._refused += session.rights.refused
 
     def _make_room(self, identity: Identity) -> None:
         """Disconnect a client of the identity with the most clients, if the limit is reached.
@@ -155,7 +155,7 @@ class Clients:
         for session in self._sessions:
             sessions[session.kind] = sessions.get(session.kind, 0) + 1
             sent += session.outbox.sent
-            refused += session.refused
+            refused += session.rights.refused
             for topic, count in session.dropped().items():
                 dropped[topic] = dropped.get(topic, 0) + count
         robot = self.robot

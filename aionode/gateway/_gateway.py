@@ -183,8 +183,8 @@ class Gateway(Clients):
         kind, chosen = protocol_of(websocket.scope["subprotocols"])
         async with self.session_of(websocket.scope, kind) as session:
             connection = websocket.scope["state"]["aionode_connection"]
-            session.connection = connection
-            connection.note = session.note
+            session.arrivals.connection = connection
+            connection.note = session.rights.note
             session.outbox.direct = connection.send_now
             websocket._receive = paced(
                 websocket._receive, self._policy.limits.frames_per_sec, self.robot, session
@@ -207,18 +207,18 @@ class Gateway(Clients):
         while True:
             limit = self._policy.limits.client_lost_sec
             await self.robot.clock.sleep(limit / 3)
-            connection = session.connection
+            connection = session.arrivals.connection
             if connection is None:
                 continue
             is_lost = session.outbox.overflowed  # which is said already
-            if session.has_goals or (session.is_doubtful and session.publishes):
-                session.ask_for_sign()
+            if session.has_goals or (session.arrivals.is_doubtful and session.publishes):
+                session.arrivals.ask_for_sign()
                 # After a standstill of its own, the gateway first hears what has arrived in it.
                 silent_sec = min(connection.silent_sec(), self.robot.standstills.since_sec())
                 if not is_lost and silent_sec > limit and not connection.has_unread():
                     is_lost = True
                     reason = f"it gave no sign for {limit:g} s, with goals or commands under way"
-                    session.note(Refusal.DISCONNECTED, "connection", reason)
+                    session.rights.note(Refusal.DISCONNECTED, "connection", reason)
             if is_lost:
                 session.ended.set()
                 connection.abort()
@@ -283,7 +283,7 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
     clock = robot.clock
     bucket = Bucket(rate_hz, robot.time_base.steady_ns)
     refusals = Bucket(REFUSALS_PER_SEC, robot.time_base.steady_ns)
-    seen = session.refused - session.refused_cheaply
+    seen = session.rights.refused - session.rights.refused_cheaply
 
     async def wait_for(waited_for: Bucket, what: str) -> None:
         has_waited = False
@@ -293,16 +293,16 @@ def paced(receive: Any, rate_hz: float, robot: Robot, session: Session) -> Any:
         if has_waited:
             session.doubt()
             reason = f"it sends more than {waited_for.rate_hz:g} a second, and so is read later"
-            session.note(Refusal.LATE, what, reason)
+            session.rights.note(Refusal.LATE, what, reason)
 
     async def receive_paced() -> Any:
         nonlocal seen
-        while seen < session.refused - session.refused_cheaply:
+        while seen < session.rights.refused - session.rights.refused_cheaply:
             await wait_for(refusals, "frames in vain")
             seen += 1
         message = await receive()
         if message["type"] == "websocket.receive":
-            session.note_frame()
+            session.arrivals.note_frame()
             await wait_for(bucket, "frames")
         return message
 

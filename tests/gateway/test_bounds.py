@@ -22,9 +22,9 @@ from aionode.gateway.rosbridge import rosapi as _rosapi
 from aionode.gateway.rosbridge.client import MOST_MALFORMED, serve_frames
 from aionode.gateway.rosbridge.request import FragmentStore
 from aionode.gateway.session import feed as _feed
-from aionode.gateway.session.base import MOST_QUESTIONS
+from aionode.gateway.session.delivery.outbox import Outbox
+from aionode.gateway.session.graph import MOST_QUESTIONS
 from aionode.gateway.session.lanes import Lanes
-from aionode.gateway.session.outbox import Outbox
 from aionode.gateway.session.robot import Robot
 from aionode.gateway.session.sharing import MOST_UNUSED, Shared
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -172,7 +172,7 @@ async def test_an_op_that_is_refused_looks_for_no_type(
     """The same over rosbridge, which also asks the graph which type a topic has."""
     robot.policy = Policy()
     refuse_to_find_types(robot, monkeypatch)
-    monkeypatch.setattr(client.session, "topics", None)
+    monkeypatch.setattr(client.session.graph, "topics", None)
     client.send(**op)
     assert "the policy does not allow tester" in (await client.receive())["msg"]
 
@@ -238,7 +238,7 @@ async def test_garbage_in_fragments_is_garbage(bench: Bench) -> None:
 
     async with bench.session() as session:
         await serve_frames(session, sent())
-    assert session.refused == MOST_MALFORMED + 1
+    assert session.rights.refused == MOST_MALFORMED + 1
     assert len(list(frames)) == 49
 
 
@@ -272,7 +272,7 @@ async def test_a_value_that_no_parameter_has_is_an_answer(bench: Bench, value: A
     bench.node.declare_parameter("speed", 1)
     async with bench.session() as session:
         with pytest.raises(MessageError, match="speed"):
-            await session.set_json_parameter("/robot", "speed", value)
+            await session.parameters.set_json("/robot", "speed", value)
 
 
 @pytest.mark.parametrize("value", ["[" * 100_000, "1" * 100, "{}"])

@@ -120,7 +120,7 @@ async def test_commands_of_a_cut_count_only_behind_the_answer_to_a_ping(is_one_w
                 await until(lambda: line.sent_bytes > sent + commands)
             session = session_of(gateway)
             line.join()
-            await until(lambda: not session.is_doubtful)
+            await until(lambda: not session.arrivals.is_doubtful)
             while got == [1.0, 0.0]:
                 await client.send(drive(2.0))
                 await asyncio.sleep(0.01)  # noqa: TID251  # as often as a page sends them
@@ -202,7 +202,7 @@ async def test_the_stop_comes_within_the_time_to_live_when_a_cable_is_pulled() -
                 stopped = len(got)
                 session = session_of(gateway)
                 line.join()
-                await until(lambda: not session.is_doubtful)  # noqa: B023  # awaited at once
+                await until(lambda: not session.arrivals.is_doubtful)  # noqa: B023  # awaited at once
                 assert len(got) == stopped
             await until(lambda: not gateway.stats.sessions)
 
@@ -225,13 +225,13 @@ async def test_a_ping_cannot_be_answered_before_it_is_sent() -> None:
             writer.write(frame(b"aionode%d" % number, PONG))
         writer.write(frame(drive(2.0).encode()))
         session = session_of(gateway)
-        await until(lambda: session.refused)
+        await until(lambda: session.rights.refused)
         assert got == [1.0, 0.0]
         asked = [await ping_of(reader) for _ in range(2)]
         assert len({*asked}) == 2
         assert min(map(len, asked)) >= 8
         writer.write(frame(asked[0], PONG))  # RFC 6455 lets a client answer any of them
-        await until(lambda: not session.is_doubtful)
+        await until(lambda: not session.arrivals.is_doubtful)
         writer.close()
 
 
@@ -246,10 +246,10 @@ async def test_a_sign_that_is_asked_for_meanwhile_leaves_the_doubt() -> None:
         session = session_of(gateway)
         for _ in range(3):
             payload = await ping_of(reader)
-            assert session.is_doubtful
+            assert session.arrivals.is_doubtful
             writer.write(frame(b"", PONG))  # a sign, but no answer
         writer.write(frame(payload, PONG))
-        await until(lambda: not session.is_doubtful)
+        await until(lambda: not session.arrivals.is_doubtful)
         writer.close()
 
 

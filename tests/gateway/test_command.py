@@ -244,7 +244,7 @@ async def test_what_a_link_delivers_after_a_silence_is_refused(
 ) -> None:
     """It was sent before the cut; what comes behind the answer to a ping was sent after it."""
     async with bench.session("high") as session:
-        session.connection = connection = Connection()
+        session.arrivals.connection = connection = Connection()
         await drive(session, 1.0)
         await bench.advance(0.3)
         assert await refusal(session) == "too_old"
@@ -260,15 +260,15 @@ async def test_a_command_that_waits_while_the_ping_is_answered_is_refused(
 ) -> None:
     """It came before the answer, and waits in a lane behind the description of its type."""
     async with bench.session("high") as session:
-        session.connection = connection = Connection()
+        session.arrivals.connection = connection = Connection()
         await drive(session, 1.0)
         await bench.advance(0.3)
-        session.note_frame()
-        arrived_ns = session.arrival_ns()
+        session.arrivals.note_frame()
+        arrived_ns = session.arrivals.arrival_ns()
         connection.pongs.pop()()
         assert await refusal(session, arrived_ns=arrived_ns) == "too_old"
         await bench.advance(0.001)
-        session.note_frame()
+        session.arrivals.note_frame()
         await drive(session, 2.0)
     await settle()
     assert wheels == [(1, 0), (0, 0), (2, 0), (0, 0)]

@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
-from aionode.gateway.session.outbox import LONG_BYTES, Frame, LongFrame, Outbox, binary_frame
+from aionode.gateway.session.delivery.outbox import (
+    LONG_BYTES,
+    Frame,
+    LongFrame,
+    Outbox,
+    binary_frame,
+)
 
 
 def test_long_bytes_are_not_copied_but_views_are() -> None:

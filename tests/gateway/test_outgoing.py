@@ -17,7 +17,7 @@ from aionode.gateway.server.outgoing import (
     Framing,
     Outgoing,
 )
-from aionode.gateway.session.outbox import LongFrame
+from aionode.gateway.session.delivery.outbox import LongFrame
 
 LARGE = bytes(range(256)) * 16 * 1024  # 4 MiB
 

@@ -120,7 +120,7 @@ async def test_a_pattern_does_not_show_the_audit_log(bench: Bench) -> None:
         await settle()
         for rule in ('subscribe = "/**"', 'subscribe = ["/gateway/*", "/gateway/audi?"]'):
             bench.allow(f'[[who]]\nname = "guest"\nloopback = true\n[[allow]]\n{rule}')
-            assert "/gateway/audit" not in session.topics()
+            assert "/gateway/audit" not in session.graph.topics()
             with pytest.raises(RefusedError, match="the policy does not allow guest"):
                 await session.subscribe("/gateway/audit", frame=lambda _: None, key="audit")
 
@@ -131,7 +131,7 @@ async def test_a_rule_that_names_the_audit_log_shows_it(bench: Bench) -> None:
     got: list[str] = []
     async with bench.session() as session:
         await settle()
-        assert "/gateway/audit" in session.topics()
+        assert "/gateway/audit" in session.graph.topics()
         await session.subscribe(
             "/gateway/audit", frame=lambda received: got.append(received.message.data), key="audit"
         )

@@ -301,7 +301,7 @@ async def test_ops_that_come_to_nothing_are_counted(robot: Robot, op: dict[str, 
             client.send(**op)
         await settle()
 
-        assert client.session.refused == 3
+        assert client.session.rights.refused == 3
 
 
 async def test_a_frame_may_be_bytes_of_json(client: RosbridgeClient) -> None:
@@ -411,7 +411,7 @@ async def test_a_command_is_as_old_as_its_frame(
         seen.append(arrived_ns)
 
     monkeypatch.setattr(client.session, "publish", publish)
-    monkeypatch.setattr(client.session, "arrival_ns", lambda: 42)
+    monkeypatch.setattr(client.session.arrivals, "arrival_ns", lambda: 42)
     client.send("publish", topic="/words", type="std_msgs/String", arrived_ns=10**30)
     await settle()
 

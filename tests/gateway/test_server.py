@@ -59,7 +59,7 @@ async def test_small_frames_wait_for_no_acknowledgement() -> None:
     """A client acknowledges after 40 ms; so long would each answer take that has two parts."""
     async with serving() as gateway, connect(address(gateway), proxy=None):
         session = session_of(gateway)
-        connection: Any = session.connection
+        connection: Any = session.arrivals.connection
         connected = connection.transport.get_extra_info("socket")
 
         assert connected.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
@@ -418,7 +418,7 @@ async def test_a_policy_file_is_read_again(
         await until(lambda: not gateway.policy.allow)
         session = session_of(gateway)
         with pytest.raises(RefusedError):
-            session.decide("publish", "/x", "")
+            session.rights.decide("publish", "/x", "")
         assert not session.ended.is_set()
         path.write_text("[[who]]\nname = 'operator'\ntoken = 'x'")
         await until(lambda: not gateway.stats.sessions)
@@ -457,7 +457,7 @@ async def test_a_program_has_sessions_of_its_own() -> None:
     """Of another way in, such as one for language models."""
     async with serving() as gateway:
         async with gateway.session(Identity("program"), "own") as session:
-            assert "/rosout" in session.topics()
+            assert "/rosout" in session.graph.topics()
             assert gateway.stats.sessions == {"own": 1}
         assert gateway.stats.sessions == {}
 
@@ -512,7 +512,7 @@ async def test_a_client_whose_frames_are_refused_is_read_slowly(bench: Bench) ->
             receive_paced = paced(receive, 1e6, bench.robot, session)
             while True:
                 await receive_paced()
-                session.refused += 1
+                session.rights.refused += 1
 
         serving = tasks.create_task(serve())
         await settle()
@@ -540,7 +540,7 @@ async def test_the_gateway_ends_while_a_client_that_reads_nothing_closes() -> No
             await until(lambda: gateway.node.count_subscribers("/words"))
             client.transport.pause_reading()
             session = session_of(gateway)
-            connection: Any = session.connection
+            connection: Any = session.arrivals.connection
             for _ in range(20):
                 publisher.publish(String(data="x" * 500_000))
                 await settle()

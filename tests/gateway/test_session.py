@@ -73,7 +73,7 @@ async def send_goal(session: Session) -> None:
 
 async def set_parameter(session: Session) -> None:
     """Set a parameter of the robot."""
-    await session.set_parameter("/robot", Parameter("speed", value=2.0))
+    await session.parameters.set("/robot", Parameter("speed", value=2.0))
 
 
 async def serve(session: Session) -> None:
@@ -97,7 +97,7 @@ async def serve_action(session: Session) -> None:
 
 async def see(session: Session) -> None:
     """Read the parameters of the robot."""
-    assert "speed" in await session.parameter_names("/robot")
+    assert "speed" in await session.parameters.names("/robot")
 
 
 ACTIONS = [
@@ -149,19 +149,19 @@ async def test_what_no_rule_allows_does_not_reach_the_robot(
             await act(session)
         assert refused.value.code == "not_allowed"
         assert set(furnished.context.graph.endpoints()) == before
-        assert session.refused == 1
+        assert session.rights.refused == 1
 
 
 async def test_a_client_sees_only_what_the_policy_shows(furnished: Bench) -> None:
     """Names tell much; a node that is hidden is as if it were not there."""
     furnished.allow("[[allow]]\nsubscribe = '/words'\ncall = '/add'\n[[allow]]\ngoal = '/count'")
     async with furnished.session() as session:
-        assert session.topics() == {"/words": ["std_msgs/msg/String"]}
-        assert session.services() == {"/add": ["example_interfaces/srv/AddTwoInts"]}
-        assert session.actions() == {"/count": ["example_interfaces/action/Fibonacci"]}
-        assert session.nodes() == []
+        assert session.graph.topics() == {"/words": ["std_msgs/msg/String"]}
+        assert session.graph.services() == {"/add": ["example_interfaces/srv/AddTwoInts"]}
+        assert session.graph.actions() == {"/count": ["example_interfaces/action/Fibonacci"]}
+        assert session.graph.nodes() == []
         with pytest.raises(NodeNameNonExistentError):
-            session.node_details("/robot")
+            session.graph.node_details("/robot")
 
 
 # Ways around a rule
@@ -212,9 +212,9 @@ async def test_the_name_of_a_node_is_taken_as_it_is(furnished: Bench, node: str)
     """What is expanded later would be another node than the one that the policy was asked about."""
     async with furnished.session() as session:
         with pytest.raises(ValueError, match="name"):
-            await session.set_parameter(node, Parameter("speed", value=2.0))
+            await session.parameters.set(node, Parameter("speed", value=2.0))
         with pytest.raises(ValueError, match="name"):
-            await session.parameter_names(node)
+            await session.parameters.names(node)
 
 
 async def test_a_relative_name_is_judged_by_what_it_stands_for(bench: Bench) -> None:
@@ -250,8 +250,8 @@ async def test_a_parameter_is_clamped(furnished: Bench) -> None:
     limit = FieldLimit(max=1.5, outside="clamp")
     furnished.robot.policy = Policy(allow=[Rule(parameter="/robot", fields={"value": limit})])
     async with furnished.session() as session:
-        await session.set_parameter("/robot", Parameter("speed", value=2.0))
-        found = await session.get_parameters("/robot", ["speed", "none"])
+        await session.parameters.set("/robot", Parameter("speed", value=2.0))
+        found = await session.parameters.get("/robot", ["speed", "none"])
         assert found == {"speed": Parameter("speed", value=1.5)}
 
 

@@ -82,10 +82,10 @@ async def test_nothing_that_waited_in_a_standstill_reaches_the_wheels(has_lease:
             writer.write(frame(drive(100.0).encode()))
         stand_still()
         session = session_of(gateway)
-        await until(lambda: session.refused == 20)
+        await until(lambda: session.rights.refused == 20)
         for _ in range(1 + has_lease):  # the end of its lease is a reason of its own to ask
             writer.write(frame(await ping_of(reader), PONG))
-        await until(lambda: not session.is_doubtful)
+        await until(lambda: not session.arrivals.is_doubtful)
         writer.write(frame(drive(2.0).encode()))
         await until(lambda: 2.0 in got)
         writer.close()
@@ -183,38 +183,38 @@ async def receive() -> dict[str, str]:
 async def test_a_client_that_was_not_read_for_a_while_is_doubted(bench: Bench) -> None:
     """Its commands wait in the kernel while the gateway lets it wait for what was refused."""
     async with bench.session() as session, asyncio.TaskGroup() as tasks:
-        session.connection = Connection()
+        session.arrivals.connection = Connection()
 
         receive_paced = paced(receive, 1000.0, bench.robot, session)
-        session.refused = round(REFUSALS_PER_SEC)
+        session.rights.refused = round(REFUSALS_PER_SEC)
         await receive_paced()
-        assert not session.is_doubtful
-        session.refused += 1
+        assert not session.arrivals.is_doubtful
+        session.rights.refused += 1
         reading = tasks.create_task(receive_paced())
         await bench.advance(1.0)
         await reading
-        assert session.is_doubtful
+        assert session.arrivals.is_doubtful
 
 
 async def test_a_driver_who_is_refused_is_read_as_before(bench: Bench) -> None:
     """Another one drives: if it had to wait, its old commands would count when that one ends."""
     async with bench.session() as session:
         receive_paced = paced(receive, 1000.0, bench.robot, session)
-        session.refused = session.refused_cheaply = 10 * round(REFUSALS_PER_SEC)
+        session.rights.refused = session.rights.refused_cheaply = 10 * round(REFUSALS_PER_SEC)
         await receive_paced()  # at a time that stands still
 
 
 async def test_the_answer_to_an_earlier_ping_leaves_a_later_doubt(bench: Bench) -> None:
     """It may have been under way for long; what comes behind it is older than the later doubt."""
     async with bench.session() as session:
-        session.connection = connection = Connection()
+        session.arrivals.connection = connection = Connection()
         session.doubt()
         session.doubt()
         first, second = connection.asked
         first()
-        assert session.is_doubtful
+        assert session.arrivals.is_doubtful
         second()
-        assert not session.is_doubtful
+        assert not session.arrivals.is_doubtful
 
 
 # Calls, goals and parameters
@@ -306,7 +306,7 @@ async def test_what_a_page_asked_for_in_a_standstill_is_not_done(what: str) -> N
         stand_still(1.5)
         told = str(await answer_of(client))
         assert "it may have waited while the gateway stood still; send it again" in told
-        await until(lambda: not session_of(gateway).is_doubtful)
+        await until(lambda: not session_of(gateway).arrivals.is_doubtful)
         assert deeds.done == []
         await client.send(op)
         await answer_of(client)
@@ -353,7 +353,7 @@ async def test_a_call_that_waited_for_a_moment_is_made() -> None:
 async def test_a_call_that_waits_when_the_gateway_stands_still_is_not_made(bench: Bench) -> None:
     """It arrived in time, but its service was not there yet."""
     async with bench.session() as session, asyncio.TaskGroup() as tasks:
-        session.connection = connection = Connection()
+        session.arrivals.connection = connection = Connection()
         calling = tasks.create_task(refusal_of(session.call("/add", ADD, type_name=ADD_TYPE)))
         await bench.advance(0.1)
         session.doubt(stood_still=True)
@@ -366,7 +366,7 @@ async def test_a_call_after_a_silence_of_its_client_is_made(bench: Bench) -> Non
     """Who lets go of a stick and clicks is silent for the time to live of a lease, and no more."""
     bench.node.create_service(AddTwoInts, "/add", Deeds().add)
     async with bench.session() as session:
-        session.connection = Connection()
+        session.arrivals.connection = Connection()
         session.doubt()
         assert (await session.call("/add", ADD)).sum == 3
 

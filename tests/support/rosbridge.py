@@ -15,8 +15,8 @@ from aionode.gateway.policy.identity import Identity
 from aionode.gateway.policy.policy import Policy
 from aionode.gateway.rosbridge.client import serve_frames
 from aionode.gateway.session.audit import Audit
+from aionode.gateway.session.delivery.outbox import Frame, LongFrame
 from aionode.gateway.session.encoding.frames import Fragmented
-from aionode.gateway.session.outbox import Frame, LongFrame
 from aionode.gateway.session.robot import Robot
 from aionode.gateway.session.session import Session
 from aionode.node import Node

@@ -11,10 +11,10 @@ from aionode.errors import AionodeError, MessageError
 from aionode.gateway.foxglove import frames
 
 if TYPE_CHECKING:
+    from aionode.gateway.session.delivery.outbox import Frame
+    from aionode.gateway.session.delivery.subscribed import Subscribed
     from aionode.gateway.session.feed import Received
-    from aionode.gateway.session.outbox import Frame
     from aionode.gateway.session.session import Session
-    from aionode.gateway.session.topics import Subscribed
 
 __all__ = ["Channels"]
 
@@ -59,8 +59,8 @@ class Channels:
 
     async def announce(self) -> None:
         """Tell the client of topics and services that are new or gone."""
-        topics = everyone(self._session.topics())
-        services = everyone(self._session.services())
+        topics = everyone(self._session.graph.topics())
+        services = everyone(self._session.graph.services())
         self._withdraw(self._topics, topics, "unadvertise", "channelIds")
         self._withdraw(self._services, services, "unadvertiseServices", "serviceIds")
         room = asyncio.Semaphore(MOST_QUESTIONS)
@@ -101,7 +101,7 @@ class Channels:
         if named.type_name in self._unknown:
             return
         self._unknown.add(named.type_name)
-        self._session.note_failure(error, f"{named.name} is left out")
+        self._session.rights.note_failure(error, f"{named.name} is left out")
         text = f"{named.name} is left out: {str(error) or 'no node describes its type'}"
         status = {"level": WARNING, "message": text, "id": named.type_name}
         self._session.outbox.send(frames.op_frame("status", status))

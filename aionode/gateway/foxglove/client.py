@@ -22,8 +22,8 @@ from aionode.graph import EndpointKind
 
 if TYPE_CHECKING:
     from aionode.bag import Player
+    from aionode.gateway.session.delivery.subscribed import Subscribed
     from aionode.gateway.session.session import Session
-    from aionode.gateway.session.topics import Subscribed
 
 __all__ = ["serve_frames"]
 
@@ -104,7 +104,7 @@ class Client:
             "name": "aionode",
             "capabilities": [*CAPABILITIES, *self.playback.capabilities],
             "supportedEncodings": ENCODINGS,
-            "metadata": {"ROS_DISTRO": self._session._robot.node.context.ros_distro},
+            "metadata": {"ROS_DISTRO": self._session.robot.node.context.ros_distro},
             "sessionId": str(uuid4()),
             **self.playback.range,
         }
@@ -112,13 +112,13 @@ class Client:
 
     async def watch(self) -> None:
         """Announce topics and services again whenever the graph or the policy has changed."""
-        robot = self._session._robot
+        robot = self._session.robot
         with suppress(EntityDestroyedError):  # the context has closed
             while True:
                 self._news.clear()
                 changed = robot.node.graph.changed()
                 changed.add_done_callback(lambda _: self._news.set())
-                await self._session.turn()
+                await self._session.graph.turn()
                 await self._channels.announce()
                 if self._graph is not None:
                     self._graph.tell()
@@ -137,11 +137,11 @@ class Client:
     async def take(self, frame: bytes | str) -> None:
         """Handle a frame; the client is told of failures by a status."""
         try:
-            most = self._session._limits.frame_parts
+            most = self._session.rights.limits.frame_parts
             asked = frames.op_of(frame, most) if isinstance(frame, str) else frames.binary_of(frame)
         except MessageError as error:
             self.malformed += 1
-            self._session.refused += 1
+            self._session.rights.refused += 1
             self._refuse(error)
             return
         try:
@@ -159,10 +159,10 @@ class Client:
                 for channel_id in asked.channel_ids:
                     await self._put(("publish", channel_id), self._unadvertise, channel_id)
             case frames.ClientMessage():
-                arrived_ns = self._session.arrival_ns()  # it may wait, and be too old then
+                arrived_ns = self._session.arrivals.arrival_ns()  # it may wait, and be too old then
                 await self._put(("publish", asked.channel_id), self._publish, asked, arrived_ns)
             case frames.ServiceCall():
-                self._start(self._call, asked, self._session.arrival_ns())
+                self._start(self._call, asked, self._session.arrivals.arrival_ns())
             case frames.PlaybackRequest():
                 await self._put("playback", self.playback.control, self._start, asked)
             case frames.Subscribe() | frames.Unsubscribe():
@@ -186,7 +186,7 @@ class Client:
             self._refuse(error)
 
     def _refuse(self, error: Exception) -> None:
-        self._session.note_failure(error)
+        self._session.rights.note_failure(error)
         status = {"level": ERROR, "message": str(error) or "no answer in time"}
         self._session.outbox.send(frames.op_frame("status", status))
 
@@ -207,7 +207,7 @@ class Client:
             case frames.UnsubscribeParameterUpdates():
                 self._parameters.unfollow(op.parameter_names)
             case frames.SubscribeConnectionGraph():
-                await self._session.turn()
+                await self._session.graph.turn()
                 self._graph = Connections(self._session)
                 self._graph.tell()
             case frames.UnsubscribeConnectionGraph():
@@ -241,7 +241,7 @@ class Client:
         if channel is None:
             problem = f"there is no channel {given.channel_id} of this client; advertise it first"
             raise MessageError("message", problem)
-        values = values_of(channel.encoding, given.data, self._session._limits.frame_parts)
+        values = values_of(channel.encoding, given.data, self._session.rights.limits.frame_parts)
         await self._session.publish(
             channel.topic, values, channel.schema_name, arrived_ns=arrived_ns
         )
@@ -251,7 +251,7 @@ class Client:
             if call.encoding not in ENCODINGS:
                 raise MessageError("call", f"encoding {call.encoding!r} is none of {ENCODINGS}")
             name, type_name = self._channels.service(call.service_id)
-            values = values_of(call.encoding, call.data, self._session._limits.frame_parts)
+            values = values_of(call.encoding, call.data, self._session.rights.limits.frame_parts)
             # The protocol has no time limit.
             response = await self._session.call(
                 name,
@@ -261,7 +261,7 @@ class Client:
                 arrived_ns=arrived_ns,
             )
         except (AionodeError, TimeoutError) as error:
-            self._session.note_failure(error, "call")
+            self._session.rights.note_failure(error, "call")
             failure = {
                 "serviceId": call.service_id,
                 "callId": call.call_id,
@@ -332,7 +332,7 @@ class Connections:
     def _connections(self) -> list[dict[str, list[str]]]:
         """Return the nodes by what they publish, subscribe and serve."""
         kinds = (EndpointKind.PUBLISHER, EndpointKind.SUBSCRIPTION, EndpointKind.SERVER)
-        return [self._session.connections(kind) for kind in kinds]
+        return [self._session.graph.connections(kind) for kind in kinds]
 
 
 def listed(nodes: dict[str, list[str]], ids: str) -> list[dict[str, Any]]:

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Final, NamedTuple, TypeAlias
 import msgspec
 
 from aionode.errors import MessageError
+from aionode.gateway.session.delivery.outbox import LongFrame, binary_frame
 from aionode.gateway.session.encoding.client_json import check_parts
-from aionode.gateway.session.outbox import LongFrame, binary_frame
 from aionode.parameter import Parameter, ParameterType
 
 if TYPE_CHECKING:

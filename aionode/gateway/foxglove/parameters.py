@@ -13,9 +13,9 @@ from aionode.gateway.session.encoding.parameters import parameter_of
 from aionode.parameter import Parameter, ParameterType
 
 if TYPE_CHECKING:
+    from aionode.gateway.session.delivery.subscribed import Subscribed
     from aionode.gateway.session.feed import Received
     from aionode.gateway.session.session import Session
-    from aionode.gateway.session.topics import Subscribed
 
 __all__ = ["Parameters"]
 
@@ -52,12 +52,12 @@ class Parameters:
                 policy, does not tell some of them. The others are sent.
         """
         failures = Failures()
-        wanted = by_node(names, failures) if names else await self._session.all_parameter_names()
+        wanted = by_node(names, failures) if names else await self._session.parameters.all_names()
         shown: list[dict[str, Any]] = []
         for node, own in wanted.items():
             seen = self._seen(node, own, failures)
             with failures.of(node, TimeoutError):
-                found = await self._session.get_parameters(node, seen) if seen else {}
+                found = await self._session.parameters.get(node, seen) if seen else {}
                 shown += [
                     frames.shown_parameter(f"{node}.{name}", parameter)
                     for name, parameter in found.items()
@@ -70,7 +70,7 @@ class Parameters:
         seen = []
         for name in names:
             with failures.of(f"{node}.{name}"):
-                self._session._check_seen(node, [name])
+                self._session.rights.check_seen(node, [name])
                 seen.append(name)
         return seen
 
@@ -83,7 +83,7 @@ class Parameters:
             MessageError: a name is not that of a node, a dot, and a parameter; or some parameters
                 cannot be set. The others are.
         """
-        arrived_ns = self._session.arrival_ns()
+        arrived_ns = self._session.arrivals.arrival_ns()
         given = {parameter.name: parameter for parameter in parameters}
         failures = Failures()
         told: list[str] = []
@@ -91,13 +91,13 @@ class Parameters:
             allowed = []
             for name in own:  # before anything is read
                 with failures.of(f"{node}.{name}"):
-                    self._session.decide("parameter", f"{node}:{name}", "")
+                    self._session.rights.decide("parameter", f"{node}:{name}", "")
                     allowed.append(name)
             allowed = self._seen(node, allowed, failures)
             if not allowed:
                 continue
             with failures.of(node, TimeoutError):  # then the node is not asked again
-                found = await self._session.get_parameters(node, allowed)
+                found = await self._session.parameters.get(node, allowed)
                 told += [f"{node}.{name}" for name in allowed]
                 for name in allowed:
                     with failures.of(f"{node}.{name}"):
@@ -121,7 +121,7 @@ class Parameters:
     ) -> None:
         type_ = ParameterType.NOT_SET if now is None else now.type_
         parameter = parameter_of(name, given.value, type_, given.type)
-        result = await self._session.set_parameter(node, parameter, arrived_ns=arrived_ns)
+        result = await self._session.parameters.set(node, parameter, arrived_ns=arrived_ns)
         if not result.successful:
             raise MessageError(name, result.reason)
 

@@ -37,7 +37,7 @@ class Playback:
         self._session = session
         self._player = player
         self._told: tuple[int, float] | None = None
-        self._clock = session._robot.node.get_clock()
+        self._clock = session.robot.node.get_clock()
 
     @property
     def capabilities(self) -> list[str]:
@@ -72,7 +72,7 @@ class Playback:
             if state[0] == frames.PLAYING:
                 frame = frames.time_frame(self._player.time.nanoseconds)
                 self._session.outbox.put("time", frame, 1)
-            await self._session._robot.clock.sleep(PERIOD_SEC)
+            await self._session.robot.clock.sleep(PERIOD_SEC)
 
     async def _watch_clock(self) -> None:
         """Tell the client of simulated time, if the node of the gateway uses it."""
@@ -82,7 +82,7 @@ class Playback:
                     "/clock", "rosgraph_msgs/msg/Clock", frame=clock_frame, key="time", depth=1
                 )
             except RefusedError as error:
-                self._session.note_failure(error, "simulated time")
+                self._session.rights.note_failure(error, "simulated time")
 
     async def control(self, begin: Begin, request: frames.PlaybackRequest) -> None:
         """Control the player as the client wants, and tell the client its state then.

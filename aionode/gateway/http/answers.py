@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from starlette.types import Receive, Scope, Send
 
-    from aionode.gateway.session.outbox import Frame
+    from aionode.gateway.session.delivery.outbox import Frame
     from aionode.gateway.session.session import Session
 
 __all__ = [
@@ -190,7 +190,7 @@ class Asked:
         """Treat the caller as gone when its host has been silent for as long as the policy says."""
         connection: Any = self.request.scope["state"].get("aionode_connection")
         if connection is not None:
-            connection.lose_after(self.session._limits.client_lost_sec)
+            connection.lose_after(self.session.rights.limits.client_lost_sec)
 
     def json(self) -> Any:
         """Return the JSON of the body.
@@ -204,7 +204,7 @@ class Asked:
             text = f"the body is {given or 'of no type'}; send application/json, as curl --json"
             raise HTTPException(415, text)
         try:
-            return decoded(self.body, self.session._limits.frame_parts, "body")
+            return decoded(self.body, self.session.rights.limits.frame_parts, "body")
         except errors.MessageError as error:
             raise HTTPException(400, str(error)) from None
 

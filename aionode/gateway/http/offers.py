@@ -28,7 +28,7 @@ VERBS: Final[dict[Kind, tuple[Verb, ...]]] = {
 
 def may(session: Session, verb: Verb, name: str, type_name: str) -> bool:
     """Return whether the policy lets the caller do something."""
-    return session.decision(verb, name, type_name).allowed
+    return session.rights.decision(verb, name, type_name).allowed
 
 
 async def offers(session: Session, *, user_only: bool = True) -> list[Offer]:
@@ -38,7 +38,7 @@ async def offers(session: Session, *, user_only: bool = True) -> list[Offer]:
         session: The session of the caller.
         user_only: Whether infrastructure is left out.
     """
-    found = session.offered(user_only=user_only)
+    found = session.graph.offered(user_only=user_only)
     graph: dict[Kind, dict[str, list[str]]] = {
         "topic": found.topics,
         "service": found.services,
@@ -54,7 +54,7 @@ async def offers(session: Session, *, user_only: bool = True) -> list[Offer]:
     offered = [
         Offer(kind, name, verbs, classes.get(type_name)) for kind, name, type_name, verbs in used
     ]
-    services = session.services()
+    services = session.graph.services()
     for node in found.nodes:
         if f"{node}/list_parameters" in services:
             sets = may(session, "parameter", node, "")

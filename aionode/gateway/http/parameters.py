@@ -21,7 +21,7 @@ def node_and_parameter(asked: Asked) -> tuple[str, str]:
         HTTPException: it does not begin with the name of a node that the caller sees (404).
     """
     path = asked.name
-    nodes = [node for node in asked.session.nodes() if f"{path}/".startswith(f"{node}/")]
+    nodes = [node for node in asked.session.graph.nodes() if f"{path}/".startswith(f"{node}/")]
     if not nodes:
         raise HTTPException(404, f"{path[:200]}: no node of that name")
     node = max(nodes, key=len)
@@ -31,8 +31,8 @@ def node_and_parameter(asked: Asked) -> tuple[str, str]:
 async def show_parameters(asked: Asked) -> Response:
     """Return the parameters of a node, or the value of one."""
     node, parameter = node_and_parameter(asked)
-    names = [parameter] if parameter else await asked.session.parameter_names(node)
-    found = await asked.session.get_parameters(node, names)
+    names = [parameter] if parameter else await asked.session.parameters.names(node)
+    found = await asked.session.parameters.get(node, names)
     values = {each.name: each.value for each in found.values()}
     if parameter and parameter not in values:
         raise HTTPException(404, f"{node}: parameter {parameter[:200]!r} is not declared")
@@ -44,7 +44,7 @@ async def set_parameter(asked: Asked) -> Response:
     node, parameter = node_and_parameter(asked)
     if not parameter:
         raise HTTPException(404, f"{node}: name a parameter, as in /parameters{node}/rate")
-    result = await asked.session.set_json_parameter(node, parameter, asked.json())
+    result = await asked.session.parameters.set_json(node, parameter, asked.json())
     if not result.successful:
         raise HTTPException(409, f"{node}: {parameter}: {result.reason}")
     return Response(status_code=204)

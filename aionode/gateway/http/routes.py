@@ -51,8 +51,8 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
     from aionode.gateway._clients import Clients
+    from aionode.gateway.session.delivery.subscribed import Subscribed
     from aionode.gateway.session.session import Session
-    from aionode.gateway.session.topics import Subscribed
 
 __all__ = ["answer_http_error", "answer_other_websocket", "routes"]
 
@@ -118,11 +118,11 @@ class Endpoint:
                 has_session = True
                 session.owner = caller_of(request, session)
                 self._gateway.robot.standstills.look()
-                session.note_arrival(scope["state"]["aionode_connection"].silent_sec())
+                session.arrivals.note_arrival(scope["state"]["aionode_connection"].silent_sec())
                 session.on_policy = partial(end_with, session)
                 async with until_ended(session):
                     if request.method != "POST":  # about the graph, or the nodes in it
-                        await session.turn()
+                        await session.graph.turn()
                     answer = await self._handler(Asked(session, request, body))
                 await answer(scope, receive, send)
         except (AionodeError, HTTPException, TimeoutError) as error:
@@ -130,7 +130,7 @@ class Endpoint:
                 return  # there is nobody to answer
             if has_session:
                 if not isinstance(error, HTTPException) or error.status_code not in EXPECTED:
-                    session.note_failure(error, f"{scope['method']} {scope['path']}")
+                    session.rights.note_failure(error, f"{scope['method']} {scope['path']}")
             elif isinstance(error, RefusedError):
                 self._gateway.note_refusal(scope["aionode.credentials"], error)
             await error_response(error)(scope, receive, send)
@@ -231,7 +231,7 @@ class HttpApi:
         nodes = [node for node in self._gateway.node.context._nodes if isinstance(node, Node)]
 
         def sees(name: str, type_name: str) -> bool:
-            return asked.session.sees(name, type_name)
+            return asked.session.graph.sees(name, type_name)
 
         families = [*gateway_metrics(self._gateway.stats, sees), *node_metrics(nodes, sees)]
         return Response(prometheus(families), headers=HEADERS, media_type=MEDIA_TYPE)
@@ -252,27 +252,27 @@ def named(types: Mapping[str, list[str]]) -> list[dict[str, Any]]:
 
 async def list_topics(asked: Asked) -> Response:
     """Return the topics that the caller sees."""
-    return json_response(named(asked.session.topics()))
+    return json_response(named(asked.session.graph.topics()))
 
 
 async def list_services(asked: Asked) -> Response:
     """Return the services that the caller sees."""
-    return json_response(named(asked.session.services()))
+    return json_response(named(asked.session.graph.services()))
 
 
 async def list_actions(asked: Asked) -> Response:
     """Return the actions that the caller sees."""
-    return json_response(named(asked.session.actions()))
+    return json_response(named(asked.session.graph.actions()))
 
 
 async def list_nodes(asked: Asked) -> Response:
     """Return the full names of the nodes that the caller sees."""
-    return json_response(asked.session.nodes())
+    return json_response(asked.session.graph.nodes())
 
 
 async def show_node(asked: Asked) -> Response:
     """Return the publishers, subscriptions, services and clients of a node."""
-    return json_response(asked.session.node_details(asked.name))
+    return json_response(asked.session.graph.node_details(asked.name))
 
 
 # Messages, services and actions
@@ -330,7 +330,7 @@ async def goal_events(
                 yield event("feedback", json_of(feedback))
             result = await goal.result()
         except AionodeError as error:
-            session.note_failure(error, f"goal {action}")
+            session.rights.note_failure(error, f"goal {action}")
             _, code, text = error_of(error)
             yield event("failure", msgspec.json.encode({"code": code, "error": text}))
         else:

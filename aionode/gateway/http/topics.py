@@ -25,9 +25,9 @@ from aionode.gateway.session.encoding.values import json_of
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator
 
+    from aionode.gateway.session.delivery.outbox import Frame, Outbox
     from aionode.gateway.session.encoding.image import Picture
     from aionode.gateway.session.feed import Received
-    from aionode.gateway.session.outbox import Frame, Outbox
 
 __all__ = ["answer_topic"]
 
@@ -54,7 +54,7 @@ async def answer_topic(asked: Asked) -> Response:
     """Return the next message of a topic, or a stream of its messages."""
     topic, media_type = topic_and_form(asked)
     type_name = asked.type_name
-    if type_name is None and not asked.session.types_of(topic, "topic"):
+    if type_name is None and not asked.session.graph.types_of(topic, "topic"):
         raise HTTPException(404, f"{topic[:200]}: no such topic; ?type= waits for one of that type")
     if media_type == EVENTS:
         return await events(asked, topic)
@@ -85,7 +85,7 @@ def topic_and_form(asked: Asked) -> tuple[str, str]:
         if media_type in accept:
             return path, media_type
     wanted = picture_type(accept)
-    types = {asked.type_name, *asked.session.types_of(path, "topic")}
+    types = {asked.type_name, *asked.session.graph.types_of(path, "topic")}
     return path, wanted or (ANY_PICTURE if types & IMAGE_TYPES else "application/json")
 
 
@@ -237,6 +237,6 @@ async def pictures(asked: Asked, newest: Newest, form: Form) -> AsyncGenerator[F
         try:
             picture = await picture_or_refusal(await newest.get(), form)
         except HTTPException as error:
-            asked.session.note_failure(error, f"GET {asked.request.url.path}")
+            asked.session.rights.note_failure(error, f"GET {asked.request.url.path}")
             return
         yield part_of(picture)

@@ -70,8 +70,8 @@ class Client:
     def __init__(self, session: Session, lanes: Lanes) -> None:
         self._link = link = Link(session)
         self._lanes = lanes
-        self._fragments = FragmentStore(session._limits.frame_bytes)
-        self._most_parts = session._limits.frame_parts
+        self._fragments = FragmentStore(session.rights.limits.frame_bytes)
+        self._most_parts = session.rights.limits.frame_parts
         self._offers = offers = Offers(link)
         topics, calls = Topics(link), Calls(link, lanes)
         self.malformed = 0
@@ -105,7 +105,7 @@ class Client:
             op = self._op_of(frame)
         except MessageError as error:
             self.malformed += 1
-            self._link.session.refused += 1
+            self._link.session.rights.refused += 1
             self._link.fail(error, head_of(frame))
         else:
             if op is not None:
@@ -140,7 +140,7 @@ class Client:
         elif name in self._in_order:
             await self._attempt(op, self._put)
         else:
-            self._link.session.refused += 1
+            self._link.session.rights.refused += 1
             known = ", ".join(sorted(["fragment", *self._at_once, *self._in_order]))
             problem = f"{name[:60]!r} is unknown; there are {known}"
             self._link.fail(MessageError("op", problem), op, " ")
@@ -148,7 +148,7 @@ class Client:
     async def _put(self, op: Op) -> None:
         kind, field, handler = self._in_order[op["op"]]
         if op["op"] in AGING:
-            handler = partial(handler, arrived_ns=self._link.session.arrival_ns())
+            handler = partial(handler, arrived_ns=self._link.session.arrivals.arrival_ns())
         name = full_name(text(op, field).partition("#")[0])  # what follows is an id
         await self._lanes.put((kind, name), partial(self._attempt, op, handler))
 
@@ -158,7 +158,7 @@ class Client:
             await handler(op)
         except (AionodeError, TimeoutError) as error:
             if isinstance(error, MessageError):  # a refusal by the policy is counted there
-                self._link.session.refused += 1
+                self._link.session.rights.refused += 1
             self._link.fail(error, op)
 
     async def _set_level(self, op: Op) -> None:
@@ -167,5 +167,5 @@ class Client:
     async def _auth(self, op: Op) -> None:
         """Ignore the authentication of ROS 1, whose server is gone."""
         problem = "has no effect; connect with a token instead"
-        self._link.session.note(Refusal.IGNORED, "auth", problem)
+        self._link.session.rights.note(Refusal.IGNORED, "auth", problem)
         self._link.status("warning", f"auth: {problem}", op)

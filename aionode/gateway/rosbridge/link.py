@@ -71,12 +71,12 @@ class Link:
         text = str(error) or "no answer in time"
         if op is None or name not in ANSWERS:
             what = what or name
-            self.session.note_failure(error, what)
+            self.session.rights.note_failure(error, what)
             self.status("error", f"{what}: {text}" if what else text, op)
             return
         answer, field = ANSWERS[name]
         asked = op[field].partition("#")[0] if isinstance(op.get(field), str) else None
-        self.session.note_failure(error, f"{name} {asked or ''}".strip())
+        self.session.rights.note_failure(error, f"{name} {asked or ''}".strip())
         told = {"op": answer, field: asked, "id": raw_id(op), "values": text, "result": False}
         self.send(told | ({"status": 0} if name == "send_action_goal" else {}))
 

@@ -110,7 +110,7 @@ class Offers:
     async def advertise_service(self, op: Op) -> None:
         """Serve a service by asking the client; an earlier one of the same name ends."""
         service, type_name = text(op, "service"), type_text(text(op, "type"), "srv")
-        self._session.decide("advertise", self._session.service_name(service), "")
+        self._session.rights.decide("advertise", self._session.service_name(service), "")
         await withdraw(self._services, full_name(service))
         offer = Offer(service, await self._session.service_class(type_name))
         answer = partial(self._answer, offer)
@@ -154,7 +154,7 @@ class Offers:
     async def advertise_action(self, op: Op) -> None:
         """Serve an action by asking the client; an earlier one of the same name ends."""
         action, type_name = text(op, "action"), type_text(text(op, "type"), "action")
-        self._session.decide("advertise", self._session.topic_name(action), "")
+        self._session.rights.decide("advertise", self._session.topic_name(action), "")
         await withdraw(self._actions, full_name(action))
         offer = Offer(action, await self._session.action_class(type_name))
         execute = partial(self._execute, offer, type_name)

@@ -23,7 +23,7 @@ from aionode.interfaces import interface_names
 from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
-    from aionode.gateway.session.base import Kind
+    from aionode.gateway.session.graph import Kind
     from aionode.gateway.session.session import Session
 
 __all__ = ["SERVICES", "answer"]
@@ -66,7 +66,7 @@ async def answer(session: Session, name: str, args: dict[str, Any] | list[Any]) 
         value = values.get(field, "")
         if not isinstance(value, str):
             raise MessageError(f"/rosapi/{name}.{field}", f"{shown(value)}, needs text")
-    await session.turn()
+    await session.graph.turn()
     return await make(session, {field: values.get(field, "") for field in fields})
 
 
@@ -86,7 +86,7 @@ def short(type_name: str) -> str:
 
 @service("topics")
 async def topics(session: Session, _: Args) -> dict[str, Any]:
-    types = session.topics()
+    types = session.graph.topics()
     names = visible(types)
     return {"topics": names, "types": [types[name][0] for name in names]}
 
@@ -111,7 +111,7 @@ async def text_of(session: Session, name: str) -> str:
 
 @service("topics_for_type", "type")
 async def topics_for_type(session: Session, args: Args) -> dict[str, Any]:
-    return {"topics": of_type(session.topics(), args["type"])}
+    return {"topics": of_type(session.graph.topics(), args["type"])}
 
 
 def of_type(names: dict[str, list[str]], wanted: str) -> list[str]:
@@ -126,17 +126,17 @@ async def topic_type(session: Session, args: Args) -> dict[str, Any]:
 
 def type_of(session: Session, name: str, kind: Kind) -> str:
     """Return the type of a name, or an empty text if it is unknown."""
-    return next(iter(session.types_of(full_name(name), kind)), "")
+    return next(iter(session.graph.types_of(full_name(name), kind)), "")
 
 
 @service("publishers", "topic")
 async def publishers(session: Session, args: Args) -> dict[str, Any]:
-    return {"publishers": session.users(EndpointKind.PUBLISHER, full_name(args["topic"]))}
+    return {"publishers": session.graph.users(EndpointKind.PUBLISHER, full_name(args["topic"]))}
 
 
 @service("subscribers", "topic")
 async def subscribers(session: Session, args: Args) -> dict[str, Any]:
-    return {"subscribers": session.users(EndpointKind.SUBSCRIPTION, full_name(args["topic"]))}
+    return {"subscribers": session.graph.users(EndpointKind.SUBSCRIPTION, full_name(args["topic"]))}
 
 
 # Services, actions, nodes
@@ -144,13 +144,13 @@ async def subscribers(session: Session, args: Args) -> dict[str, Any]:
 
 @service("services")
 async def services(session: Session, _: Args) -> dict[str, Any]:
-    return {"services": [*session.services(), *(f"/rosapi/{name}" for name in SERVICES)]}
+    return {"services": [*session.graph.services(), *(f"/rosapi/{name}" for name in SERVICES)]}
 
 
 @service("offered")
 async def offered(session: Session, _: Args) -> dict[str, Any]:
     """Answer for pages what there is without infrastructure; rosapi itself has no such service."""
-    found = session.offered()
+    found = session.graph.offered()
     return {
         "nodes": found.nodes,
         "topics": list(found.topics),
@@ -162,7 +162,7 @@ async def offered(session: Session, _: Args) -> dict[str, Any]:
 
 @service("services_for_type", "type")
 async def services_for_type(session: Session, args: Args) -> dict[str, Any]:
-    return {"services": of_type(session.services(), args["type"])}
+    return {"services": of_type(session.graph.services(), args["type"])}
 
 
 @service("service_type", "service")
@@ -186,23 +186,25 @@ def camel(name: str) -> str:
 
 @service("service_node", "service")
 async def service_node(session: Session, args: Args) -> dict[str, Any]:
-    return {"node": next(iter(session.users(EndpointKind.SERVER, full_name(args["service"]))), "")}
+    return {
+        "node": next(iter(session.graph.users(EndpointKind.SERVER, full_name(args["service"]))), "")
+    }
 
 
 @service("service_providers", "service")
 async def service_providers(session: Session, args: Args) -> dict[str, Any]:
     # The field has the name of a service, and what clients send is a type; both are understood.
-    names = {full_name(args["service"]), *of_type(session.services(), args["service"])}
-    providers = {node for name in names for node in session.users(EndpointKind.SERVER, name)}
+    names = {full_name(args["service"]), *of_type(session.graph.services(), args["service"])}
+    providers = {node for name in names for node in session.graph.users(EndpointKind.SERVER, name)}
     return {"providers": sorted(providers)}
 
 
 @service("action_servers")
 async def action_servers(session: Session, _: Args) -> dict[str, Any]:
-    graph = session._robot.node.graph
+    graph = session.robot.node.graph
     served = [
         name
-        for name in session.actions()
+        for name in session.graph.actions()
         if graph.count(EndpointKind.SERVER, f"{name}/_action/send_goal")
     ]
     return {"action_servers": served}
@@ -215,15 +217,15 @@ async def action_type(session: Session, args: Args) -> dict[str, Any]:
 
 @service("nodes")
 async def nodes(session: Session, _: Args) -> dict[str, Any]:
-    return {"nodes": session.nodes()}
+    return {"nodes": session.graph.nodes()}
 
 
 @service("node_details", "node")
 async def node_details(session: Session, args: Args) -> dict[str, Any]:
     name = full_name(args["node"])
-    if name not in session.nodes():
+    if name not in session.graph.nodes():
         return {"subscribing": [], "publishing": [], "services": []}
-    details = session.node_details(name)
+    details = session.graph.node_details(name)
     return {
         "subscribing": list(details.subscriptions),
         "publishing": list(details.publishers),
@@ -278,7 +280,7 @@ def parameter_name(name: str) -> tuple[str, str]:
 
 def failed(session: Session, error: Exception) -> dict[str, Any]:
     """Return the fields of an answer that say why a parameter was not read or set."""
-    session.note_failure(error, "rosapi")
+    session.rights.note_failure(error, "rosapi")
     return {"successful": False, "reason": str(error) or "the node has not answered in time"}
 
 
@@ -308,7 +310,7 @@ async def parameter_json(session: Session, name: str) -> str:
 async def parameter_value(session: Session, name: str) -> Any:
     """Return the value of a parameter; None if its node has none of this name."""
     node, parameter = parameter_name(name)
-    found = (await session.get_parameters(node, [parameter])).get(parameter)
+    found = (await session.parameters.get(node, [parameter])).get(parameter)
     return None if found is None else found.value
 
 
@@ -324,9 +326,9 @@ def plain(value: Any) -> Any:
 @service("set_param", "name", "value")
 async def set_param(session: Session, args: Args) -> dict[str, Any]:
     try:
-        value = decoded(args["value"], session._limits.frame_parts, "value")
+        value = decoded(args["value"], session.rights.limits.frame_parts, "value")
         node, parameter = parameter_name(args["name"])
-        result = await session.set_json_parameter(node, parameter, value)
+        result = await session.parameters.set_json(node, parameter, value)
     except (AionodeError, TimeoutError) as error:
         return failed(session, error)
     return {"successful": result.successful, "reason": result.reason}
@@ -337,7 +339,7 @@ async def has_param(session: Session, args: Args) -> dict[str, Any]:
     try:
         value = await parameter_value(session, args["name"])
     except (AionodeError, TimeoutError) as error:
-        session.note_failure(error, "rosapi")
+        session.rights.note_failure(error, "rosapi")
         return {"exists": False}
     return {"exists": value is not None}
 
@@ -346,7 +348,7 @@ async def has_param(session: Session, args: Args) -> dict[str, Any]:
 async def delete_param(session: Session, args: Args) -> dict[str, Any]:
     try:
         node, parameter = parameter_name(args["name"])
-        result = await session.set_parameter(node, Parameter(parameter))
+        result = await session.parameters.set(node, Parameter(parameter))
     except (AionodeError, TimeoutError) as error:
         return failed(session, error)
     return {"successful": result.successful, "reason": result.reason}
@@ -354,7 +356,7 @@ async def delete_param(session: Session, args: Args) -> dict[str, Any]:
 
 @service("get_param_names")
 async def get_param_names(session: Session, _: Args) -> dict[str, Any]:
-    names_of = await session.all_parameter_names()
+    names_of = await session.parameters.all_names()
     return {"names": sorted(f"{node}:{name}" for node, names in names_of.items() for name in names)}
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from aionode.clock import Duration
 from aionode.errors import AionodeError, MessageError
 from aionode.gateway.rosbridge.request import id_of, number, profile, text, values
+from aionode.gateway.session.delivery.outbox import LongFrame
 from aionode.gateway.session.encoding.client_json import type_text
 from aionode.gateway.session.encoding.frames import (
     Fragmented,
@@ -22,16 +23,15 @@ from aionode.gateway.session.encoding.frames import (
 )
 from aionode.gateway.session.encoding.large_json import pieces_of
 from aionode.gateway.session.encoding.values import json_of
-from aionode.gateway.session.outbox import LongFrame
 from aionode.gateway.session.refusals import Refusal
 from aionode.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
 if TYPE_CHECKING:
     from aionode.gateway.rosbridge.link import Link
+    from aionode.gateway.session.delivery.outbox import Frame
+    from aionode.gateway.session.delivery.preparing import Prepare
+    from aionode.gateway.session.delivery.subscribed import Subscribed
     from aionode.gateway.session.feed import Received
-    from aionode.gateway.session.outbox import Frame
-    from aionode.gateway.session.preparing import Prepare
-    from aionode.gateway.session.topics import Subscribed
 
 __all__ = ["Topics"]
 
@@ -170,8 +170,8 @@ class Topics:
             RefusedError: the policy does not allow it.
             MessageError: the topic has another type.
         """
-        self._session.decide("publish", topic, "")
-        types = self._session.types_of(topic, "topic")
+        self._session.rights.decide("publish", topic, "")
+        types = self._session.graph.types_of(topic, "topic")
         if types and type_name is not None and type_name not in types:
             problem = f"{topic} has the type {', '.join(types)}, not {type_name}"
             raise MessageError(f"{op['op']}.type", problem)
@@ -241,7 +241,7 @@ class Topics:
             try:
                 encoded = received.once(kind, make)
             except AionodeError as error:  # a peer sent bytes that are no message of the type
-                self._session.note(Refusal.UNREADABLE, f"subscribe {topic}", str(error))
+                self._session.rights.note(Refusal.UNREADABLE, f"subscribe {topic}", str(error))
                 self._link.status("error", f"subscribe: {error}")
                 return None
             return self._fragments(encoded, wish) if wish.fragment_size else encoded

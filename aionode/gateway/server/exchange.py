@@ -15,7 +15,7 @@ from aionode.gateway.session.refusals import Refusal
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
-    from aionode.gateway.session.outbox import Outbox
+    from aionode.gateway.session.delivery.outbox import Outbox
     from aionode.gateway.session.session import Session
 
 __all__ = ["TRY_AGAIN_LATER", "close", "exchange"]
@@ -69,7 +69,9 @@ async def exchange(
         await serve(session, frames())
         writing.cancel()
         if not has_left:
-            session.note(Refusal.DISCONNECTED, "connection", "too many frames that are malformed")
+            session.rights.note(
+                Refusal.DISCONNECTED, "connection", "too many frames that are malformed"
+            )
             await websocket.close(POLICY_VIOLATION, "too many frames that are malformed")
 
 

@@ -8,10 +8,10 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Final
 
-from aionode.gateway.session.outbox import LongFrame
+from aionode.gateway.session.delivery.outbox import LongFrame
 
 if TYPE_CHECKING:
-    from aionode.gateway.session.outbox import Frame
+    from aionode.gateway.session.delivery.outbox import Frame
 
 __all__ = ["Framing", "Outgoing"]
 

@@ -34,7 +34,7 @@ from aionode.gateway.session.robot import Bucket
 
 if TYPE_CHECKING:
     from aionode.gateway.server.connection import Shared
-    from aionode.gateway.session.outbox import Frame as Outgone
+    from aionode.gateway.session.delivery.outbox import Frame as Outgone
 
 __all__ = ["WebSocketConnection"]
 

@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from typing import TYPE_CHECKING, Any
 
-from aionode.gateway.session.base import as_message
+from aionode.gateway.session.messages import as_message
 
 if TYPE_CHECKING:
     from aionode.node import Node

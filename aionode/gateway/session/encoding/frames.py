@@ -13,9 +13,9 @@ import cbor2
 import msgspec
 
 from aionode._process.concurrency import run_in_thread
+from aionode.gateway.session.delivery.outbox import LongFrame, binary_frame
 from aionode.gateway.session.encoding.large_json import base64_in_turns
 from aionode.gateway.session.encoding.values import cbor_values, json_of
-from aionode.gateway.session.outbox import LongFrame, binary_frame
 from aionode.message import Message
 
 __all__ = [

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from aionode.gateway.session.preparing import MOST_BYTES
+from aionode.gateway.session.delivery.preparing import MOST_BYTES
 
 if TYPE_CHECKING:
     from aionode.clock import Alarm, TimeBase
