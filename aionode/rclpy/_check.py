@@ -211,10 +211,9 @@ def find(wanted: Import, file: Path) -> Finding:
     packages = around(file)
     root = packages.module_root(package)
     place = packages.sources().get(package)
-    if root is not None:
-        if files := files_on(root, module, name):
-            return Finding(module, f"in {root}", files=files)
-    elif place is not None and inside in KINDS:
+    if root is not None and (files := files_on(root, module, name)):
+        return Finding(module, f"in {root}", files=files)
+    if place is not None and inside in KINDS:
         interface = name.partition("_")[0]
         if not name or (place / inside / f"{interface}.{inside}").is_file():
             return Finding(module, f"in {place}")

@@ -105,6 +105,24 @@ def test_imports_for_type_checkers_are_left_out(program: Path, condition: str) -
     assert findings(program, source) == ({}, True)
 
 
+def test_messages_beside_modules_of_the_same_package_are_there(tmp_path: Path) -> None:
+    """A package that generates messages may have modules in Python under its name as well."""
+    package = tmp_path / "src" / "own_robot"
+    for folder in ("own_robot", "msg", "scripts"):
+        (package / folder).mkdir(parents=True)
+    (package / "package.xml").write_text("<name>own_robot</name>")
+    (package / "own_robot" / "__init__.py").write_text("")
+    (package / "msg" / "Words.msg").write_text("int8 value\n")
+
+    found, complete = findings(
+        package / "scripts" / "program.py",
+        "import own_robot\nfrom own_robot.msg import Words\n",
+    )
+
+    assert list(found) == ["own_robot", "own_robot.msg"]
+    assert complete
+
+
 def test_a_folder_stands_for_its_programs(tmp_path: Path) -> None:
     """Those of a package find one another; what a build has copied is left out."""
     package = tmp_path / "src" / "my_robot" / "my_robot"
