@@ -1,13 +1,13 @@
 """The command line: ``aionode topic list``, with the words and the output of ``ros2``.
 
-A noun's module is imported only when that noun is used, so help and completion answer quickly.
+Each noun's module is imported only when it is used, so help and completion stay fast.
 
 ================ ==================================================================
 part             contents
 ================ ==================================================================
-``_main``        the main program: the nouns, and errors in one line
-``_nouns``       for each noun, its commands: each with its verb, a coroutine
-``_support``     what nouns share: declaring commands, lookups, output, sessions
+``_main``        the main program: the list of nouns, and errors as one line
+``_nouns``       one module per noun, with its commands and their verbs (coroutines)
+``_support``     shared by the nouns: declaring commands, lookups, output, sessions
 ================ ==================================================================
 """
 
@@ -25,26 +25,27 @@ __all__ = ["main"]
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
-    Without `argv` the process is the command, and ends with it: at once, or by its deadline while
-    Zenoh still waits for a peer. With `argv` the process belongs to its program: nothing ends it,
-    and closing takes as long as Zenoh does.
+    Without `argv`, the process is the command and ends with it: immediately, or at its deadline if
+    Zenoh is still waiting for a peer. With `argv`, the process belongs to the caller's program:
+    nothing ends it, and closing takes as long as Zenoh needs.
 
     Args:
-        argv: The arguments without the program name; default: those of the process.
+        argv: The arguments without the program name; defaults to those of the process.
     """
-    is_run = sys.argv[1:2] == ["run"]  # whose program gets arguments of its own
+    is_run = sys.argv[1:2] == ["run"]  # the program that is run gets arguments of its own
     try:
         # Imported here so that Ctrl-C during the import leaves no traceback either.
         from aionode.cli import _main
 
         status = _main.main(argv)
-        # Only as the process's main program; after `run`, remaining threads are the user's.
-        # Otherwise Python would wait for threads and run exit handlers, after the answer.
+        # Only if this is the process's main program, and not after `run`, whose threads are the
+        # user's: otherwise Python would wait for threads and exit handlers after the answer is
+        # printed.
         if argv is None and not is_run:
             from aionode.cli._support.exit import leave
 
             leave(status)
     except KeyboardInterrupt:
-        return 130  # the status by which shells know Ctrl-C
+        return 130  # the exit status that shells use for Ctrl-C
     else:
         return status

@@ -1,6 +1,6 @@
 """The main program: its nouns, and how their errors are reported.
 
-Click is the only large import here; of the nouns, only the one that is used is imported.
+Click is the only large import here; a noun's module is imported only when it is used.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ NOUNS = {
     "doctor": "Find out why endpoints do not communicate.",
     "gateway": "Serve the robot to browsers, programs and apps.",
     "interface": "Show message, service and action types.",
-    "launch": "Start processes and nodes as a launch file says.",
+    "launch": "Start the processes and nodes of a launch file.",
     "lifecycle": "Show and change the states of managed nodes.",
     "new": "Write a package with a node, a message and a test.",
     "node": "List and inspect nodes.",
@@ -42,27 +42,27 @@ NOUNS = {
     "run": "Run node classes together in one process.",
     "service": "List, find and call services.",
     "system": "Show what runs in a system; stop and restart its members.",
-    "teleop": "Drive a robot by the keys of this terminal.",
+    "teleop": "Drive a robot from the keyboard.",
     "tf": "Show and publish transforms between frames.",
     "topic": "List, print, publish and measure topics.",
 }
-"""For each noun, one line of help; its module has its command, ``topic_command`` of ``topic``."""
+"""One line of help per noun; the noun's module holds its command, e.g. ``topic_command``."""
 
 UNWRITABLE = {
     getattr(errno, name, errno.EIO) for name in ("ENOSPC", "EDQUOT", "EFBIG", "EIO", "EBADF")
 }
-"""The errors of writing to a file or terminal that accepts no more data."""
+"""Errors of writing to a file or terminal that accepts no more data."""
 
 
 class LateGroup(click.Group):
-    """The group of the nouns, each of which is imported when it is used."""
+    """The top-level group, which imports a noun when it is used."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the nouns."""
         return list(NOUNS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Return the command of a noun, importing it."""
+        """Import a noun and return its command."""
         if cmd_name not in NOUNS:
             return None
         module = importlib.import_module(f"aionode.cli._nouns.{cmd_name}")
@@ -72,9 +72,9 @@ class LateGroup(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Return the named command; the error for an unknown one suggests a similar name.
+        """Return the named command; the error for an unknown name suggests a similar one.
 
-        Click itself searches only the commands that are already imported.
+        Click's own lookup would only search commands that are already imported.
         """
         try:
             return super().resolve_command(ctx, args)
@@ -86,7 +86,7 @@ class LateGroup(click.Group):
             raise
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run the command; it ends quietly when the reader of its output goes away."""
+        """Run the command; end quietly when the reader of its output goes away."""
         try:
             return super().invoke(ctx)
         except BrokenPipeError:
@@ -94,7 +94,7 @@ class LateGroup(click.Group):
             ctx.exit(0)
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """Write the list of commands without importing them."""
+        """List the commands without importing them."""
         with formatter.section("Commands"):
             formatter.write_dl(list(NOUNS.items()))
 
@@ -125,16 +125,16 @@ def root(ctx: click.Context, transport: str | None) -> None:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line and return the exit status.
 
-    Errors are one line on stderr. When the reader goes away, as ``head`` does, the command
-    ends quietly; a full disk is an error.
+    Errors are printed as one line on stderr. When the reader of the output goes away (``head``),
+    the command ends quietly; a full disk is an error.
 
     Args:
-        argv: The arguments without the program name; default: those of the process.
+        argv: The arguments without the program name; defaults to those of the process.
     """
     open_missing()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
-            # Characters that the stream cannot encode are printed as escapes, not raised.
+            # Print characters that the stream cannot encode as escapes instead of raising.
             stream.reconfigure(errors="backslashreplace")
     status = run(argv)
     try:
@@ -148,7 +148,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def run(argv: Sequence[str] | None) -> int:
-    """Run the command line, report an error, and return the exit status."""
+    """Run the command line, report any error, and return the exit status."""
     process = OWN_PROCESS if argv is None else None
     try:
         status = root.main(args=argv, prog_name="aionode", standalone_mode=False, obj=process)
@@ -169,7 +169,7 @@ def run(argv: Sequence[str] | None) -> int:
 
 
 def system_text(error: OSError | ModuleNotFoundError) -> str:
-    """Return what to say of an error that is none of aionode's own, and raise it if it is a bug."""
+    """Return the message for an error that is not aionode's own; re-raise it if it is a bug."""
     if isinstance(error, ModuleNotFoundError):
         if "pip install 'aionode[" not in str(error):
             raise error
@@ -191,7 +191,7 @@ def report(text: str, status: int) -> int:
 
 
 def usage_text(error: click.UsageError) -> str:
-    """Return in one line what is wrong with the arguments, and which help describes them."""
+    """Return one line that says what is wrong with the arguments and where to find help."""
     where = error.ctx.command_path if error.ctx is not None else "aionode"
     problem = limited(" ".join(error.format_message().split()))
     return f"{where}: {problem} See '{where} --help'."

@@ -73,7 +73,7 @@ def test_an_existing_folder_is_refused_before_the_search(tmp_path: Path) -> None
     result = aionode("shrink", write(tmp_path / "run"), "-o", tmp_path, "--", "true")
 
     assert result.exit_code == 2
-    assert "exists already" in result.output
+    assert "already exists" in result.output
 
 
 @pytest.fixture(autouse=True)

@@ -72,7 +72,7 @@ async def test_simulated_time_that_nobody_publishes_is_a_problem(
 
     assert status == 1
     assert (finding["severity"], finding["subject"]) == ("problem", "topic /clock")
-    assert "/follower: use_sim_time is true, and nobody publishes /clock" in finding["text"]
+    assert "/follower: use_sim_time is true, but nobody publishes /clock" in finding["text"]
     assert "aionode param set /follower use_sim_time false" in finding["remedy"]
 
 
@@ -187,7 +187,7 @@ async def test_text_has_a_summary_and_an_arrow_for_each_remedy(
 
     assert screen.text.startswith("Domain: ")
     assert "\nproblem: topic /chatter: " in screen.text
-    assert "\n  -> use one type on both sides" in screen.text
+    assert "\n  -> use the same type on both sides" in screen.text
     assert "\n1 problem(s), " in screen.text
 
 

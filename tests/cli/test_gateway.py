@@ -77,7 +77,7 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "publsh" in capsys.readouterr().err
     assert main(["gateway", "--policy", str(tmp_path / "none.toml")]) == 1
     assert main(["gateway", "--policy", str(wrong), "--allow-write"]) == 2
-    assert "say it there" in capsys.readouterr().err
+    assert "allow it in the policy" in capsys.readouterr().err
     assert main(["gateway", "--policy", str(wrong), "--limit", "clients=3"]) == 2
     assert "write it under [limits] there" in capsys.readouterr().err
     assert main(["gateway", "--limit", "speed=3"]) == 1

@@ -101,7 +101,7 @@ def test_it_finds_a_file_of_a_package(
 
     assert main(["launch", "robot", "a.launch.xml", "--print"]) == 0
     assert main(["launch", "robot", "b.launch.xml", "--print"]) == 1
-    assert "it has: a.launch.xml" in capsys.readouterr().err
+    assert "available: a.launch.xml" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("options", "status"), [([], 3), (["--noninteractive"], 0)])

@@ -79,7 +79,7 @@ def test_a_package_of_ros_has_what_colcon_reads(package: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "problem"),
-    [("my-robot", "is not a name of a package; use lower-case"), ("there", "is there already")],
+    [("my-robot", "is not a valid package name; use lower-case"), ("there", "already exists")],
 )
 def test_a_name_that_does_not_fit_writes_nothing(
     name: str,

@@ -56,12 +56,12 @@ def test_what_is_kept_for_late_subscriptions_goes_by_zenoh() -> None:
 @pytest.mark.parametrize(
     ("known", "reason"),
     [
-        (NO_LINKS, "no link offered by /talker and /listener"),
-        (advertisements(a="1/host/1000"), "no link offered by /listener"),
-        (advertisements(b="1/host/1000"), "no link offered by /talker"),
-        (advertisements(a="1/host/1000", b="nonsense"), "no link offered by /listener"),
-        (advertisements(a="1/host/1000", b="1/other/1000"), "on two hosts"),
-        (advertisements(a="1/host/1000", b="1/host/1001"), "of two users"),
+        (NO_LINKS, "no link is offered by /talker and /listener"),
+        (advertisements(a="1/host/1000"), "no link is offered by /listener"),
+        (advertisements(b="1/host/1000"), "no link is offered by /talker"),
+        (advertisements(a="1/host/1000", b="nonsense"), "no link is offered by /listener"),
+        (advertisements(a="1/host/1000", b="1/other/1000"), "they are on different hosts"),
+        (advertisements(a="1/host/1000", b="1/host/1001"), "they belong to different users"),
     ],
 )
 def test_where_no_link_is_possible_zenoh_is_used_and_nothing_is_wrong(
@@ -77,8 +77,8 @@ def test_where_no_link_is_possible_zenoh_is_used_and_nothing_is_wrong(
 @pytest.mark.parametrize(
     ("version", "text", "remedy"),
     [
-        (1, "could be linked, and are not", "the same XDG_RUNTIME_DIR"),
-        (2, "have different versions of the link", "the same version of aionode"),
+        (1, "could be linked, but are not", "the same XDG_RUNTIME_DIR"),
+        (2, "use different versions of the link protocol", "the same version of aionode"),
     ],
 )
 def test_a_link_that_should_be_there_is_a_hint(version: int, text: str, remedy: str) -> None:

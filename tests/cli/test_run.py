@@ -222,8 +222,8 @@ def test_classes_of_nodes_are_found_in_packages(workspace: Path) -> None:
     [
         (["my_robto", "mover"], PackageNotFoundError, "did you mean my_robot?"),
         (["my_robot", "movre"], ExecutableNotFoundError, "did you mean mover?"),
-        (["my_robot"], CommandError, "name an executable of this package; it has: mover"),
-        (["my_robot", "-x"], CommandError, "name an executable of this package; it has: mover"),
+        (["my_robot"], CommandError, "give an executable of this package: mover"),
+        (["my_robot", "-x"], CommandError, "give an executable of this package: mover"),
     ],
 )
 @pytest.mark.usefixtures("workspace")

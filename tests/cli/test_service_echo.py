@@ -103,7 +103,7 @@ async def test_a_service_that_is_not_introspected_is_reported(
     async with running(echo(tool, "/add", output=screen.output)):
         pass
 
-    assert "/add is not introspected so far" in screen.errors
+    assert "/add has no introspection yet" in screen.errors
 
 
 async def test_a_timeout_without_events_is_an_error(

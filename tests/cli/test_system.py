@@ -97,13 +97,13 @@ async def test_unknown_members_and_systems_are_named(
     """Beside those that there are."""
     with pytest.raises(CommandError, match="nope: no such member; the system has driver"):
         await restart_member(tool, "nope", output=screen.output)
-    with pytest.raises(CommandError, match="no system nope runs: choose one by --system: robot"):
+    with pytest.raises(CommandError, match="no system nope runs: choose one with --system: robot"):
         await print_status(tool, system_name="nope", output=screen.output)
-    with pytest.raises(CommandError, match="name a member, or the whole system by --all"):
+    with pytest.raises(CommandError, match="name a member, or use --all for the whole system"):
         await stop_member(tool, None, output=screen.output)
 
 
 async def test_without_a_system_the_error_says_how_to_start_one(tool: Node, screen: Any) -> None:
     """The usual mistake is another domain."""
-    with pytest.raises(CommandError, match="no system runs in this domain"):
+    with pytest.raises(CommandError, match="no system is running in this domain"):
         await print_status(tool, output=screen.output)

@@ -198,8 +198,8 @@ async def test_static_publishes_until_it_is_stopped(
     [
         (("a", "b"), {"qw": 1.0, "yaw": 1.0}, "not both"),
         (("a", "b"), {"qx": 1.0, "qw": 1.0}, "length 1"),
-        (("a", "a"), {}, "two different names"),
-        (("", "a"), {}, "two different names"),
+        (("a", "a"), {}, "must be different"),
+        (("", "a"), {}, "must be different"),
     ],
 )
 def test_static_refuses_what_every_buffer_would_refuse(
@@ -240,7 +240,7 @@ async def test_doctor_says_why_a_transform_is_missing(
         "problem: transform from [camera] to [map]: Could not find a connection between 'map' and "
         "'camera'" in screen.text
     )
-    assert "2 unconnected trees, below base_link, map" in screen.text
+    assert "2 unconnected trees (roots: base_link, map)" in screen.text
     await diagnose(transform=("map", "base_lnk"))
     assert "Did you mean 'base_link'?" in screen.text
     broadcaster = TransformBroadcaster(sender)

@@ -50,7 +50,7 @@ def test_a_missing_blank_is_named(text: str, key: str, meant: str) -> None:
         message_from_yaml(PoseStamped, text)
 
     says = str(raised.value)
-    assert f"field '{key}'; YAML wants a blank after the colon: '{meant}'" in says
+    assert f"field '{key}'; YAML requires a space after the colon: '{meant}'" in says
 
 
 @pytest.mark.parametrize("text", ["{data: 'a:b'}", "{data: a:b}"])

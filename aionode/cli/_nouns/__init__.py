@@ -1,4 +1,4 @@
-"""The nouns: each command stands with its verb, the coroutine that does its work.
+"""The nouns: each command next to its verb, the coroutine that does its work.
 
-A noun of several files is a folder, whose first file has the table of its commands.
+A noun that needs several files is a package whose ``__init__`` lists its commands.
 """

@@ -32,7 +32,7 @@ ENDED_S = 10.0
 """Timeout for the end of a goal that the server has agreed to cancel, in seconds."""
 
 STOP_S = CANCEL_S + ENDED_S + 1.5
-"""Timeout for the exit of the command after Ctrl-C, in seconds; a second Ctrl-C ends it at once."""
+"""Timeout for the command to exit after Ctrl-C, in seconds; a second Ctrl-C exits at once."""
 
 USERS = {"clients": EndpointKind.SUBSCRIPTION, "servers": EndpointKind.PUBLISHER}
 
@@ -57,7 +57,7 @@ add_type_and_find(action_command, ACTION)
     "info",
     name_argument("action"),
     types_option,
-    click.option("-c", "--count", is_flag=True, help="Print only how many there are."),
+    click.option("-c", "--count", is_flag=True, help="Print only the count."),
 )
 async def info(
     node: Node, action_name: str, *, output: Output, types: bool = False, count: bool = False
@@ -83,7 +83,7 @@ async def info(
 def nodes_with(node: Node, name: str, kind: EndpointKind) -> list[dict[str, Any]]:
     """Return the nodes with one side of an action: servers publish feedback, clients subscribe.
 
-    A node with several clients is one, as ros2 counts them.
+    A node with several clients is listed once, as in ros2.
     """
     types: dict[NodeInfo, set[str]] = {}
     for endpoint in lookup.endpoints(node, kind, name=f"{name}/_action/feedback"):
@@ -119,12 +119,12 @@ async def send_goal(
 ) -> int:
     """Send a goal in YAML, such as '{order: 10}', and print its result.
 
-    Ctrl-C cancels the goal and prints its result. The exit status is 0 if the goal succeeded, or
-    was canceled so.
+    Ctrl-C cancels the goal and prints its result. The exit status is 0 if the goal succeeded, or if
+    Ctrl-C canceled it.
 
     Returns:
-        The exit status: 0 if the goal succeeded, or if this was cancelled and the server agreed to
-        cancel the goal, as with ros2; else 1.
+        The exit status: 0 if the goal succeeded, or if the command was interrupted and the server
+        agreed to cancel the goal, as in ros2; otherwise 1.
 
     Raises:
         CommandError: the action has another type, the goal is invalid, no server appeared, or the
@@ -151,7 +151,7 @@ async def send_goal(
         return 1
     output.text(f"Goal accepted with ID: {handle.text}\n")
     try:
-        # Shielded, as cancelling `watch` would cancel the goal before that is reported.
+        # Shielded: cancelling `watch` directly would cancel the goal before that is reported.
         outcome = await asyncio.shield(watch(handle, output, feedback=feedback))
     except asyncio.CancelledError:
         if handle.done or not await cancel(handle, output):
@@ -162,7 +162,7 @@ async def send_goal(
 
 
 async def print_end(handle: ClientGoalHandle[Any, Any], output: Output) -> None:
-    """Wait for the end of a goal that is being canceled, and print its outcome."""
+    """Wait for a goal that is being canceled to end, and print its outcome."""
     try:
         async with asyncio.timeout(ENDED_S):
             print_outcome(handle, await handle.result(), output)
@@ -173,7 +173,7 @@ async def print_end(handle: ClientGoalHandle[Any, Any], output: Output) -> None:
 async def watch(
     handle: ClientGoalHandle[Any, Any], output: Output, *, feedback: bool
 ) -> ActionResult[Any]:
-    """Wait for the outcome of a goal, printing its feedback if wanted."""
+    """Wait for the outcome of a goal, printing its feedback if requested."""
     try:
         if feedback:
             async for part in handle:
@@ -182,7 +182,7 @@ async def watch(
                     {"goal_id": handle.text, "feedback": to_builtins(part)},
                 )
         return await handle.result()
-    except EntityDestroyedError:  # the node ends after Ctrl-C, and nobody awaits this any more
+    except EntityDestroyedError:  # the node ends after Ctrl-C, and nothing awaits this any more
         raise asyncio.CancelledError from None
 
 
@@ -201,7 +201,7 @@ def print_outcome(
 
 
 async def cancel(handle: ClientGoalHandle[Any, Any], output: Output) -> bool:
-    """Cancel a goal; return whether the server has answered that it ends.
+    """Cancel a goal; return whether the server answered that it will end.
 
     Raises:
         CommandError: the server refused.
@@ -216,8 +216,8 @@ async def cancel(handle: ClientGoalHandle[Any, Any], output: Output) -> bool:
         )
         return False
     if response.return_code == response.ERROR_GOAL_TERMINATED:
-        return True  # it has ended meanwhile
-    # A server of rclpy that refuses answers with code 0 too, and an empty list.
+        return True  # it has ended in the meantime
+    # An rclpy server that refuses also answers with code 0, and an empty list.
     if len(response.goals_canceling) == 0:
         raise CommandError("Failed to cancel goal: the server refused, and it is still running")
     output.progress("Goal canceled.")

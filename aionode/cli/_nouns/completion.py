@@ -1,4 +1,4 @@
-"""``aionode completion``: the scripts with which shells complete."""
+"""``aionode completion``: the completion scripts of shells."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _aionode_completion() {
             dir) COMPREPLY=(); compopt -o dirnames ;;
             file) COMPREPLY=(); compopt -o default ;;
             plain)
-                # Values in YAML are one word of the shell.
+                # YAML values are a single shell word.
                 [[ $value == *[[:space:]]* ]] && value=${value@Q}
                 COMPREPLY+=("$value")
                 # A package name, which continues after its slash.
@@ -50,7 +50,7 @@ _aionode_completion() {
                     # A package name, which continues after its slash.
                     unfinished+=("$key")
                 elif [[ $key == *[[:space:]]* ]]; then
-                    # Values in YAML are one word of the shell.
+                    # YAML values are a single shell word.
                     quoted+=("${(qq)key}")
                 else
                     plain+=("$key")
@@ -74,7 +74,7 @@ function _aionode_completion
     set -l response (env _AIONODE_COMPLETE=fish_complete COMP_WORDS=(commandline -cp) \\
         COMP_CWORD=(commandline -t) aionode)
     for completion in $response
-        # Values in YAML have commas of their own.
+        # YAML values contain commas of their own.
         set -l metadata (string split -m 1 "," -- $completion)
         switch $metadata[1]
             case dir
@@ -89,7 +89,7 @@ end
 complete --no-files --command aionode --arguments "(_aionode_completion)"
 """
 OWN_SCRIPTS = {"bash": BASH, "zsh": ZSH, "fish": FISH}
-"""Replace click's scripts, which append a space to everything, and end a value at its comma."""
+"""Replace click's scripts, which append a space to everything and cut values at a comma."""
 
 SHELLS = {
     "bash": ("~/.bashrc", 'eval "$(aionode completion bash)"'),
@@ -101,7 +101,7 @@ SHELLS = {
 @click.command("completion")
 @click.argument("shell", type=click.Choice(list(SHELLS)))
 def completion_command(shell: str) -> None:
-    """Print the script with which SHELL completes commands, options, types and names."""
+    """Print the script that completes commands, options, types and names in SHELL."""
     file, line = SHELLS[shell]
     click.echo(SETUP.format(file=file, line=line), nl=False)
     click.echo(OWN_SCRIPTS[shell], nl=False)

@@ -1,4 +1,4 @@
-"""``aionode gateway``: the robot for browsers, programs and apps."""
+"""``aionode gateway``: serve the robot to browsers, programs and apps."""
 
 from __future__ import annotations
 
@@ -22,30 +22,30 @@ if TYPE_CHECKING:
 __all__ = ["gateway_command", "types"]
 
 PORT = 9090
-"""The port of rosbridge, which its clients try first."""
+"""The default port of rosbridge, which its clients try first."""
 
 
 @click.group("gateway", invoke_without_command=True)
 @interfaces_option
 @click.option(
     "--host", default="127.0.0.1", show_default=True, metavar="ADDRESS",
-    help="Where to listen; other machines need a policy with tokens or certificates.",
+    help="Address to listen on; other machines need a policy with tokens or certificates.",
 )  # fmt: skip
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=PORT, show_default=True,
-    help="Which port; 0 for a free one.",
+    help="Port to listen on; 0 for a free one.",
 )  # fmt: skip
 @click.option(
     "--policy", "path", metavar="FILE",
-    help="Who may do what, as TOML; it is read again when it changes.",
+    help="TOML file that says who may do what; reloaded when it changes.",
 )  # fmt: skip
 @click.option(
     "--allow-write", is_flag=True,
-    help="Without a policy: this host may also publish, call, send goals and set parameters.",
+    help="Without a policy: let this host publish, call, send goals and set parameters.",
 )  # fmt: skip
 @click.option(
     "--limit", "limits", metavar="KEY=VALUE", multiple=True,
-    help="Without a policy: another limit for clients, such as call_sec=60. Can be repeated.",
+    help="Without a policy: change a limit for clients, such as call_sec=60. Can be repeated.",
 )  # fmt: skip
 @click.pass_context
 def gateway_command(
@@ -58,16 +58,18 @@ def gateway_command(
 ) -> None:
     """Serve the robot to browsers, programs and apps.
 
-    Clients of rosbridge and Foxglove, HTTP and a page of its own share one port. Without --policy,
-    programs of this host may read everything and write nothing. Pages of other web servers have to
-    be listed in a policy, also those of this host.
+    rosbridge and Foxglove clients, HTTP and a built-in web page share one port. Without --policy,
+    programs on this host may read everything and write nothing. Pages from other web servers must
+    be listed in a policy, even those on this host.
     """
     if ctx.invoked_subcommand is not None:
         return
     if path is not None and allow_write:
-        raise click.UsageError("--allow-write is for a gateway without --policy: say it there", ctx)
+        raise click.UsageError(
+            "--allow-write cannot be combined with --policy: allow it in the policy", ctx
+        )
     if path is not None and limits:
-        problem = "--limit is for a gateway without --policy: write it under [limits] there"
+        problem = "--limit cannot be combined with --policy: write it under [limits] there"
         raise click.UsageError(problem, ctx)
     serve = serving(path, allow_write, host, port, limits)
     run_verb(serve, node_name="gateway", endless=True, busy=True, asks=False)
@@ -76,7 +78,7 @@ def gateway_command(
 def serving(
     path: str | None, allow_write: bool, host: str, port: int, limits: Sequence[str] = ()
 ) -> Callable[[Node, Output], Coroutine[Any, Any, int | None]]:
-    """Return what serves the robot until it is cancelled.
+    """Return the coroutine function that serves the robot until it is cancelled.
 
     Raises:
         PolicyFileError: the policy file cannot be read, or is not a policy.
@@ -117,16 +119,16 @@ def serving(
 def types_command(type_names: tuple[str, ...]) -> None:
     """Write TypeScript types of the messages in use, or of each TYPE.
 
-    Print a module of declarations, for a file such as robot.d.ts.
+    Prints a module of declarations, to be saved in a file such as robot.d.ts.
     """
     run_verb(partial(types, type_names=type_names))
 
 
 async def types(node: Node, output: Output, *, type_names: Sequence[str] = ()) -> None:
-    """Print the TypeScript types of the messages, services and actions in use, or of some types.
+    """Print TypeScript types of the messages, services and actions in use, or of the given types.
 
     Raises:
-        InterfaceNotFoundError: nobody knows a type that was named.
+        InterfaceNotFoundError: no node knows one of the given types.
     """
     from aionode.gateway import typescript
 
@@ -148,5 +150,5 @@ async def types(node: Node, output: Output, *, type_names: Sequence[str] = ()) -
 
 
 def first_types(names_and_types: Iterable[tuple[str, list[str]]]) -> dict[str, str]:
-    """Return the type of each name; the first of several."""
+    """Return the type of each name; the first if there are several."""
     return {name: types[0] for name, types in names_and_types}

@@ -38,13 +38,13 @@ kind_options = (
 
 
 def prepare_kinds(options: dict[str, Any]) -> None:
-    """Replace the options for kinds of types by the chosen ``kinds``, all of them by default."""
+    """Replace the options for kinds of types by ``kinds``, which defaults to all of them."""
     chosen = {kind: options.pop(kind) for kind in KINDS}
     options["kinds"] = tuple(kind for kind in KINDS if chosen[kind]) or tuple(KINDS)
 
 
 def listing(name: str, *parameters: Callable[[Any], Any]) -> Callable[[VerbT], VerbT]:
-    """Return the decorator for a verb that prints names, of the kinds that its options choose."""
+    """Return the decorator for a verb that prints names of the kinds chosen by its options."""
     return command(
         interface_command,
         name,
@@ -80,7 +80,7 @@ def package(package_name: str, *, output: Output, kinds: tuple[str, ...] = tuple
     """
     from aionode.interfaces import interface_names
 
-    name = package_name.rstrip("/")  # completion offers it with a slash
+    name = package_name.rstrip("/")  # shell completion adds a slash
     names = interface_names(name)
     if not names:
         from aionode.cli._support.lookup import unknown
@@ -108,7 +108,7 @@ def all_packages() -> list[str]:
 
 
 def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
-    """Return the names of types of some kinds."""
+    """Filter the names of types by kind."""
     return [name for name in names if name.split("/")[1] in kinds]
 
 
@@ -116,7 +116,7 @@ def of_kinds(names: tuple[str, ...], kinds: tuple[str, ...]) -> list[str]:
 
 
 def with_class(type_name: str, print_class: Callable[[Any, Output], None], json: bool) -> None:
-    """Call `print_class` with the class of a type; the nodes are asked for one not known here."""
+    """Call `print_class` with the class of a type, asking the nodes if it is not known here."""
     from aionode.interfaces import get_interface
 
     try:
@@ -142,8 +142,8 @@ def show(
     Args:
         cls: The class of the type.
         output: Where to print.
-        comments: Whether to print what fields mean: never, for the type itself, or for nested ones
-            as well. The comments are those of the sourced ROS 2, or else aionode's own.
+        comments: Which comments to print: none, those of the type itself, or also those of nested
+            types. They come from the sourced ROS 2, or else from aionode.
     """
     from aionode.idl import definition_text
 
@@ -160,7 +160,7 @@ def show(
 @json_option
 @interfaces_option
 def show_command(type_name: str, all_comments: bool, no_comments: bool, json: bool) -> None:
-    """Print the definition of a type; if TYPE is -, its name is read from standard input."""
+    """Print the definition of a type; if TYPE is -, read its name from standard input."""
     if type_name == "-":
         if sys.stdin.isatty():
             raise click.UsageError(

@@ -1,4 +1,4 @@
-"""``aionode launch``: processes and nodes as a launch file says."""
+"""``aionode launch``: start the processes and nodes of a launch file."""
 
 from __future__ import annotations
 
@@ -32,38 +32,38 @@ __all__ = ["launch_command"]
     "--print",
     "prints",
     is_flag=True,
-    help="Print what would be started: command lines, parameters, environment. Start nothing.",
+    help="Print what would be started (command lines, parameters, environment) and exit.",
 )
-@click.option("--json", "as_json", is_flag=True, help="One record of JSON a line.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON record per line.")
 @click.option(
     "--log-folder",
     type=click.Path(file_okay=False),
     metavar="FOLDER",
-    help="Write the log into files as well, one for each process; they are rotated at 10 MB.",
+    help="Also write the logs to this folder, one file per process, rotated at 10 MB.",
 )
-@click.option(
-    "--watch", is_flag=True, help="Restart a process when the file of its program changes."
-)
+@click.option("--watch", is_flag=True, help="Restart a process when its program file changes.")
 @click.option("--once-ready", metavar="CMD", help="Run a command when all nodes are in the graph.")
 @click.option(
     "--skip-missing",
     is_flag=True,
-    help="Leave out what needs a package that is not there, with one warning for each package.",
+    help="Skip whatever needs a missing package, with one warning per package.",
 )
-@click.option("--real", is_flag=True, help="Run the file with ROS 2's launch, if it is installed.")
+@click.option("--real", is_flag=True, help="Run the file with ROS 2's own launch, if installed.")
 @click.option(
     "--workspace",
     type=click.Path(exists=True, file_okay=False),
     metavar="FOLDER",
-    help="The packages that the file names, which need no build; else the workspace around it.",
+    help="Workspace with the packages it uses, built or not (default: the one around the file).",
 )
 @interfaces_option
-@click.option("-d", "--debug", is_flag=True, help="Accepted, as in ros2 launch; changes nothing.")
+@click.option(
+    "-d", "--debug", is_flag=True, help="Accepted for compatibility with ros2; has no effect."
+)
 @click.option(
     "-n",
     "--noninteractive",
     is_flag=True,
-    help="The exit status is that of ros2 launch: 0, whatever becomes of the processes.",
+    help="Exit with 0 whatever happens to the processes, as ros2 launch does.",
 )
 def launch_command(
     file: str,
@@ -80,11 +80,11 @@ def launch_command(
     debug: bool,
     noninteractive: bool,
 ) -> None:
-    """Start processes and nodes as a launch file says, and stop them together.
+    """Start the processes and nodes of a launch file, and stop them together.
 
-    A launch file is one of ROS 2, in Python, XML or YAML, or has `async def main(system)`. Nothing
-    is started if anything in it cannot be evaluated. Ctrl-C stops everything, and a second one ends
-    it at once.
+    A launch file is a ROS 2 launch file in Python, XML or YAML, or a Python file with `async def
+    main(system)`. If anything in it cannot be evaluated, nothing is started. Ctrl-C stops
+    everything; a second Ctrl-C ends it immediately.
     """
     from aionode.launch import Plan
 
@@ -111,7 +111,7 @@ def file_and_values(
     """Return the path of the launch file, and the values of its arguments.
 
     Raises:
-        CommandError: An argument is not NAME:=VALUE, or the package has no such file.
+        CommandError: an argument is not NAME:=VALUE, or the package has no such file.
     """
     words = list(arguments)
     if words and ":=" not in words[0] and not Path(file).is_file():
@@ -126,10 +126,10 @@ def file_and_values(
 
 
 def file_of_package(package: str, name: str, workspace: str | None) -> str:
-    """Return the path of a launch file of a package: the one below its share folder.
+    """Return the path of a launch file in the share folder of a package.
 
     Raises:
-        CommandError: It has no such file, or several.
+        CommandError: there is no such file, or there are several.
     """
     from aionode.launch import share_directory
 
@@ -140,16 +140,16 @@ def file_of_package(package: str, name: str, workspace: str | None) -> str:
         return str(files[0])
     if files:
         places = ", ".join(str(file.relative_to(share)) for file in files)
-        raise CommandError(f"{package}: {name} is there more than once: {places}; give its path")
+        raise CommandError(f"{package}: {name} exists more than once: {places}; give its path")
     endings = ("launch.py", "launch.xml", "launch.yaml", "launch.yml", ".launch")
     known = sorted(file.name for file in below if file.name.endswith(endings))
     raise CommandError(
-        f"{package}: no file {name} in {share}; it has: {', '.join(known) or 'none'}"
+        f"{package}: no file {name} in {share}; available: {', '.join(known) or 'none'}"
     )
 
 
 def files_below(share: Path) -> list[Path]:
-    """Return the files in a folder of data, each once, also those in folders that are links."""
+    """Return the files below a folder of data, each once, following links to folders."""
     files: dict[Path, Path] = {}
     seen: set[Path] = set()
     for place, folders, names in os.walk(share, followlinks=True):
@@ -162,7 +162,7 @@ def files_below(share: Path) -> list[Path]:
 
 
 def argument_text(argument: DeclaredArgument) -> str:
-    """Return what an argument is, in some lines."""
+    """Return lines of text that describe an argument."""
     lines = [f"'{argument.name}':"]
     lines.append(f"    {argument.description or 'no description given'}")
     if argument.choices is not None:
@@ -185,12 +185,12 @@ def print_plan(plan: Plan, *, as_json: bool) -> None:
 def start(
     plan: Plan, *, watch: bool, once_ready: str | None, as_json: bool, log_folder: str | None
 ) -> int:
-    """Start what a plan says; return the exit status of the first failure, or 0."""
+    """Start a plan; return the exit status of the first failure, or 0."""
     from aionode.launch import run_plan
     from aionode.runner import run
     from aionode.system import System, SystemLog
 
-    _ = plan.steps  # whatever is wrong with the file is said before anything begins
+    _ = plan.steps  # so that errors in the file are reported before anything starts
     log = SystemLog(json=as_json, folder=log_folder)
     system = System(Path(plan.path).name.partition(".")[0], log=log)
 
@@ -203,22 +203,22 @@ def start(
 
 
 def run_real(path: str, values: dict[str, str]) -> None:
-    """Run ROS 2's launch in the place of this process.
+    """Replace this process by ROS 2's own launch.
 
     Raises:
-        CommandError: It is not installed.
+        CommandError: it is not installed.
     """
     if not (is_installed("launch") and is_installed("launch_ros")):
         raise CommandError(
-            "--real: ROS 2's launch and launch_ros are not installed here; source a ROS 2, or "
-            "leave out --real: aionode has the names that most launch files use"
+            "--real: ROS 2's launch and launch_ros are not installed here; source ROS 2, or "
+            "omit --real: aionode supports what most launch files use"
         )
     arguments = [f"{name}:={value}" for name, value in values.items()]
     become([sys.executable, "-m", "aionode.launch", str(Path(path)), *arguments])
 
 
 def is_installed(package: str) -> bool:
-    """Return whether a package is there that is not aionode's, which says so at its beginning."""
+    """Return whether a package other than aionode's own, which is marked as such, is installed."""
     spec = PathFinder.find_spec(package)
     if spec is None or spec.origin is None:
         return False

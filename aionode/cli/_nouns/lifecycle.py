@@ -35,7 +35,7 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 ANSWER_S = 10.0
-"""Timeout for answers that need no work of the node, in seconds."""
+"""Timeout for answers that require no work by the node, in seconds."""
 
 node_argument = name_argument("node")
 
@@ -162,7 +162,7 @@ async def set_state(node: Node, node_name: str, transition: str, *, output: Outp
 
 
 def known(node: Node, node_name: str) -> str:
-    """Return the full name of a managed node; the leading slash may be left out.
+    """Return the full name of a managed node; the leading slash may be omitted.
 
     Raises:
         CommandError: there is no such node.
@@ -189,6 +189,6 @@ async def ask(
     srv_type: ServiceClass[RequestT, ResponseT],
     request: RequestT,
 ) -> ResponseT:
-    """Call a service of a managed node that answers at once."""
+    """Call a service that a managed node answers immediately."""
     client = node.create_client(srv_type, f"{name}/{service}")
     return await client.call(request, timeout_sec=ANSWER_S)

@@ -1,4 +1,4 @@
-"""``aionode new``: a package that runs, to begin with."""
+"""``aionode new``: write a package that runs, as a starting point."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FILES = {
     "src/NAME_interfaces/package.xml": "interfaces_package.xml",
     "src/NAME_interfaces/msg/WordCount.msg": "WordCount.msg",
 }
-"""Each file of a package, and its template; ``NAME`` stands for the name of the package."""
+"""The template of each file of a package; ``NAME`` stands for the package's name."""
 
 NATIVE = {"src/NAME/pyproject.toml": "pyproject.toml"}
 
@@ -40,19 +40,19 @@ ROS = {
 
 @click.command()
 @click.argument("name", metavar="PACKAGE")
-@click.option("--ros", is_flag=True, help="With setup.py and CMakeLists.txt, for colcon build.")
+@click.option("--ros", is_flag=True, help="Add setup.py and CMakeLists.txt, for colcon build.")
 def new_command(name: str, *, ros: bool) -> None:
     """Write a package with a node, a message, a launch file, parameters and a test.
 
-    It comes into a new folder of its name, a workspace, where `aionode launch` and pytest run it
-    as it is. No file is overwritten.
+    It is written to a new folder of that name, a workspace in which `aionode launch` and pytest run
+    it as it is. No file is overwritten.
     """
     if not NAME.fullmatch(name):
         fits = "lower-case letters, digits and single underscores, such as my_robot"
-        raise click.UsageError(f"{name!r} is not a name of a package; use {fits}")
+        raise click.UsageError(f"{name!r} is not a valid package name; use {fits}")
     folder = Path(name)
     if folder.exists():
-        raise click.UsageError(f"{name}: is there already; choose another name, or move it away")
+        raise click.UsageError(f"{name}: already exists; choose another name, or move it away")
     for file, template in {**FILES, **(ROS if ros else NATIVE)}.items():
         path = folder / file.replace("NAME", name)
         path.parent.mkdir(parents=True, exist_ok=True)

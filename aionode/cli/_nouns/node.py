@@ -82,7 +82,7 @@ def key(title: str) -> str:
 
 
 def offers_of(node: Node, info: NodeInfo, *, hidden: bool) -> dict[str, Offer]:
-    """Return the topics, services and actions of a node, under the headings of ros2."""
+    """Return the topics, services and actions of a node, under ros2's headings."""
 
     def offer(kind: EndpointKind) -> Offer:
         return lookup.names_and_types(node, kind, hidden=hidden, of=info)

@@ -1,4 +1,4 @@
-"""``aionode router``: a Zenoh router where there is no ``rmw_zenohd``."""
+"""``aionode router``: a Zenoh router, where there is no ``rmw_zenohd``."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ __all__ = ["router_command"]
     "--connect",
     metavar="HOST",
     multiple=True,
-    help="Host of another router, host:port or Zenoh endpoint; it may be absent for a while.",
+    help="Another router: host, host:port or Zenoh endpoint. It may start later.",
 )
 @click.option("--json", is_flag=True, help="Print the endpoints as JSON.")
 def router_command(listen: tuple[str, ...], connect: tuple[str, ...], json: bool) -> None:
     """Connect nodes across machines, as rmw_zenohd does.
 
-    On a single machine no router is needed. On another one, run
-    `aionode router --connect <this machine>`: nodes find the router of their own machine.
+    A single machine needs no router. On each other machine, run `aionode router --connect <this
+    machine>`; nodes find the router on their own machine.
     """
     from aionode.engine.transport.network import ROUTER_PORT, network_from, peer_endpoints
 
@@ -52,23 +52,23 @@ def router_command(listen: tuple[str, ...], connect: tuple[str, ...], json: bool
 
 
 async def route(endpoints: Sequence[str], peers: Sequence[str] = (), *, output: Output) -> int:
-    """Run a router that listens on Zenoh endpoints, until cancelled.
+    """Run a router until cancelled.
 
     Args:
-        endpoints: Where it listens.
-        peers: The Zenoh endpoints of the routers with which it is linked.
+        endpoints: Zenoh endpoints to listen on.
+        peers: Zenoh endpoints of other routers to connect to.
         output: Where to print.
 
     Raises:
-        TransportError: it cannot listen there.
+        TransportError: it cannot listen on an endpoint.
     """
     from aionode.engine.transport.zenoh.session.session import close_session, open_router
 
     session = await open_router(endpoints, peers)
     try:
-        linked = f", and links this machine with {', '.join(peers)}" if peers else ""
+        linked = f", and connects to {', '.join(peers)}" if peers else ""
         output.item(
-            f"Router is listening on {', '.join(endpoints)}{linked}. Ctrl-C ends it.",
+            f"Router is listening on {', '.join(endpoints)}{linked}. Press Ctrl-C to stop it.",
             {"listen": list(endpoints), "connect": list(peers)},
         )
         await asyncio.get_running_loop().create_future()

@@ -1,6 +1,6 @@
-"""``aionode run``: node classes together in one process, or a program of rclpy.
+"""``aionode run``: run node classes together in one process, or an rclpy program.
 
-A program, and an executable of a package, takes the place of this process.
+A program, or an executable of a package, replaces this process.
 """
 
 from __future__ import annotations
@@ -42,20 +42,20 @@ PACKAGE: Final = re.compile(r"[a-zA-Z][a-zA-Z0-9_-]+")
     "-m",
     "module",
     metavar="MODULE[:FUNCTION]",
-    help="Run a module as a program of rclpy, or call a function, as a package's executable does.",
+    help="Run a module as an rclpy program, or call a function, as an entry point does.",
 )
-@click.option("--rclpy", is_flag=True, help="Take a file for a program of rclpy in any case.")
+@click.option("--rclpy", is_flag=True, help="Always treat the file as an rclpy program.")
 @interfaces_option
 @click.option(
     "--workspace",
     type=click.Path(exists=True, file_okay=False),
     metavar="FOLDER",
-    help="The packages that can be run and used; else those around the program, or around here.",
+    help="Workspace to search for packages (default: the one around the program or this folder).",
 )
 @click.option(
     "--check",
     is_flag=True,
-    help="List what programs import, and whether it is there; run nothing. Takes folders as well.",
+    help="List what programs or folders import and whether it is available; run nothing.",
 )
 def run_command(
     args: tuple[str, ...],
@@ -64,21 +64,21 @@ def run_command(
     workspace: str | None,
     check: bool,
 ) -> None:
-    """Run node classes together in one process, or a program of rclpy.
+    """Run node classes together in one process, or an rclpy program.
 
     Each MODULE:CLASS is imported, from the current folder or an installed package, and created
-    without arguments; a file such as talker.py:Talker works too. What follows --ros-args applies to
-    all nodes.
+    without arguments; a file such as talker.py:Talker works too. Arguments after --ros-args apply
+    to all nodes.
 
-    A file that imports rclpy, or a message package such as std_msgs, runs as it is, without ROS:
-    aionode takes their place. What follows the name of the file are its own arguments.
+    A file that imports rclpy, or a message package such as std_msgs, runs unmodified and without
+    ROS: aionode provides both. Arguments after the file name are the program's own.
 
-    A folder with a package.xml is a package as it is, without a build: PACKAGE EXECUTABLE runs what
-    its setup files name, and MODULE:FUNCTION a function such as my_robot.talker:main. Packages that
+    A folder with a package.xml is usable without a build: PACKAGE EXECUTABLE runs an entry point
+    from its setup files, and MODULE:FUNCTION a function such as my_robot.talker:main. Packages that
     are installed, or built and sourced, are found as well.
 
-    With --check, nothing runs: for each file, and each Python file of a folder, there is a list of
-    what it imports and where that is. The exit status is 1 if something is missing.
+    With --check, nothing is run: for each file, and each Python file in a folder, it lists the
+    imports and where they are found. The exit status is 1 if something is missing.
     """
     programs = Programs(workspace)
     if check and (module is not None or not args):
@@ -96,13 +96,13 @@ def run_command(
 
 
 def run_nodes(args: Sequence[str], programs: Programs) -> None:
-    """Run nodes in this process: those that are named before ``--ros-args``.
+    """Run the nodes named before ``--ros-args`` in this process.
 
     Raises:
-        UsageError: An option stands before that, or nothing does.
-        CommandError: A node is not there, or a file that runs its nodes itself is not alone.
+        UsageError: there is an option before ``--ros-args``, or nothing is.
+        CommandError: a node is missing, or a file that runs its own nodes is not alone.
     """
-    # Not before: a program that takes the place of this process needs no nodes here.
+    # Imported late: a program that replaces this process needs no nodes here.
     from aionode.runner import run
     from aionode.system.node_source import FITS, makers_of
 
@@ -117,17 +117,18 @@ def run_nodes(args: Sequence[str], programs: Programs) -> None:
         raise click.UsageError(f"Nothing to run: {FITS}.")
     programs.use_workspace(specs)
     sys.path[:0] = [str(Path.cwd()), *programs.module_folders(specs)]
-    sys.argv[:] = [specs[0], *ros_args]  # what a file reads that runs its nodes itself
+    sys.argv[:] = [specs[0], *ros_args]  # for a file that runs its own nodes
     makers = makers_of(specs)
     if makers:
         run(*makers, args=list(ros_args))
 
 
 class Programs:
-    """Programs of rclpy and executables of packages.
+    """rclpy programs and executables of packages.
 
     Args:
-        workspace: The folder with the packages; else that around the current folder is searched.
+        workspace: The folder with the packages; defaults to the workspace around the current
+            folder.
     """
 
     def __init__(self, workspace: str | None) -> None:
@@ -135,7 +136,7 @@ class Programs:
 
     @cached_property
     def _packages(self) -> Packages:
-        """The packages of the workspace, which the file of a program does not need."""
+        """The packages of the workspace; the file of a program does not need them."""
         from aionode._packages import Packages, workspace_of
 
         if self._workspace:
@@ -144,7 +145,7 @@ class Programs:
         return Packages(workspace_of(current) or current)
 
     def use_workspace(self, specs: Sequence[str]) -> None:
-        """Let nodes find the types of the named workspace, or of that around their files."""
+        """Make the types of the given workspace, or the one around the files, known to nodes."""
         from aionode._packages import use, workspace_of
 
         files = (Path(source) for source in (spec.partition(":")[0] for spec in specs))
@@ -154,17 +155,17 @@ class Programs:
             use(workspace)
 
     def under_rclpy(self, *program: str) -> list[str]:
-        """Return the command for a program of rclpy: its file, or ``-m`` and its module."""
+        """Return the command line of an rclpy program: its file, or ``-m`` and its module."""
         own = [sys.executable, "-m", "aionode.rclpy"]
         return [*own, *self._workspace, *program]
 
     def command(self, args: Sequence[str]) -> list[str] | None:
-        """Return the command that the arguments mean; None if they name classes of nodes.
+        """Return the command line that the arguments stand for; None if they name node classes.
 
         Raises:
-            CommandError: An executable of a package is missing.
-            PackageNotFoundError: Two words are neither a package with an executable, nor modules.
-            ExecutableNotFoundError: The package has no such executable.
+            CommandError: an executable of a package is missing.
+            PackageNotFoundError: two words are neither a package with an executable, nor modules.
+            ExecutableNotFoundError: the package has no such executable.
         """
         if not args:
             return None
@@ -181,13 +182,13 @@ class Programs:
         return self.under_rclpy(*path, "-m", f"{module}:{function}", *args[1:])
 
     def module_folders(self, specs: Sequence[str]) -> list[str]:
-        """Return the folders of packages that classes of nodes are imported from."""
+        """Return the package folders from which node classes are imported."""
         sources = dict.fromkeys(spec.partition(":")[0] for spec in specs)
         files = {source: self._module_file(source) for source in sources}
         return [str(module_folder(source, file)) for source, file in files.items() if file]
 
     def _executable(self, args: Sequence[str]) -> list[str] | None:
-        """Return the command for a package and its executable."""
+        """Return the command line for a package and its executable."""
         name, *rest = args
         if not PACKAGE.fullmatch(name):
             return None
@@ -200,12 +201,12 @@ class Programs:
             known = ", ".join(self._packages.executables(name)) or "none"
         except PackageNotFoundError:
             if named is None or self._module_file(name) is not None:
-                return None  # modules, each with its class of nodes; an error for them says so
+                return None  # modules with node classes; errors about them are reported later
             raise
-        raise CommandError(f"{name}: name an executable of this package; it has: {known}")
+        raise CommandError(f"{name}: give an executable of this package: {known}")
 
     def _module_file(self, source: str, *, here: bool = False) -> Path | None:
-        """Return the file of a module that lies here, on PYTHONPATH or else in a package."""
+        """Return the file of a module: in this folder, on PYTHONPATH, or in a package."""
         if source.endswith(".py"):
             return Path(source) if Path(source).is_file() else None
         inside = Path(*source.split("."))
@@ -216,7 +217,7 @@ class Programs:
         return None
 
     def _module_folders(self, module: str) -> Iterator[str]:
-        """Yield the folders in which a module may lie; its name is for packages, at the end."""
+        """Yield the folders that may contain a module; the packages' folders come last."""
         yield str(Path.cwd())
         yield from filter(None, sys.path)
         root = self._packages.module_root(module) if module else None
@@ -225,7 +226,7 @@ class Programs:
 
 
 def module_folder(source: str, file: Path) -> Path:
-    """Return the folder from which a module of this name, which has this file, is imported."""
+    """Return the folder from which the module with this name and file is imported."""
     if source.endswith(".py"):
         return file.parent
     depth = source.count(".") + (file.name == "__init__.py")
@@ -233,9 +234,9 @@ def module_folder(source: str, file: Path) -> Path:
 
 
 def is_rclpy_program(name: str) -> bool:
-    """Return whether a name is that of a file that imports rclpy or ROS's message packages.
+    """Return whether a name is that of a file that imports rclpy or ROS message packages.
 
-    An executable that an installed package has in Python is one, too: it imports that package.
+    A Python executable of an installed package is one too: it imports that package.
     """
     if not name.endswith(".py"):
         from aionode._packages import is_python

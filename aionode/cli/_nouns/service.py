@@ -72,7 +72,7 @@ async def info(node: Node, service_name: str, *, output: Output) -> None:
     service_command,
     "call",
     *values_parameters("service"),
-    click.option("-r", "--rate", metavar="N", type=hertz, help="Repeat the call, in Hz."),
+    click.option("-r", "--rate", metavar="N", type=hertz, help="Repeat the call at N Hz."),
     click.option("--timeout", metavar="N", type=positive, help="Wait at most N seconds."),
     interfaces=True,
     prepare=read_values,
@@ -118,7 +118,7 @@ async def call(
 # Events
 
 DEPTH = 1000
-"""Maximum number of events that wait to be printed."""
+"""Maximum number of events waiting to be printed."""
 
 ACTION_SERVICES = {"SendGoal": "SendGoalService", "GetResult": "GetResultService"}
 
@@ -130,8 +130,8 @@ ACTION_SERVICES = {"SendGoal": "SendGoalService", "GetResult": "GetResultService
     type_argument("service", required=False),
     csv_option,
     *print_options,
-    click.option("--once", is_flag=True, help="Print one event and end."),
-    click.option("--timeout", metavar="N", type=positive, help="End after N seconds."),
+    click.option("--once", is_flag=True, help="Print one event and exit."),
+    click.option("--timeout", metavar="N", type=positive, help="Exit after N seconds."),
     interfaces=True,
     prepare=clear_full_length,
     endless=lambda options: not options["once"],
@@ -147,7 +147,7 @@ async def echo(
     timeout: float | None = None,
     **printing: Any,
 ) -> int:
-    """Print each request and response of a service that is introspected.
+    """Print each request and response of a service that has introspection enabled.
 
     Returns:
         The exit status.
@@ -155,7 +155,7 @@ async def echo(
     Raises:
         CommandError: the type cannot be determined.
     """
-    # Imported when it runs; the other commands of services do not need them.
+    # Imported when it runs; the other service commands do not need it.
     from aionode.engine.rules.service_events import TOPIC_SUFFIX
     from aionode.qos import qos_profile_services_default
 
@@ -178,7 +178,7 @@ async def echo(
     subscription = follower.follow(srv_type.Event, topic, on_event, profile)
     if not lookup.endpoints(node, EndpointKind.PUBLISHER, name=topic):
         output.warn(
-            f"WARNING: {name} is not introspected so far: none of its servers and clients has "
+            f"WARNING: {name} has no introspection yet: none of its servers and clients has "
             "called configure_introspection"
         )
     if not await follower.finished(timeout) and not subscription.stats.received:

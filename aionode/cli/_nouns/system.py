@@ -1,4 +1,4 @@
-"""``aionode system``: what a running system does, and stopping and restarting its members."""
+"""``aionode system``: show a running system, and stop and restart its members."""
 
 from __future__ import annotations
 
@@ -29,12 +29,12 @@ __all__ = [
 PREFIX, SUFFIX = "/aionode_system_", "/command"
 
 ANSWER_S = 60.0
-"""Longest time for a system to stop a member: three signals, for two generations."""
+"""Timeout for a system to stop a member, in seconds: three signals, for two generations."""
 
 HEADINGS = ("NAME", "STATE", "READY", "PID", "RESTARTS", "CPU", "MEMORY", "UPTIME")
 
 system_option = click.option(
-    "--system", "system_name", metavar="SYSTEM", help="Which system, if there are several."
+    "--system", "system_name", metavar="SYSTEM", help="The system, if several are running."
 )
 
 
@@ -45,7 +45,7 @@ def system_command() -> None:
 
 def systems(node: Node) -> list[str]:
     """Return the names of the systems in the graph."""
-    from aionode.system import SystemCommand  # the help of the command does not need it
+    from aionode.system import SystemCommand  # the command's help does not need it
 
     return sorted(
         {
@@ -57,7 +57,7 @@ def systems(node: Node) -> list[str]:
 
 
 def chosen(node: Node, name: str | None) -> str:
-    """Return the system of this name, or the only one.
+    """Return the named system, or the only one.
 
     Raises:
         CommandError: there is none, or there are several and none was named.
@@ -66,15 +66,15 @@ def chosen(node: Node, name: str | None) -> str:
     if name is None and len(known) == 1:
         return known[0]
     if not known:
-        raise CommandError("no system runs in this domain; `aionode launch FILE` starts one")
+        raise CommandError("no system is running in this domain; `aionode launch FILE` starts one")
     if name not in known:
-        what = "several systems run" if name is None else f"no system {name} runs"
-        raise CommandError(f"{what}: choose one by --system: {', '.join(known)}")
+        what = "several systems are running" if name is None else f"no system {name} runs"
+        raise CommandError(f"{what}: choose one with --system: {', '.join(known)}")
     return name
 
 
 async def ask(node: Node, system: str, verb: str, member: str = "") -> list[dict[str, Any]]:
-    """Send a request to a system, and return the states of its members afterwards.
+    """Send a request to a system, and return the resulting states of its members.
 
     Raises:
         CommandError: the system refused.
@@ -165,13 +165,13 @@ async def stop_member(
     system_name: str | None = None,
     every: bool = False,
 ) -> None:
-    """Stop a member of a system, which is not restarted, or the whole system.
+    """Stop a member of a system for good, or the whole system.
 
     Raises:
         CommandError: there is no such system or member, or neither was named.
     """
     if every == bool(member):
-        raise CommandError("name a member, or the whole system by --all")
+        raise CommandError("name a member, or use --all for the whole system")
     system = chosen(node, system_name)
     await ask(node, system, "stop", member or "")
     text = f"{member} is stopped" if member else f"system {system} ends"

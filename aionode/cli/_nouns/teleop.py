@@ -1,4 +1,4 @@
-"""``aionode teleop``: drives a robot by keys."""
+"""``aionode teleop``: drive a robot from the keyboard."""
 
 from __future__ import annotations
 
@@ -14,15 +14,16 @@ PROGRAM = "teleop_twist_keyboard"
 
 
 @click.command()
-@click.option("--topic", metavar="TOPIC", default="cmd_vel", help="Where commands are published.")
-@click.option("--stamped", is_flag=True, help="Publish TwistStamped, as bases do since Jazzy.")
-@click.option("--speed", type=float, default=0.5, help="At the beginning, in m/s.")
-@click.option("--turn", type=float, default=1.0, help="At the beginning, in rad/s.")
+@click.option("--topic", metavar="TOPIC", default="cmd_vel", help="Topic of the commands.")
+@click.option(
+    "--stamped", is_flag=True, help="Publish TwistStamped, as expected by bases since Jazzy."
+)
+@click.option("--speed", type=float, default=0.5, help="Initial speed, in m/s.")
+@click.option("--turn", type=float, default=1.0, help="Initial turning speed, in rad/s.")
 def teleop_command(topic: str, stamped: bool, speed: float, turn: float) -> None:
-    """Drive a robot by the keys of this terminal, as teleop_twist_keyboard does.
+    """Drive a robot from the keyboard, as teleop_twist_keyboard does.
 
-    The command of a key stands until the next one. Ctrl-C stops the robot, and so does the end of
-    the terminal.
+    The command of a key holds until the next key. Ctrl-C, or closing the terminal, stops the robot.
     """
     become(
         [

@@ -1,1 +1,1 @@
-"""The parts that nouns share: declaring commands, running verbs, looking up names, printing."""
+"""What the nouns share: declaring commands, running verbs, looking up names, printing."""

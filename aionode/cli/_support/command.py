@@ -26,12 +26,12 @@ if TYPE_CHECKING:
 __all__ = ["VerbT", "add_type_and_find", "command"]
 
 Verb = Callable[..., Any]
-"""A coroutine that may return an exit status; for a command without a node, a function."""
+"""A coroutine function that may return an exit status; a function if there is no node."""
 
 VerbT = TypeVar("VerbT", bound=Verb)
 
 SECTIONS = ("Args:", "Returns:", "Raises:")
-"""The parts of a verb's docstring that its help leaves out."""
+"""The sections of a verb's docstring that its help omits."""
 
 
 def command(
@@ -48,23 +48,22 @@ def command(
     stop_s: float = STOP_S,
     **settings: Any,
 ) -> Callable[[VerbT], VerbT]:
-    """Return the decorator that makes a command of its verb, and leaves the verb as it is.
+    """Return the decorator that makes a command of its verb, and returns the verb unchanged.
 
-    The verb is called with the node, the values of its parameters by name, and ``output``. Its
-    docstring, up to the first section, is the command's help; the help of its options says what
-    its arguments are.
+    The verb is called with the node, its parameters by name, and ``output``. The command's help is
+    the verb's docstring up to the first section; the help of the options describes the arguments.
 
     Args:
         group: The group of commands of the noun.
         name: The name of the command.
-        parameters: Its own arguments and options, as click declares them; ``--json`` is added, and
-            to commands with a node the options without a meaning here, which scripts may use.
-        node: Whether the verb needs a node; without one, it is a function that gets the rest.
+        parameters: Its own arguments and options, declared with click. ``--json`` is added, and for
+            commands with a node also ros2's options that have no meaning here.
+        node: Whether the verb needs a node; without one, it is a plain function.
         interfaces: Whether it has the option ``--interfaces``.
-        sim_time: Whether it has the option ``--use-sim-time``, for the time of its node.
-        prepare: Changes the values of the parameters into those that the verb gets. It runs before
-            there is a node; it raises `click.UsageError` if the values exclude each other.
-        endless: Whether Ctrl-C is the normal end, also as a function of the prepared values.
+        sim_time: Whether it has the option ``--use-sim-time``, for the clock of its node.
+        prepare: Converts the values of the parameters to what the verb gets, before there is a
+            node. Raises `click.UsageError` if the values exclude each other.
+        endless: Whether Ctrl-C is the normal end; may be a function of the prepared values.
         busy: As for `run_verb`.
         asks: As for `run_verb`.
         stop_s: As for `run_verb`.

@@ -1,4 +1,4 @@
-"""Completing what a shell has of a command line, with names and types of the network."""
+"""Shell completion with names and types from the network."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ TYPES: Final = {
     "service": ("service", "srv"),
     "action": ("action", "action"),
 }
-"""For each noun, the word for its types, and the part of their names that tells them."""
+"""For each noun, what its types are called, and the part of type names that identifies them."""
 
 AnswerT = TypeVar("AnswerT")
 
@@ -41,7 +41,7 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 Completer = Callable[[click.Context, click.Parameter, str], list[str]]
 
 QUIET_S = 0.3
-"""Silence of discovery after which names are offered, in seconds; a person is waiting."""
+"""How long discovery must be quiet before names are offered, in seconds: a person is waiting."""
 
 ANSWER_S = 1.0
 """Timeout for the answer of a node, such as its parameters, in seconds; normally milliseconds."""
@@ -73,9 +73,9 @@ def type_argument(what: str, *, required: bool = True) -> Callable[[CommandT], C
 def values_parameters(
     what: str, word: str = "values"
 ) -> tuple[Callable[[CommandT], CommandT], ...]:
-    """Return the parameters for the name of a ``topic``, its type and values for it, in YAML.
+    """Return the parameters for a name, its type and values for it in YAML, e.g. of a ``topic``.
 
-    They suit ``service`` and ``action`` as well. `read_values` reads the values.
+    They also suit ``service`` and ``action``. `read_values` reads the values.
     """
     completer = complete_values(TYPES[what][0])
     return (
@@ -91,8 +91,8 @@ def values_parameters(
 def complete_types_of(what: str) -> Completer:
     """Return the completer for the type after the name of a ``topic``, ``service`` or ``action``.
 
-    It offers the types that the name has on the network. If none of them matches, it offers all
-    types that such a name can have.
+    It offers the types that the name has on the network; if none of them matches, all types that
+    such a name can have.
     """
     any_type = complete_interfaces(TYPES[what][1])
 
@@ -114,10 +114,10 @@ def types_now(what: str, name: str) -> list[str]:
 
 
 def complete_of_node(question: Callable[[Node, str], Awaitable[Iterable[str]]]) -> Completer:
-    """Return the completer for names that the node earlier on the command line answers with.
+    """Return the completer for names obtained from the node earlier on the command line.
 
     Args:
-        question: Called with the node of the command, and the full name of that node.
+        question: Called with the command's node and the full name of that node.
     """
 
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
@@ -135,7 +135,7 @@ def complete_of_node(question: Callable[[Node, str], Awaitable[Iterable[str]]]) 
 
 
 def complete_values(kind: str) -> Completer:
-    """Return the completer for values of the type before them, with their defaults, in YAML.
+    """Return the completer for YAML values of the type before them, with their defaults.
 
     Args:
         kind: ``message``, ``service`` or ``action``.
@@ -144,7 +144,7 @@ def complete_values(kind: str) -> Completer:
     def complete(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
         cls = class_named(ctx.params.get(f"{kind}_type"))
         if cls is None or incomplete:
-            return []  # an edited text is not replaced
+            return []  # do not replace what has been edited
         part = {"message": "", "service": "Request", "action": "Goal"}[kind]
         msg_type = getattr(cls, part, None) if part else cls
         return [] if msg_type is None else [prototype(msg_type)]
@@ -153,14 +153,14 @@ def complete_values(kind: str) -> Completer:
 
 
 def prototype(cls: Any) -> str:
-    """Return the defaults of a message in YAML on one line, without single quotes."""
+    """Return the defaults of a message as YAML on one line, without single quotes."""
     from aionode.message import to_yaml
 
     return to_yaml(cls(), flow_style=True).strip().replace("''", '""')
 
 
 def class_named(type_name: str | None) -> Any:
-    """Return the class of a type, if need be as the nodes describe it; None if there is none."""
+    """Return the class of a type, asking nodes if necessary; None if there is none."""
     from aionode.errors import InterfaceNotFoundError
     from aionode.interfaces import get_interface
 
@@ -173,12 +173,12 @@ def class_named(type_name: str | None) -> Any:
 
 
 def beginning(incomplete: str, names: list[str]) -> list[str]:
-    """Return the names that begin with `incomplete`."""
+    """Return the names that start with `incomplete`."""
     return [name for name in names if name.startswith(incomplete)]
 
 
 def ask_now(question: Callable[[Node], Awaitable[AnswerT]], nothing: AnswerT) -> AnswerT:
-    """Return the network's answer to a question, or `nothing` after an error.
+    """Ask the network a question; return `nothing` after an error.
 
     An error cannot be shown in the middle of a command line.
     """

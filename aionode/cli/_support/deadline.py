@@ -1,4 +1,4 @@
-"""Ending the process by a deadline, whatever it is still waiting for."""
+"""Ending the process at a deadline, whatever it is waiting for."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ __all__ = ["Deadline"]
 class Deadline:
     """Ends the process at a given time, whatever it is waiting for.
 
-    By then the work is done and its output printed. Only Zenoh may still be waiting, for a peer
+    By then, the work is done and its output printed. Only Zenoh may still be waiting for a peer
     that is frozen or overloaded, and there is no reason to wait with it.
 
     Args:
-        armed: Whether the process may be ended: it is the command, and no other program.
+        armed: Whether the process may be ended: only if it is the command, not another program.
     """
 
     def __init__(self, *, armed: bool) -> None:
         self._armed = armed
-        # The lock of each thread that waits for a deadline; releasing the lock ends that thread.
-        # A signal handler may run `set` between two lines of `set` or `cancel` of the same thread:
-        # each step is one call of C, and leaves no deadline out of the list.
+        # One lock per thread that waits for a deadline; releasing the lock ends that thread. A
+        # signal handler may run `set` between two lines of `set` or `cancel` in the same thread, so
+        # each step is a single C call that leaves no deadline out of the list.
         self._waiting: list[_thread.LockType] = []
 
     def set(self, seconds: float, status: int, text: str = "") -> None:
@@ -48,6 +48,6 @@ class Deadline:
 
     def cancel(self) -> None:
         """Remove the deadline."""
-        with contextlib.suppress(IndexError):  # all are removed, perhaps by a handler meanwhile
+        with contextlib.suppress(IndexError):  # all removed, perhaps by a handler meanwhile
             while True:
                 self._waiting.pop().release()

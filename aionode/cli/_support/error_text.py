@@ -1,4 +1,4 @@
-"""Errors in one line."""
+"""Errors as one line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MOST_CHARACTERS = 1000
 
 
 def limited(text: str) -> str:
-    """Return a text, without its middle if it is too long."""
+    """Return a text, omitting its middle if it is too long."""
     if len(text) <= MOST_CHARACTERS:
         return text
     return f"{text[: MOST_CHARACTERS // 2]} ... {text[-MOST_CHARACTERS // 2 :]}"

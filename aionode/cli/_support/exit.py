@@ -1,7 +1,7 @@
-"""The end of the process: its exit status, leaving without any wait, and giving it to a program.
+"""Ending the process: its exit status, leaving without waiting, and replacing it by a program.
 
-A process that only called `main([...])` belongs to its own program, so it is neither left nor given
-away.
+A process that merely called `main([...])` belongs to its own program, so it is neither ended nor
+replaced.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 __all__ = ["INTERRUPTED", "OWN_PROCESS", "become", "leave", "owns_process", "status_of"]
 
 INTERRUPTED = 130
-"""The exit status of a program that Ctrl-C interrupted, by the convention of shells."""
+"""The exit status of a program interrupted by Ctrl-C, by shell convention."""
 
 OWN_PROCESS: Final = "own process"
-"""The object of click's root context if the process is the command."""
+"""The ``obj`` of click's root context if the process is the command."""
 
 
 def owns_process() -> bool:
@@ -43,9 +43,9 @@ def status_of(error: AionodeError) -> int:
 
 
 def leave(status: int, text: str = "") -> None:
-    """Exit at once, without waiting for threads or exit handlers.
+    """Exit immediately, without waiting for threads or exit handlers.
 
-    Output has been flushed already; flushing again could block on its reader.
+    Output has already been flushed; flushing again could block on its reader.
     """
     if text and accepts(sys.stderr.fileno()):
         with contextlib.suppress(OSError):
@@ -54,11 +54,11 @@ def leave(status: int, text: str = "") -> None:
 
 
 def become(command: Sequence[str]) -> NoReturn:
-    """Run a command in the place of this process, so that signals reach the command itself.
+    """Replace this process by a command, so that signals reach the command itself.
 
     Raises:
-        click.exceptions.Exit: The command has ended, where it cannot take the place of the process:
-            on Windows, and in the process of another program.
+        click.exceptions.Exit: the command has ended, where it cannot replace the process: on
+            Windows, and inside another program.
     """
     if sys.platform != "win32" and owns_process():
         os.execv(command[0], list(command))  # noqa: S606 (the user's program)

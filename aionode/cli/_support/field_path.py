@@ -1,4 +1,4 @@
-"""The field of a message that a path such as ``poses[3].position`` names, or the error."""
+"""Resolving a field path of a message, such as ``poses[3].position``."""
 
 from __future__ import annotations
 

@@ -82,7 +82,7 @@ class Follower:
         """Wait until finished; return False if `timeout_s` passes first.
 
         Raises:
-            Exception: what a callback raised.
+            Exception: whatever a callback raised.
         """
         try:
             async with asyncio.timeout(timeout_s):
@@ -122,10 +122,10 @@ async def wait_for_type(
 
 
 def filter_from(text: str | None) -> Callable[[Any], bool]:
-    """Return the predicate of a ``--filter`` expression, in which the message is ``m``.
+    """Return the predicate for a ``--filter`` expression, in which ``m`` is the message.
 
     Raises:
-        CommandError: the text is not a Python expression. The predicate raises it when evaluation
+        CommandError: the text is not a Python expression. The predicate raises it if evaluation
             fails.
     """
     if text is None:

@@ -1,4 +1,4 @@
-"""Messages and endpoints as text, in the layout of ros2."""
+"""Messages and endpoints as text, in ros2's layout."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def yaml_text(plain: object, *, flow_style: bool = False) -> str:
 
 @functools.cache
 def block_mappings() -> Any:
-    """Return PyYAML's dumper, but with a line for each key, as ros2 prints messages."""
+    """Return PyYAML's dumper, modified to print each key on its own line, as ros2 does."""
     import yaml
 
     base: Any = getattr(yaml, "CSafeDumper", yaml.SafeDumper)  # libyaml is optional
@@ -57,7 +57,7 @@ def block_mappings() -> Any:
 
 
 def csv_line(plain: Any) -> str:
-    """Return all values on one line, separated by commas; line breaks in them as escapes."""
+    """Return all values on one line, separated by commas, with line breaks escaped."""
     if isinstance(plain, dict):
         return ",".join(csv_line(value) for value in plain.values())
     if isinstance(plain, list):
@@ -66,20 +66,20 @@ def csv_line(plain: Any) -> str:
 
 
 class Printer:
-    """Prints messages in the form that the options of ``echo`` select.
+    """Prints messages in the format selected by the options of ``echo``.
 
     Args:
         output: Where to print.
-        csv: Whether all values stand on one line.
-        flow_style: Whether each array stands on one line, in brackets.
-        truncate_length: Maximum elements of an array and characters of a string; None prints all,
-            as ``--json`` always does.
-        no_arr: Whether arrays are described instead of printed.
-        no_str: Whether strings are described instead of printed.
-        fields: The paths of the fields to print; all of the message if there are none.
+        csv: Whether to print all values on one line.
+        flow_style: Whether to print each array on one line, in brackets.
+        truncate_length: Maximum number of elements or characters to print; None prints all, as
+        ``--json`` always does.
+        no_arr: Whether to describe arrays instead of printing them.
+        no_str: Whether to describe strings instead of printing them.
+        fields: Paths of the fields to print; if empty, the whole message is printed.
 
     Raises:
-        CommandError: A path is empty.
+        CommandError: a path is empty.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class Printer:
         self._csv = csv
         self._flow_style = flow_style
         self._fields = fields
-        # ros2 prints a `byte` as a character, in CSV and as a single field as bytes.
+        # ros2 prints a `byte` as a character, but in CSV and as a single field as bytes.
         as_byte = chr if not (csv or fields) else lambda number: bytes((number,))
         self._form = Form(
             as_byte=int if output.json else as_byte,
@@ -112,12 +112,12 @@ class Printer:
         )
 
     def part_of(self, msg: Any) -> Any:
-        """Return the part of a message that is printed: all of it, one field, or a list of them."""
+        """Return the part of a message to print: all of it, one field, or a list of fields."""
         parts = [part for part, _ in self._parts(msg)]
         return parts[0] if len(parts) == 1 else parts
 
     def show(self, msg: Any, info: Mapping[str, int] | None = None) -> None:
-        """Print one message, or its bytes, after `info` if given."""
+        """Print one message, or its bytes, preceded by `info` if given."""
         if isinstance(msg, Message):
             parts = self._parts(msg)
             if len(parts) == 1:
@@ -134,7 +134,7 @@ class Printer:
             self._output.text(f"{bytes(msg)!r}\n---")
 
     def plain(self, part: Any, type_: FieldType | None = None) -> Any:
-        """Return a message, or the part of one that has a type, as plain values."""
+        """Return a message, or a part of one with the given type, as plain values."""
         if isinstance(part, Message):
             return plain(part, self._form)
         if type_ is None or isinstance(part, int):  # an element of an array of bytes is a number
@@ -144,7 +144,7 @@ class Printer:
     def show_plain(
         self, plain: Any, info: Mapping[str, int] | None = None, *, as_yaml: bool = True
     ) -> None:
-        """Print plain values, after `info` if given."""
+        """Print plain values, preceded by `info` if given."""
         if self._output.json:
             self._output.item("", plain if info is None else {"info": info, "message": plain})
         elif self._csv:
@@ -176,12 +176,12 @@ class Printer:
 
 
 def names_text(names: list[str]) -> str:
-    """Return a single name as it is, several as a list."""
+    """Return a single name unchanged, several names as a list."""
     return names[0] if len(names) == 1 else str(names)
 
 
 def endpoint_text(endpoint: EndpointInfo) -> str:
-    """Return the details of a publisher or subscription, in the lines of ros2."""
+    """Return the details of a publisher or subscription, in ros2's layout."""
     profile = endpoint.qos
     depth = f" ({profile.depth})" if profile.history is HistoryPolicy.KEEP_LAST else ""
     return "\n".join(

@@ -1,4 +1,4 @@
-"""Nodes, endpoints and types on the network, without those of the command itself."""
+"""Nodes, endpoints and types on the network, excluding those of the command itself."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ __all__ = [
 ]
 
 ALIKE: Final = 0.75
-"""How alike two names are at least if one of them is taken for the other, misspelled."""
+"""Minimum similarity at which a name is suggested as the correct spelling of another."""
 
 
 def is_own(node: Node, info: NodeInfo) -> bool:
-    """Return whether `info` is the node of the command itself."""
+    """Return whether `info` describes the command's own node."""
     return (
         info.participant == node.context.participant
         and info.fully_qualified_name == node.get_fully_qualified_name()
@@ -84,7 +84,7 @@ def actions_and_types(
 
     Args:
         node: The command's node.
-        kinds: Publishers for the servers, which publish feedback; subscriptions for the clients.
+        kinds: Publishers to find servers, which publish feedback; subscriptions to find clients.
         of: Only the actions of this node.
     """
     from aionode.engine.graph_queries import actions_among
@@ -93,22 +93,22 @@ def actions_and_types(
     return dict(actions_among(list(topics.items())))
 
 
-# Errors with help
+# Errors with hints
 
 
 def likeness(name: str, other: str) -> float:
-    """Return how alike two names are, from 0 to 1: as much as the parts that differ most.
+    """Return the similarity of two names, from 0 to 1: that of their least similar parts.
 
-    Case is no difference, nor is a namespace that only one of them has. The parts are compared one
-    by one, so that a long namespace, or a last part such as ``get_parameters``, which many names
-    share, does not make different words alike.
+    Case is ignored, and so is a namespace that only one of them has. Comparing part by part keeps a
+    long namespace, or a last part shared by many names such as ``get_parameters``, from making
+    different names similar.
     """
     pairs = zip(parts(name), parts(other), strict=False)
     return min(difflib.SequenceMatcher(None, *pair).ratio() for pair in pairs)
 
 
 def parts(name: str) -> list[str]:
-    """Return the parts of a name in lower case, the last one first, each with its slash."""
+    """Return the parts of a name in lower case, last one first, each with its slash."""
     return [f"/{part}" for part in reversed(name.lower().strip("/").split("/"))]
 
 
@@ -120,7 +120,7 @@ def close_to(name: str, names: Iterable[str]) -> str:
 
 
 def unknown(text: str, name: str, names: Iterable[str], shows: str) -> CommandError:
-    """Return the error for an unknown name, with a similar one or the command that lists them."""
+    """Return the error for an unknown name; it suggests a similar one, or how to list them."""
     hint = close_to(name, names) or f". `aionode {shows}` lists those available"
     return CommandError(f"{text} '{name}'{hint}")
 
@@ -136,7 +136,7 @@ async def class_of(
     users: Sequence[EndpointInfo] = (),
     used: Collection[str] = (),
 ) -> Any:
-    """Return the class of a type: as the nodes of its users describe it, or as it is known here.
+    """Return the class of a type, as described by the nodes that use it, or as known here.
 
     Args:
         node: The command's node.
@@ -144,10 +144,10 @@ async def class_of(
         type_name: The type.
         name: Full name of the topic, service or action.
         users: Its endpoints of that type.
-        used: All types that the name has on the network, if it must have the type.
+        used: All types that the name has on the network, if `type_name` must be one of them.
 
     Raises:
-        CommandError: there is no such type, no node describes it, or the name has another one.
+        CommandError: there is no such type, no node describes it, or the name has another type.
     """
     from aionode import interfaces
 
@@ -181,7 +181,7 @@ async def topic_type(node: Node, topic: str, given: str | None = None) -> type[M
     Args:
         node: The command's node.
         topic: Full name of the topic.
-        given: The type that the user gave; only endpoints of that type are considered.
+        given: The type given by the user; only endpoints of that type are considered.
 
     Raises:
         CommandError: the endpoints have several types, or the type cannot be determined.
@@ -222,5 +222,5 @@ def action_endpoints(node: Node, name: str) -> list[EndpointInfo]:
 
 
 def absolute(node_name: str) -> str:
-    """Return the full name of a node; the leading slash may be left out."""
+    """Return the full name of a node; the leading slash may be omitted."""
     return node_name if node_name.startswith("/") else f"/{node_name}"

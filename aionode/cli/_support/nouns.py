@@ -1,4 +1,4 @@
-"""The nouns whose names have types, topics, services and actions, and the verbs they share."""
+"""The nouns with typed names (topics, services and actions), and the verbs they share."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class Noun:
     def types_by_name(self, node: Node, *, hidden: bool = False) -> dict[str, list[str]]:
         """Return the names on the network, sorted, each with its types."""
         if self is ACTION:
-            # An action consists of hidden topics and services; its topics show both ends.
+            # An action consists of hidden topics and services; its topics show both sides.
             return lookup.actions_and_types(node, *TOPIC_KINDS)
         kinds = SERVICE_KINDS if self is SERVICE else TOPIC_KINDS
         return lookup.names_and_types(node, *kinds, hidden=hidden)
@@ -48,7 +48,7 @@ class Noun:
         return lookup.unknown(f"Unknown {self.word}", name, known, f"{self.word} list")
 
     def name_and_types(self, node: Node, name: str) -> tuple[str, list[str]]:
-        """Return the full name and the types of a name that the user gave.
+        """Resolve a name given by the user; return its full name and types.
 
         Raises:
             CommandError: it is not on the network.
@@ -118,7 +118,7 @@ class Noun:
         output: Output,
         timeout_s: float | None,
     ) -> None:
-        """Wait for a server of a service or action; warn at once if a similar name has one.
+        """Wait for a server of a service or action; warn immediately if a similar name has one.
 
         Raises:
             CommandError: none appeared within `timeout_s`.

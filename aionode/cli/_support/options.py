@@ -41,14 +41,14 @@ CommandT = TypeVar("CommandT", bound=Callable[..., Any])
 json_option = click.option("--json", is_flag=True, help="Print one record per line, as JSON.")
 
 MOST_SECONDS = 1e9
-"""Upper limit of durations: thirty years, within the range of every clock."""
+"""Upper limit of durations in seconds: about thirty years, within the range of every clock."""
 
 MOST = 2**31 - 1
-"""Upper limit of counts: it fits every queue length."""
+"""Upper limit of counts; fits every queue length."""
 
 
 class Number(click.FloatRange):
-    """A range of floats that excludes ``nan``, which click accepts in every range."""
+    """A float range that excludes ``nan``, which click accepts in every range."""
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
@@ -87,7 +87,7 @@ hidden_nodes_option = click.option(
 def count_option(what: str) -> Callable[[CommandT], CommandT]:
     """Return the option that prints only the number of `what`."""
     return click.option(
-        "-c", f"--count-{what}", "count", is_flag=True, help="Print only how many there are."
+        "-c", f"--count-{what}", "count", is_flag=True, help="Print only the count."
     )
 
 
@@ -97,12 +97,12 @@ def hidden_option(*names: str, what: str) -> Callable[[CommandT], CommandT]:
 
 
 def filter_option(does: str) -> Callable[[CommandT], CommandT]:
-    """Return the option for a Python expression about each message."""
+    """Return the option for a Python expression that is evaluated for each message."""
     return click.option(
         "--filter",
         "filter_text",
         metavar="EXPR",
-        help=f"{does} only messages for which this Python expression is true; m is the message.",
+        help=f"{does} only messages for which this Python expression is true (m: the message).",
     )
 
 
@@ -115,7 +115,7 @@ def ros2_options(command: CommandT) -> CommandT:
 
 
 sim_time_option = click.option(
-    "-s", "--use-sim-time", is_flag=True, help="Take the time from /clock, as in a simulation."
+    "-s", "--use-sim-time", is_flag=True, help="Use the time of /clock (simulated time)."
 )
 
 
@@ -133,7 +133,7 @@ def interfaces_option(command: CommandT) -> CommandT:
         expose_value=False,
         callback=name_interface_folders,
         help="Folder with your own .msg, .srv, .action and .idl files; also $AIONODE_INTERFACES. "
-        "Those of the workspace around the current folder are found without it.",
+        "The workspace around the current folder is searched anyway.",
     )(command)
 
 
@@ -148,7 +148,7 @@ def name_interface_folders(
 
 @contextlib.contextmanager
 def in_environment(name: str, value: str) -> Iterator[None]:
-    """Set a variable of the environment for the time of a command: the program may run others."""
+    """Set an environment variable while a command runs: the program may run other commands."""
     before = os.environ.get(name)
     os.environ[name] = value
     try:
@@ -161,7 +161,7 @@ def in_environment(name: str, value: str) -> Iterator[None]:
 
 
 def read_values(options: dict[str, Any]) -> None:
-    """Replace ``stdin`` and ``values`` in `options` by the values as given, or read from stdin.
+    """Replace ``stdin`` and ``values`` in `options` by the given values, read from stdin if asked.
 
     Raises:
         click.UsageError: values and ``--stdin`` were both given.

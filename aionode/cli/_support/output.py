@@ -1,8 +1,8 @@
-"""The output of a command: text for people, or with ``--json`` one record per line for programs.
+"""Output of a command: text for people, or with ``--json`` one record per line for programs.
 
 Data goes to stdout; warnings and progress go to stderr. Each item is flushed, so that a pipe gets
-it at once. A terminal shows the control characters of received text as escapes; a pipe or a file
-gets the characters themselves.
+it immediately. On a terminal, control characters in received text are shown as escapes; a pipe or
+file gets the characters themselves.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class Output:
     """The output streams of a verb.
 
     Args:
-        stdout: The stream for data; default: sys.stdout.
-        stderr: The stream for warnings; default: sys.stderr.
+        stdout: The stream for data; defaults to sys.stdout.
+        stderr: The stream for warnings; defaults to sys.stderr.
         json: Whether to print records instead of text.
 
     Attributes:
@@ -64,7 +64,7 @@ class Output:
             self._write(text)
 
     def items(self, items: Iterable[tuple[str, object]], *, count: str = "") -> None:
-        """Print each item, a text and its record; with `count`, their number, under that key."""
+        """Print each item (text and record); with `count`, print their number under that key."""
         if count:
             number = len(list(items))
             self.item(str(number), {count: number})
@@ -92,14 +92,14 @@ class Output:
             self._stdout.write(CLEAR)
 
     def progress(self, text: str) -> None:
-        """Print what is being waited for: on stdout as ros2 does, on stderr with ``--json``."""
+        """Print what is being waited for: on stdout, as ros2 does; with ``--json`` on stderr."""
         if self.json:
             self.warn(text)
         else:
             self._write(text)
 
     def warn(self, text: str) -> None:
-        """Print a line on stderr; dropped if stderr cannot be written to."""
+        """Print a line on stderr; it is dropped if stderr cannot be written to."""
         try:
             self._stderr.write(f"{escaped(text)}\n")
             self._stderr.flush()
@@ -113,7 +113,7 @@ class Output:
         try:
             self._stdout.write(escaped(text) if self.is_terminal else text)
             self._stdout.flush()
-        except BrokenPipeError:  # the reader went away on purpose
+        except BrokenPipeError:  # the reader closed the pipe on purpose
             raise
         except OSError as error:
             discard(self._stdout)
@@ -132,9 +132,9 @@ class Output:
 
     @contextlib.contextmanager
     def live(self) -> Iterator[Callable[[Callable[[int], str]], None]]:
-        """Yield a function that displays a text in place of the previous one.
+        """Yield a function that shows a text in place of the previous one.
 
-        Its argument returns the text for the width of the terminal, in characters.
+        Its argument is a function that returns the text for a terminal width in characters.
         """
         from rich.console import Console
         from rich.live import Live
@@ -156,13 +156,13 @@ def unwritable(error: OSError) -> str:
 
 
 def json_safe(plain: Any) -> Any:
-    """Return plain values, with strings for the floats that JSON cannot represent."""
+    """Return plain values in which floats that JSON cannot represent are strings."""
     if isinstance(plain, float):
         return plain if math.isfinite(plain) else NOT_FINITE[str(plain)]
     if isinstance(plain, dict):
         return {key: json_safe(value) for key, value in plain.items()}
     if isinstance(plain, list):
-        # The elements of a list have one type, and lists of numbers can be long: one is checked.
+        # List elements share one type, and lists of numbers can be long: checking one is enough.
         simple = not plain or isinstance(plain[0], int | str)
         return plain if simple else [json_safe(value) for value in plain]
     return plain

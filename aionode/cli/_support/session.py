@@ -1,4 +1,4 @@
-"""Running a verb: a node for it, Ctrl-C, and the exit status."""
+"""Running a verb with a node, handling Ctrl-C, and the exit status."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 __all__ = ["make_node", "run_verb", "silent_processes"]
 
 CLOSE_S = 0.9
-"""Timeout for the exit of a command that has printed its answer, in seconds."""
+"""Timeout for a command to exit after printing its answer, in seconds."""
 
 STOP_S = 3.5
-"""Timeout for the exit of a command after a signal, in seconds."""
+"""Timeout for a command to exit after a signal, in seconds."""
 
 QUIET_S = 2.0
-"""Silence after which discovery counts as complete, in seconds.
+"""How long discovery must be quiet to count as complete, in seconds.
 
 Zenoh has been seen to pause this long between the first of 3000 endpoints and the rest.
 """
 
 PROGRESS_S = 1.0
-"""Interval of the reports of a command that waits, in seconds."""
+"""Interval of progress reports while a command waits, in seconds."""
 
 UNLIMITED_MS = 3_600_000.0
 """Callback budget of a command: nothing else runs in its loop, and terminals are slow."""
@@ -55,7 +55,7 @@ def make_node(
     describes the types that it uses, as others may not know them: of a topic that nobody but
     ``topic echo --interfaces`` uses, for example.
     """
-    # Imported when a command runs; its help does not need them.
+    # Imported when a command runs; its help does not need it.
     from aionode.engine.context import Context
     from aionode.node import Node
     from aionode.parameter import Parameter
@@ -81,12 +81,12 @@ def run_verb(
     asks: bool = True,
     stop_s: float = STOP_S,
 ) -> None:
-    """Run `verb` with a node, until it returns or Ctrl-C; then end the command.
+    """Run `verb` with a node until it returns or Ctrl-C is pressed; then end the command.
 
     Args:
         verb: Called with a running node and the output; it may return an exit status.
         json: Whether to print records.
-        node_name: Name of the node; default: a hidden name.
+        node_name: Name of the node; defaults to a hidden name.
         use_sim_time: Whether the node takes its time from ``/clock``.
         endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
         busy: Whether many messages are expected, which makes the faster loop worth its import.
@@ -97,7 +97,7 @@ def run_verb(
         click.exceptions.Exit: always, with the exit status.
         AionodeError: the verb failed.
     """
-    # Imported when a command runs; its help does not need them.
+    # Imported when a command runs; its help does not need it.
     from aionode.cli._support.deadline import Deadline
     from aionode.runner import best_loop_factory
 
@@ -135,7 +135,7 @@ def run_verb(
 async def wait_until_known(node: Node, output: Output) -> None:
     """Wait until discovery is complete, and report progress if that takes long.
 
-    It waits as long as something new arrives. If a peer does not answer, it warns that the output
+    It waits as long as new information arrives. If a peer does not answer, it warns that the output
     may be incomplete.
     """
     transports = node.context.transports
@@ -159,7 +159,7 @@ async def wait_until_known(node: Node, output: Output) -> None:
 
 
 def silent_processes(node: Node) -> list[str]:
-    """Return in words which processes do not answer the node of a command."""
+    """Describe the processes that do not answer the command's node."""
     return [who for transport in node.context.transports for who in transport.silent_processes()]
 
 
@@ -172,11 +172,11 @@ def run_until_stopped(
 
     Args:
         work: Cancelled at the first signal.
-        loop_factory: Creates the event loop; default: asyncio's own.
+        loop_factory: Creates the event loop; defaults to asyncio's own.
         on_stop: Called at the first signal, even while the loop is blocked.
 
     Raises:
-        BaseException: what `work` raised; the first error where it raised several.
+        BaseException: what `work` raised; the most informative error if there are several.
     """
     from aionode._process.signals import signals_to
     from aionode.runner import Stop

@@ -1,4 +1,4 @@
-"""Messages from the YAML that a user types."""
+"""Messages from YAML typed by a user."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TIME = "builtin_interfaces/msg/Time"
 
 
 def plain_values(text: str, what: str) -> dict[str, Any]:
-    """Return the mapping in a YAML text as plain values.
+    """Parse a YAML text and return its mapping as plain values.
 
     Raises:
         CommandError: the text is not valid YAML, or not a mapping.
@@ -45,7 +45,7 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
         raise CommandError(
             f"The passed value has {len(documents)} YAML documents: {shortened(text)}; expected one"
         )
-    # `topic echo` prints three dashes after a message, which begin another, empty document.
+    # `topic echo` prints `---` after each message, which starts another, empty document.
     values = documents[0] if documents else {}
     if isinstance(values, str) and UNSEPARATED.match(values):
         raise unseparated(values)
@@ -58,7 +58,7 @@ def plain_values(text: str, what: str) -> dict[str, Any]:
 
 
 def loader() -> Any:
-    """Return PyYAML's safe loader, but with dates as strings: no ROS field holds a date."""
+    """Return PyYAML's safe loader, with dates as strings: no ROS field holds a date."""
     import yaml
 
     base = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml is optional
@@ -91,12 +91,12 @@ def message_from_yaml(msg_type: type[Message], text: str) -> Message:
 
 
 UNSEPARATED = re.compile(r"\w+:\S")
-"""A key and a value without the blank between them, which YAML reads as one word."""
+"""A key and a value without the space between them, which YAML reads as one word."""
 
 
 def expect_separated(values: object) -> None:
-    """Raise CommandError for a key that is a key and its value: ``order:3``."""
-    seen: set[int] = set()  # by an alias, YAML may hold a value within itself
+    """Raise CommandError for a key that contains its value: ``order:3``."""
+    seen: set[int] = set()  # YAML aliases allow a value to contain itself
     waiting = [values]
     while waiting:
         value = waiting.pop()
@@ -113,10 +113,10 @@ def expect_separated(values: object) -> None:
 
 
 def unseparated(pair: str) -> CommandError:
-    """Return the error for a key and a value without the blank between them."""
+    """Return the error for a key and a value without the space between them."""
     meant = shortened(pair.replace(":", ": ", 1))
     return CommandError(
-        f"The passed value has the field {shortened(pair)}; YAML wants a blank after the colon: "
+        f"The passed value has the field {shortened(pair)}; YAML requires a space after the colon: "
         f"{meant}"
     )
 
@@ -146,7 +146,7 @@ class Filler:
         self._message = message_from(msg_type, values)
 
     def message(self, now: Time) -> Message:
-        """Return the message, with `now` in every field given as ``auto`` or ``now``."""
+        """Return the message, with every ``auto`` and ``now`` replaced by `now`."""
         for stamp in self._stamps:
             stamp(self._message, now.to_msg())
         return self._message
@@ -154,7 +154,7 @@ class Filler:
     def _strip(
         self, msg_type: type[Message], values: dict[str, Any], path: tuple[str, ...]
     ) -> None:
-        """Replace every ``auto`` and ``now`` in `values`, and remember their fields."""
+        """Remove every ``auto`` and ``now`` from `values`, and remember their fields."""
         for field in fields(msg_type):
             nested, value = field.type.nested, values.get(field.name)
             if nested is None or field.type.container != "single":

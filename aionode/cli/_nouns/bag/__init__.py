@@ -30,7 +30,7 @@ __all__ = ["bag_command"]
 
 
 class BagGroup(click.Group):
-    """A group whose commands name the file that is missing or cannot be read, in one line."""
+    """A group that reports a missing or unreadable file in one line, with its name."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command.
@@ -63,15 +63,15 @@ bag_command.add_command(burst_command)
 
 @bag_command.command("info")
 @click.argument("path")
-@click.option("-s", "--storage", help="Without effect: the file tells.")
+@click.option("-s", "--storage", help="Has no effect: the format is detected.")
 @click.option("-t", "--topic-name", is_flag=True, help="Print only the names of the topics.")
-@click.option("-v", "--verbose", is_flag=True, help="Also the QoS and hashes of the topics.")
+@click.option("-v", "--verbose", is_flag=True, help="Also print the QoS and type hashes.")
 @click.option("--sort", type=click.Choice(["name", "type", "count"]), default="name", help="Order.")
 @json_option
 def info_command(
     path: str, storage: str, topic_name: bool, verbose: bool, sort: str, json: bool
 ) -> None:
-    """Print what a bag has."""
+    """Print the contents of a bag."""
     del storage
     from aionode import bag
 
@@ -88,12 +88,12 @@ def info_command(
 
 
 def count_of(topic: TopicInfo) -> int:
-    """Return how many messages a topic has."""
+    """Return the number of messages of a topic."""
     return topic.message_count
 
 
 def info_text(opened: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
-    """Return what a bag has, as rosbag2 prints it."""
+    """Return the contents of a bag as text, in rosbag2's layout."""
     lines = [
         f"Files:             {opened.path}",
         f"Duration:          {opened.duration.nanoseconds / 1e9:.9f}s",
@@ -113,9 +113,9 @@ def info_text(opened: Bag, topics: list[TopicInfo], *, verbose: bool) -> str:
 
 
 def lost_text(opened: Bag) -> str:
-    """Return in one line what the recorder of a bag has lost."""
+    """Return one line about what the recorder of a bag lost."""
     if opened.losses is None:
-        return "not known: its recorder does not say"
+        return "unknown: its recorder does not report it"
     return (
         "; ".join(
             f"{name}: {lost.in_transport} in transport, {lost.in_recorder} in recorder"
@@ -126,7 +126,7 @@ def lost_text(opened: Bag) -> str:
 
 
 def info_record(opened: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
-    """Return what a bag has, as a record."""
+    """Return the contents of a bag as a record."""
     return {
         "path": str(opened.path),
         "start_ns": opened.start_ns,
@@ -154,7 +154,7 @@ def info_record(opened: Bag, topics: list[TopicInfo]) -> dict[str, Any]:
 @click.argument("what", type=click.Choice(["storage", "converter", "compressor", "decompressor"]))
 @json_option
 def list_command(what: str, json: bool) -> None:
-    """Print which formats there are."""
+    """Print the available formats."""
     formats = {
         "storage": ["mcap", "sqlite3"],
         "converter": ["cdr"],
@@ -167,18 +167,18 @@ def list_command(what: str, json: bool) -> None:
 # Copying and repairing
 
 span_options = [
-    click.option("--start", help="Where to begin, after the start of the bag: 10s."),
-    click.option("--end", help="Where to end, after the start of the bag: 15s."),
-    click.option("--duration", help="How long, from where it begins: 5s."),
+    click.option("--start", help="Start of the piece, from the start of the bag, as 10s."),
+    click.option("--end", help="End of the piece, from the start of the bag, as 15s."),
+    click.option("--duration", help="Duration of the piece, as 5s."),
 ]
 compression_option = click.option(
     "--compression", type=click.Choice(["zstd", "zstd_small", "lz4", "none"]), default="zstd",
-    help="The compression of chunks.",
+    help="Compression of the chunks.",
 )  # fmt: skip
 
 
 def tell_written(output: Output, out: str, count: int) -> None:
-    """Say what was written."""
+    """Report what was written."""
     output.item(f"{out}: {count} messages", {"path": out, "message_count": count})
 
 
@@ -207,7 +207,7 @@ def cut_command(path: str, out: str, json: bool, **values: Any) -> None:
 @compression_option
 @json_option
 def merge_command(paths: tuple[str, ...], out: str, compression: str, json: bool) -> None:
-    """Copy several bags into one, in order of time."""
+    """Merge several bags into one, ordered by time."""
     from aionode import bag
 
     tell_written(Output(json=json), out, bag.merge(paths, out, compression=compression))
@@ -215,19 +215,23 @@ def merge_command(paths: tuple[str, ...], out: str, compression: str, json: bool
 
 @bag_command.command("convert")
 @click.argument("paths", nargs=-1)
-@names("-i", "--input", "inputs", what="Bags; then the last argument is that of the new bag.")
-@click.option("--input-options", type=click.Path(exists=True), help="The bags, as rosbag2's YAML.")
+@names("-i", "--input", "inputs", what="Input bags; the only argument is then the output bag.")
+@click.option(
+    "--input-options", type=click.Path(exists=True), help="Input bags, as a rosbag2 YAML file."
+)
 @click.option(
     "-o", "--output-options", type=click.Path(exists=True),
-    help="The new bags, as rosbag2's YAML, in place of the last argument.",
+    help="Output bags, as a rosbag2 YAML file, instead of the last argument.",
 )  # fmt: skip
 @spread(span_options)
 @selection_options(playing=True)
 @compression_option
-@click.option("-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Bytes of a file.")
+@click.option(
+    "-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Split files at N bytes."
+)
 @json_option
 def convert_command(paths: tuple[str, ...], json: bool, **values: Any) -> None:
-    """Write bags of any kind anew, as one MCAP bag: convert IN... OUT."""
+    """Convert bags of any format to one MCAP bag: convert IN... OUT."""
     from aionode import bag
 
     outputs = []
@@ -245,7 +249,7 @@ def convert_command(paths: tuple[str, ...], json: bool, **values: Any) -> None:
         outputs, paths = [(paths[-1], options)], paths[:-1]
     bags = [*paths, *bag_names(values["inputs"]), *option_from(inputs_in, values["input_options"])]
     if not bags or not outputs:
-        raise click.UsageError("give the bags and the new one: convert IN... OUT")
+        raise click.UsageError("give the input bags and the output bag: convert IN... OUT")
     for out, options in outputs:
         count = bag.convert(bags, out, **options)
         tell_written(Output(json=json), out, count)
@@ -253,9 +257,9 @@ def convert_command(paths: tuple[str, ...], json: bool, **values: Any) -> None:
 
 @bag_command.command("reindex")
 @click.argument("path")
-@click.option("-s", "--storage", help="Without effect: the files tell.")
+@click.option("-s", "--storage", help="Has no effect: the format is detected.")
 def reindex_command(path: str, storage: str) -> None:
-    """Write the metadata of a bag anew, from its files."""
+    """Rebuild the metadata of a bag from its files."""
     del storage
     from aionode import bag
 

@@ -45,14 +45,14 @@ __all__ = ["burst_command", "play_command", "record_command"]
 MIB = 1 << 20
 RATE_STEP = 0.1
 LEVELS = ["debug", "info", "warn", "error", "fatal"]
-NO_EFFECT = "Taken for rosbag2's sake, without effect."
+NO_EFFECT = "Accepted for compatibility with rosbag2; has no effect."
 
 common_options = [
-    click.option("--log-level", type=click.Choice(LEVELS), help="What is logged."),
-    click.option("--disable-keyboard-controls", is_flag=True, help="Take no keys."),
+    click.option("--log-level", type=click.Choice(LEVELS), help="Log level."),
+    click.option("--disable-keyboard-controls", is_flag=True, help="Disable keyboard controls."),
     click.option(
         "--progress-bar-update-rate", type=click.IntRange(-1), default=3,
-        help="How often the line of progress changes, in Hz; 0 for none.",
+        help="Update rate of the progress line, in Hz; 0 disables it.",
     ),
     click.option("--progress-bar-separation-lines", type=int, help=NO_EFFECT),
     click.option("--storage-config-file", type=click.Path(exists=True), help="As YAML."),
@@ -62,7 +62,7 @@ common_options = [
 
 
 def run(work: Coroutine[None, None, int | None]) -> None:
-    """Run a coroutine until it returns or a signal comes, and end the command."""
+    """Run a coroutine until it returns or a signal arrives, then end the command."""
     from aionode.runner import best_loop_factory
 
     status = run_until_stopped(work, loop_factory=best_loop_factory())
@@ -70,7 +70,7 @@ def run(work: Coroutine[None, None, int | None]) -> None:
 
 
 def set_level(node: Node, level: str | None) -> None:
-    """Set what a node logs, if that is given."""
+    """Set a node's log level, if one is given."""
     from aionode.logging import LoggingSeverity
 
     if level is not None:
@@ -83,79 +83,83 @@ def set_level(node: Node, level: str | None) -> None:
 @click.command("record")
 @interfaces_option
 @selection_options(playing=False)
-@click.option("-o", "--output", "out", help="The folder; its name has the time by default.")
+@click.option("-o", "--output", "out", help="Output folder; default: named after the time.")
 @click.option(
     "-s",
     "--storage",
     type=click.Choice(["mcap", "sqlite3"]),
     default="mcap",
-    help="The format: sqlite3 is only read.",
+    help="Storage format; sqlite3 can only be read.",
 )
-@click.option("-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Bytes of a file.")
 @click.option(
-    "-d", "--max-bag-duration", type=click.FloatRange(0), default=0, help="Seconds of a file."
+    "-b", "--max-bag-size", type=click.IntRange(0), default=0, help="Split files at N bytes."
 )
-@click.option("--max-bag-files", type=click.IntRange(0), default=0, help="How many files to keep.")
+@click.option(
+    "-d", "--max-bag-duration", type=click.FloatRange(0), default=0, help="Split files at N s."
+)
+@click.option("--max-bag-files", type=click.IntRange(0), default=0, help="Number of files to keep.")
 @click.option(
     "--max-cache-size",
     type=click.IntRange(0),
     default=100 * MIB,
-    help="Bytes that may wait, or that a snapshot has.",
+    help="Size of the write queue or of a snapshot, in bytes.",
 )
 @click.option(
     "--max-cache-duration",
     type=click.FloatRange(0),
     default=0,
-    help="Seconds that a snapshot has; 0 for no limit.",
+    help="Duration of a snapshot, in seconds; 0 for no limit.",
 )
-@click.option("--snapshot-mode", is_flag=True, help="Keep messages until a snapshot is asked for.")
+@click.option("--snapshot-mode", is_flag=True, help="Only write on request, as snapshots.")
 @names(
     "--repeat-transient-local",
-    what="TOPIC[=DEPTH]: latched topics with whose last messages each further file begins.",
+    what="TOPIC[=DEPTH]: latched topics whose last messages are repeated in every file.",
 )
 @click.option(
     "--repeat-all-transient-local",
     type=click.IntRange(0),
     is_flag=False,
     flag_value=0,
-    help="All of them, with so many messages of each; that is the default.",
+    help="Repeat all latched topics, with this many messages each (the default).",
 )
 @click.option(
     "--static-topics-path",
     type=click.Path(exists=True),
-    help="Topics with their types, as YAML, which are recorded from the start.",
+    help="YAML file of topics and types to record from the start.",
 )
-@click.option("--start-paused", is_flag=True, help="Begin paused; the space key goes on.")
-@click.option("--no-discovery", is_flag=True, help="Only topics that are there at the start.")
-@click.option("--include-unpublished-topics", is_flag=True, help="Also those with readers only.")
-@click.option("--ignore-leaf-topics", is_flag=True, help="Not those without any reader.")
-@click.option("--node-name", default="rosbag2_recorder", help="The name of the node.")
-@click.option("--custom-data", multiple=True, help="KEY=VALUE, for the metadata.")
+@click.option("--start-paused", is_flag=True, help="Start paused; SPACE resumes.")
+@click.option("--no-discovery", is_flag=True, help="Only topics that exist at the start.")
+@click.option(
+    "--include-unpublished-topics", is_flag=True, help="Also topics with subscriptions only."
+)
+@click.option("--ignore-leaf-topics", is_flag=True, help="Skip topics without subscriptions.")
+@click.option("--node-name", default="rosbag2_recorder", help="Name of the node.")
+@click.option("--custom-data", multiple=True, help="KEY=VALUE pairs for the metadata.")
 @click.option(
     "--compression-format",
     type=click.Choice(["zstd", "lz4", "none"]),
     default="zstd",
-    help="The compression of chunks.",
+    help="Compression of the chunks.",
 )
 @click.option(
     "--compression-mode",
     type=click.Choice(["none", "file", "message"]),
     default="none",
-    help="Only none: chunks are compressed, and so files stay readable.",
+    help="Only none: chunks are compressed, so files stay readable.",
 )
 @click.option(
     "--storage-preset-profile",
     type=click.Choice(list(PRESETS)),
-    help="How chunks are compressed, in the words of rosbag2.",
+    help="rosbag2's names for compression settings of chunks.",
 )
 @click.option(
     "--stats_max_publishing_rate",
     "stats_hz",
     type=click.FloatRange(0),
     default=1.0,
-    help="How often losses are published at most, in Hz.",
+    help="Maximum rate at which losses are published, in Hz.",
 )
-@click.option("--use-sim-time", is_flag=True, help="Take the time from /clock, as in a simulation.")
+@click.option("--use-sim-time", is_flag=True, help="Use the time of /clock (simulated time).")
 @click.option("-f", "--serialization-format", type=click.Choice(["cdr"]), help=NO_EFFECT)
 @click.option("-p", "--polling-interval", type=int, help=NO_EFFECT)
 @click.option("--compression-queue-size", type=int, help=NO_EFFECT)
@@ -163,7 +167,7 @@ def set_level(node: Node, level: str | None) -> None:
 @click.option("--compression-threads-priority", type=int, help=NO_EFFECT)
 @spread(common_options)
 def record_command(**values: Any) -> None:
-    """Record topics, until Ctrl-C. SPACE pauses and resumes."""
+    """Record topics until Ctrl-C. SPACE pauses and resumes."""
     from aionode.bag import Recorder
     from aionode.engine.context import Context
 
@@ -175,7 +179,7 @@ def record_command(**values: Any) -> None:
         try:
             async with recorder, shown(values, lambda: recording_text(recorder), record_keys):
                 set_level(recorder.node, values["log_level"])
-                recorder.node.get_logger().info(f"Recording to {out}; Ctrl-C ends it")
+                recorder.node.get_logger().info(f"Recording to {out}; press Ctrl-C to stop")
                 await recorder.failed()
         finally:
             if output.json:
@@ -192,19 +196,19 @@ def record_command(**values: Any) -> None:
 
 
 def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the settings of a recorder.
+    """Return the recorder's settings.
 
     Raises:
-        click.UsageError: they exclude each other, or ask for what is not written.
+        click.UsageError: options exclude each other, or ask for a format that cannot be written.
     """
     selection = checked_selection(values)
     if values["use_sim_time"] and values["no_discovery"]:
-        raise click.UsageError("--use-sim-time and --no-discovery exclude each other")
+        raise click.UsageError("--use-sim-time and --no-discovery cannot be combined")
     if values["storage"] != "mcap":
-        raise click.UsageError("--storage sqlite3: aionode reads it, and writes mcap")
+        raise click.UsageError("--storage sqlite3: aionode only reads it; it writes mcap")
     if values["compression_mode"] != "none":
         raise click.UsageError(
-            f"--compression-mode {values['compression_mode']}: chunks are compressed, by "
+            f"--compression-mode {values['compression_mode']}: only chunks are compressed; use "
             "--compression-format"
         )
     latched: dict[str, int] = {
@@ -242,7 +246,7 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
 
 
 def recording_text(recorder: Recorder) -> str:
-    """Return the line of progress of a recording."""
+    """Return the progress line of a recording."""
     stats = recorder.stats.values()
     recorded = sum(topic.recorded for topic in stats)
     lost = sum(topic.lost_in_transport + topic.lost_in_recorder for topic in stats)
@@ -251,7 +255,7 @@ def recording_text(recorder: Recorder) -> str:
 
 
 def recorded_record(recorder: Recorder) -> dict[str, Any]:
-    """Return what was recorded and what was lost, as a record."""
+    """Return a record of what was recorded and what was lost."""
     stats = recorder.stats
     return {
         "path": str(recorder.path),
@@ -266,7 +270,7 @@ def recorded_record(recorder: Recorder) -> dict[str, Any]:
 async def shown(
     values: dict[str, Any], text: Callable[[], str], actions: dict[str, Any]
 ) -> AsyncIterator[None]:
-    """Take keys and show a line of progress inside a block."""
+    """Handle keys and show a progress line inside the block."""
     with keys_pressed(actions, wanted=not values["disable_keyboard_controls"]):
         async with progress_shown(text, values["progress_bar_update_rate"]):
             yield
@@ -277,11 +281,11 @@ async def shown(
 
 play_options = [
     click.argument("bags", nargs=-1),
-    names("-i", "--input", "inputs", what="Bags; several are merged."),
-    click.option("-s", "--storage", help="Without effect: the file tells."),
+    names("-i", "--input", "inputs", what="Input bags; several are merged."),
+    click.option("-s", "--storage", help="Has no effect: the format is detected."),
     selection_options(playing=True),
     click.option("--start-offset", type=click.FloatRange(0), default=0.0, help="Seconds to skip."),
-    names("-m", "--remap", what="OLD:=NEW, for the names of topics."),
+    names("-m", "--remap", what="OLD:=NEW topic names."),
     click.option("--read-ahead-queue-size", type=int, help=NO_EFFECT),
     spread(common_options),
 ]
@@ -304,11 +308,13 @@ def player_options(values: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
 @interfaces_option
 @spread(play_options)
 @click.option("-r", "--rate", type=positive, default=1.0, help="How fast.")
-@click.option("-l", "--loop", is_flag=True, help="Begin again at the end.")
+@click.option("-l", "--loop", is_flag=True, help="Start over at the end.")
 @click.option("-p", "--start-paused", is_flag=True, help="Begin paused.")
 @click.option("-d", "--delay", type=seconds, default=0.0, help="Seconds before the first message.")
-@click.option("--playback-duration", type=click.FloatRange(0), help="How many seconds to play.")
-@click.option("--playback-until-sec", type=float, help="The recorded time of the end, in seconds.")
+@click.option("--playback-duration", type=click.FloatRange(0), help="Duration to play, in seconds.")
+@click.option(
+    "--playback-until-sec", type=float, help="Recorded time at which to stop, in seconds."
+)
 @click.option("--playback-until-nsec", type=int, help="The same in nanoseconds.")
 @click.option(
     "--clock",
@@ -316,7 +322,7 @@ def player_options(values: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
     type=positive,
     is_flag=False,
     flag_value=40.0,
-    help="Publish /clock so often, in Hz; 40 if no number is given.",
+    help="Publish /clock at this rate, in Hz (40 if no number is given).",
 )
 @names("--clock-topics", what="Publish /clock with each message of these topics.")
 @click.option("--clock-topics-all", is_flag=True, help="Publish /clock with each message.")
@@ -324,25 +330,27 @@ def player_options(values: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
     "--wait-for-all-acked",
     type=click.IntRange(0),
     metavar="MS",
-    help="At the end, wait for so many ms until all is handed over; 0 for no limit.",
+    help="At the end, wait up to N ms for delivery; 0 for no limit.",
 )
-@click.option("--publish-service-requests", is_flag=True, help="Call services as their clients.")
-@click.option("--send-actions-as-client", is_flag=True, help="Send goals as their clients.")
+@click.option(
+    "--publish-service-requests", is_flag=True, help="Replay service requests as a client."
+)
+@click.option("--send-actions-as-client", is_flag=True, help="Replay action goals as a client.")
 @click.option(
     "--service-requests-source",
     type=click.Choice(["service_introspection", "client_introspection"]),
     default="service_introspection",
-    help="Whose events tell of requests.",
+    help="Side whose service events are used for requests.",
 )
 @click.option(
     "--message-order",
     type=click.Choice(["received", "sent"]),
     default="received",
-    help="By which time messages are played.",
+    help="Time by which messages are ordered and played.",
 )
 @click.option("--disable-loan-message", is_flag=True, help=NO_EFFECT)
 def play_command(**values: Any) -> None:
-    """Play bags, in order of time.
+    """Play bags in order of time.
 
     SPACE pauses and resumes, the right arrow plays the next message, up and down change the rate.
     """
@@ -387,7 +395,9 @@ def play_command(**values: Any) -> None:
 @click.command("burst")
 @interfaces_option
 @spread(play_options)
-@click.option("-n", "--num-messages", type=click.IntRange(0), default=0, help="0 for all.")
+@click.option(
+    "-n", "--num-messages", type=click.IntRange(0), default=0, help="Number of messages; 0 for all."
+)
 def burst_command(**values: Any) -> None:
     """Play messages as fast as possible."""
     from aionode.bag import Player
@@ -400,7 +410,7 @@ def burst_command(**values: Any) -> None:
         async with player, asyncio.TaskGroup() as tasks:
             set_level(player.node, values["log_level"])
             tasks.create_task(player.play())
-            await checkpoint()  # it plays from now on
+            await checkpoint()  # it is playing from here on
             await player.burst(values["num_messages"])
             player.stop()
 
@@ -410,7 +420,7 @@ def burst_command(**values: Any) -> None:
 async def telling(
     work: Coroutine[None, None, None], player: Player, paths: Sequence[str], *, json: bool
 ) -> None:
-    """Play, and print a record of that at the end, however it ends."""
+    """Play, and print a record of it at the end, however it ends."""
     try:
         await work
     finally:
@@ -419,7 +429,7 @@ async def telling(
 
 
 def play_keys(player: Player, tasks: asyncio.TaskGroup) -> dict[str, Any]:
-    """Return what each key does while a bag is played."""
+    """Return what each key does while a bag is playing."""
 
     def change_rate(step: float) -> None:
         rate = round(player.rate + step, 6)
@@ -435,7 +445,7 @@ def play_keys(player: Player, tasks: asyncio.TaskGroup) -> dict[str, Any]:
 
 
 def playing_text(player: Player) -> str:
-    """Return the line of progress of playing."""
+    """Return the progress line of a player."""
     start_ns = player.start.nanoseconds
     at = (player.time.nanoseconds - start_ns) / 1e9
     length = (player.end.nanoseconds - start_ns) / 1e9

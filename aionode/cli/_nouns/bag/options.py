@@ -42,7 +42,7 @@ class Names(click.Option):
     """An option that takes all values up to the next option, as in ros2: ``--topics /a /b``."""
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
-        """Make the parser take the values that follow."""
+        """Make the parser consume the values that follow."""
         super().add_to_parser(parser, ctx)
         for name in self.opts:
             option = parser._long_opt.get(name) or parser._short_opt.get(name)
@@ -51,7 +51,7 @@ class Names(click.Option):
 
 
 def taking_all(option: Any, process: Callable[[Any, Any], None]) -> Callable[[Any, Any], None]:
-    """Return what takes a value and those after it, up to the next option."""
+    """Return a function that takes a value and those after it, up to the next option."""
 
     def take(value: Any, state: Any) -> None:
         process(value, state)
@@ -66,16 +66,16 @@ def names(*flags: str, what: str) -> Decorator:
     return click.option(*flags, multiple=True, cls=Names, help=what)
 
 
-TOPICS = names("--topics", what="Names of topics.")
+TOPICS = names("--topics", what="Topic names.")
 
 
 def bag_names(given: Sequence[str]) -> list[str]:
-    """Return the bags that an option names; rosbag2 has the storage after each of them."""
+    """Return the bags of an option; in rosbag2 each may be followed by its storage format."""
     return [name for name in given if name not in {"mcap", "sqlite3"}]
 
 
 def spread(options: Sequence[Decorator]) -> Decorator:
-    """Return the decorator that adds several options."""
+    """Return a decorator that adds several options."""
 
     def add(command: Any) -> Any:
         for option in reversed(options):
@@ -86,33 +86,35 @@ def spread(options: Sequence[Decorator]) -> Decorator:
 
 
 def selection_options(*, playing: bool) -> Decorator:
-    """Return the options that say which topics are wanted."""
+    """Return the options that select topics."""
     excluding = ["-x", "--exclude-regex"] if playing else ["--exclude-regex"]
     options = [
         TOPICS,
-        names("--services", what="Names of services."),
-        names("--actions", what="Names of actions."),
-        click.option("-e", "--regex", default="", help="What names match that are wanted."),
-        click.option(*excluding, default="", help="What names match that are not wanted."),
-        names("--exclude-topics", what="Names of topics that are not wanted."),
-        names("--exclude-services", what="Names of services that are not wanted."),
-        names("--exclude-actions", what="Names of actions that are not wanted."),
+        names("--services", what="Service names."),
+        names("--actions", what="Action names."),
+        click.option("-e", "--regex", default="", help="Only names that match this pattern."),
+        click.option(*excluding, default="", help="Exclude names that match this pattern."),
+        names("--exclude-topics", what="Topics to exclude."),
+        names("--exclude-services", what="Services to exclude."),
+        names("--exclude-actions", what="Actions to exclude."),
     ]
     if not playing:
         options += [
-            click.option("-a", "--all", "everything", is_flag=True, help="All of them."),
+            click.option(
+                "-a", "--all", "everything", is_flag=True, help="All topics, services and actions."
+            ),
             click.option("--all-topics", is_flag=True, help="All topics."),
             click.option("--all-services", is_flag=True, help="All services."),
             click.option("--all-actions", is_flag=True, help="All actions."),
-            names("--topic-types", what="Names of types."),
-            names("--exclude-topic-types", what="Names of types that are not wanted."),
-            click.option("--include-hidden-topics", is_flag=True, help="Hidden topics as well."),
+            names("--topic-types", what="Only topics of these types."),
+            names("--exclude-topic-types", what="Types to exclude."),
+            click.option("--include-hidden-topics", is_flag=True, help="Include hidden topics."),
         ]
     return spread(options)
 
 
 def selection_of(values: dict[str, Any], *, everything: bool) -> Selection:
-    """Return which topics are wanted, everything if none are named and that is meant."""
+    """Return the selection of topics; everything if none are named and `everything` is set."""
     from aionode.bag import Selection
 
     kinds = ("topic", "service", "action")
@@ -135,15 +137,15 @@ def selection_of(values: dict[str, Any], *, everything: bool) -> Selection:
 
 
 def absolute(name: str) -> str:
-    """Return a name with its slash."""
+    """Return a name with its leading slash."""
     return f"/{name.removeprefix('/')}"
 
 
 def checked_selection(values: dict[str, Any]) -> Selection:
-    """Return which topics are to be recorded.
+    """Return the selection of topics to record.
 
     Raises:
-        click.UsageError: none are named.
+        click.UsageError: no topics are selected.
     """
     selection = selection_of(values, everything=False)
     wanted = (
@@ -163,7 +165,7 @@ def checked_selection(values: dict[str, Any]) -> Selection:
 
 
 def output_folder() -> str:
-    """Return the name of a folder with the time, as rosbag2 gives it."""
+    """Return a folder name with the time, as rosbag2 chooses it."""
     from datetime import UTC, datetime
 
     seconds = Clock(clock_type=ClockType.SYSTEM_TIME).now().nanoseconds / 1e9
@@ -172,10 +174,10 @@ def output_folder() -> str:
 
 
 def option_from(read: Callable[..., T], *values: Any) -> T:
-    """Return what a function makes of an option, such as the content of a file.
+    """Apply a function to the value of an option, such as one that reads a file.
 
     Raises:
-        click.BadParameter: it does not fit.
+        click.BadParameter: the function rejects the value.
     """
     try:
         return read(*values)
@@ -187,7 +189,7 @@ def overrides(path: str | None) -> dict[str, QoSProfile]:
     """Return the profiles in a YAML file, by topic.
 
     Raises:
-        click.BadParameter: there are none in it.
+        click.BadParameter: the file has none.
     """
     if path is None:
         return {}
@@ -200,24 +202,26 @@ def overrides(path: str | None) -> dict[str, QoSProfile]:
 
 
 def time_span(values: dict[str, Any]) -> tuple[Duration | None, Duration | None]:
-    """Return from when to when, after the start of the bag.
+    """Return the start and the end, counted from the start of the bag.
 
     Raises:
-        click.UsageError: both the end and the length are given.
+        click.UsageError: both the end and the duration are given.
     """
     start, end, length = (length_of(values[name]) for name in ("start", "end", "duration"))
     if end is not None and length is not None:
-        raise click.UsageError("--end and --duration exclude each other")
+        raise click.UsageError("--end and --duration cannot be combined")
     if length is not None:
         end = length if start is None else start + length
     return start, end
 
 
 def length_of(text: str | None) -> Duration | None:
-    """Return a length of time, such as ``10s``, ``1.5`` or ``2min``."""
+    """Parse a duration, such as ``10s``, ``1.5`` or ``2min``."""
     if text is None:
         return None
     match = LENGTH.fullmatch(text.strip())
     if match is None:
-        raise click.BadParameter(f"{text!r} is no length of time, such as 10s, 500ms or 2min")
+        raise click.BadParameter(
+            f"{text!r} is not a duration; expected one such as 10s, 500ms or 2min"
+        )
     return Duration(seconds=float(match[1]) * UNITS[match[2] or "s"])

@@ -25,20 +25,20 @@ __all__ = ["diff_command", "shrink_command"]
 @click.argument("a", metavar="A")
 @click.argument("b", metavar="B")
 @click.option(
-    "--tolerance", type=click.FloatRange(min=0), default=0.0, help="By how much numbers may differ."
+    "--tolerance", type=click.FloatRange(min=0), default=0.0, help="Allowed difference of numbers."
 )
 @click.option(
     "--time-tolerance", type=click.FloatRange(min=0), default=0.0, metavar="SECONDS",
-    help="By how much times may differ.",
+    help="Allowed difference of times.",
 )  # fmt: skip
 @click.option(
-    "--limit", type=click.IntRange(min=1), default=10, help="Differences shown of each topic."
+    "--limit", type=click.IntRange(min=1), default=10, help="Differences to show per topic."
 )
 @json_option
 def diff_command(
     a: str, b: str, tolerance: float, time_tolerance: float, limit: int, json: bool
 ) -> None:
-    """Print the first differences of two bags by topic, time and field.
+    """Print the first differences between two bags, by topic, time and field.
 
     The exit status is 1 if they differ.
     """
@@ -63,24 +63,24 @@ def diff_command(
 @click.command("shrink", context_settings={"ignore_unknown_options": True})
 @click.argument("bag", metavar="BAG")
 @click.argument("test", metavar="-- COMMAND…", nargs=-1, required=True, type=click.UNPROCESSED)
-@click.option("-o", "--output", "folder", help="Where the piece is written; default: BAG_piece.")
+@click.option("-o", "--output", "folder", help="Where to write the piece (default: BAG_piece).")
 @json_option
 def shrink_command(bag: str, test: tuple[str, ...], folder: str | None, json: bool) -> None:
     """Find the shortest piece of a bag with which a test still fails, and write it as a bag.
 
-    COMMAND is run again and again, such as ``-- pytest tests/test_filter.py``. `replay` of BAG
-    reads the piece in place of the whole meanwhile.
+    COMMAND is run repeatedly, such as ``-- pytest tests/test_filter.py``; meanwhile, `replay` of
+    BAG reads only the piece being tried.
     """
     output = Output(json=json)
     place = Path(folder) if folder else Path(f"{bag.rstrip('/')}_piece")
     if place.exists():
-        raise click.UsageError(f"{place} exists already; name another folder with --output")
+        raise click.UsageError(f"{place} already exists; choose another folder with --output")
     status = run_until_stopped(shrink(bag, test, place, output))
     raise click.exceptions.Exit(INTERRUPTED if status is None else status)
 
 
 async def shrink(bag: str, test: Sequence[str], place: Path, output: Output) -> int:
-    """Search for the piece, print each shorter one, and write the last."""
+    """Search for the piece, print each shorter one found, and write the last."""
     from aionode.bag.replaying import shrinking  # as above
 
     def show(piece: Piece) -> None:

@@ -1,4 +1,4 @@
-"""Keys and a line of progress while a bag is recorded or played on a terminal."""
+"""Keys and a progress line while a bag is recorded or played in a terminal."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ DOWN: Final = "\x1b[B"
 RIGHT: Final = "\x1b[C"
 CLEAR_LINE: Final = "\r\x1b[K"
 MOST_BYTES: Final = 64
-"""Bytes that are read at once; a key has three at most."""
+"""Maximum bytes to read at once; a key has at most three."""
 
 
 @contextlib.contextmanager
 def keys_pressed(actions: Mapping[str, Callable[[], object]], *, wanted: bool) -> Iterator[None]:
-    """Call what belongs to a key when it is pressed, inside the block.
+    """Call the action of each key that is pressed, inside the block.
 
-    Without a terminal, or in the background of a shell, it does nothing.
+    Does nothing without a terminal, or in the background of a shell.
     """
     if not (wanted and has_keys()):
         yield
@@ -46,7 +46,7 @@ def keys_pressed(actions: Mapping[str, Callable[[], object]], *, wanted: bool) -
             actions.get(key, ignore)()
 
     before: list[Any] = termios.tcgetattr(fd)
-    tty.setcbreak(fd)  # one key at a time; Ctrl-C still is a signal
+    tty.setcbreak(fd)  # one key at a time; Ctrl-C still raises a signal
     loop = asyncio.get_running_loop()
     loop.add_reader(fd, read)
     try:
@@ -57,7 +57,7 @@ def keys_pressed(actions: Mapping[str, Callable[[], object]], *, wanted: bool) -
 
 
 def has_keys() -> bool:
-    """Return whether keys come to this process: a background process would be stopped for them."""
+    """Return whether this process may read keys: a background process would be stopped."""
     try:
         return sys.stdin.isatty() and os.tcgetpgrp(sys.stdin.fileno()) == os.getpgrp()
     except (AttributeError, OSError, ValueError):
@@ -65,12 +65,12 @@ def has_keys() -> bool:
 
 
 def ignore() -> None:
-    """Do nothing, for keys without a meaning."""
+    """Do nothing, for keys that have no meaning."""
 
 
 @contextlib.asynccontextmanager
 async def progress_shown(text: Callable[[], str], rate_hz: float) -> Any:
-    """Show a line of progress inside the block, so often a second, if stderr is a terminal."""
+    """Show a progress line inside the block at `rate_hz`, if stderr is a terminal."""
     if rate_hz <= 0 or not sys.stderr.isatty():
         yield
         return

@@ -41,15 +41,15 @@ ZENOH = "rmw_zenoh_cpp"
 @interfaces_option
 @click.argument("names", nargs=-1, shell_complete=complete_names("topic"))
 @click.option(
-    "--transform", nargs=2, metavar="TARGET SOURCE", help="Say why this transform is missing."
+    "--transform", nargs=2, metavar="TARGET SOURCE", help="Explain why this transform is missing."
 )
 @json_option
 @ros2_options
 def doctor_command(names: tuple[str, ...], transform: tuple[str, str] | None, json: bool) -> None:
     """Summarize the network, and find out why endpoints do not communicate.
 
-    NAMES of nodes, topics and services limit it to those, and show by which route each publisher
-    reaches each subscription. The exit status is 1 if a problem was found.
+    NAMES of nodes, topics and services restrict it to those, and show the route by which each
+    publisher reaches each subscription. The exit status is 1 if a problem was found.
     """
     run_verb(
         lambda node, output: doctor(node, names, output=output, transform=transform), json=json
@@ -116,7 +116,7 @@ async def doctor(
     if not middleware:
         findings += link_findings(pairs)
         findings += bridge_findings(bridges)
-        # The environment's middleware has no say in the nodes that a bridge reaches.
+        # The middleware set in the environment does not concern nodes reached through a bridge.
         environ = {} if bridges else os.environ
         findings += network_findings(
             network, environ, has_router=has_router, domains=domains, alone=not nodes
@@ -134,12 +134,12 @@ async def doctor(
 
 
 def silence_finding(who: str) -> Finding:
-    """Return the finding about a process that does not answer."""
+    """Return the finding for a process that does not answer."""
     return Finding(
         "problem",
         "process",
-        f"{who}: its nodes are missing here, and answer nobody",
-        "let it go on, or end it",
+        f"{who}: its nodes are not in this list, and they answer nobody",
+        "resume it or end it",
     )
 
 
@@ -168,12 +168,12 @@ def summary(record: Mapping[str, Any], router_port: int) -> list[str]:
 
 
 def count(endpoints: Sequence[EndpointInfo], *kinds: EndpointKind) -> int:
-    """Return the number of distinct names of endpoints of some kinds."""
+    """Count the distinct names of endpoints of the given kinds."""
     return len({endpoint.name for endpoint in endpoints if endpoint.kind in kinds})
 
 
 def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[EndpointInfo]]:
-    """Return the nodes and endpoints that the names select; without names, all of them."""
+    """Return the nodes and endpoints selected by `names`; all of them if there are none."""
     nodes = lookup.node_infos(node)
     endpoints = [e for e in lookup.endpoints(node) if not e.node.name.startswith("_")]
     if not names:
@@ -182,7 +182,7 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
     known = {info.fully_qualified_name for info in nodes} | {end.name for end in endpoints}
     for name in sorted(wanted - known):
         raise lookup.unknown("No node, topic or service", name, known, "node list")
-    # A counterpart may be misspelled, so endpoints with similar names are kept.
+    # Keep endpoints with similar names: a counterpart may be misspelled.
     of_nodes = {end.name for end in endpoints if end.node.fully_qualified_name in wanted}
     near = {
         name
@@ -196,12 +196,12 @@ def chosen(node: Node, names: Sequence[str]) -> tuple[list[NodeInfo], list[Endpo
 
 
 def full_names(names: Sequence[str]) -> set[str]:
-    """Return the names with their leading slash."""
+    """Return the names with a leading slash."""
     return set(map(lookup.absolute, names))
 
 
 def middleware_of(node: Node) -> str:
-    """Return the middleware of the installed ROS 2 that the node is on; empty over Zenoh."""
+    """Return the middleware of the installed ROS 2 that the node uses; empty over Zenoh."""
     names = (getattr(transport, "middleware", "") for transport in node.context.transports)
     return next(filter(None, names), "")
 
@@ -213,7 +213,7 @@ async def other_domains(node: Node) -> list[int]:
 
 
 def bridges_of(node: Node) -> dict[str, bool]:
-    """Return the Zenoh ids of bridges, each with whether nodes on Fast DDS are behind it."""
+    """Return the Zenoh ids of the bridges, each with whether nodes on Fast DDS are behind it."""
     bridges: dict[str, bool] = {}
     for transport in node.context.transports:
         bridges |= getattr(transport, "dds_bridges", {})
@@ -246,7 +246,7 @@ def network_findings(
     domains: Sequence[int],
     alone: bool,
 ) -> list[Finding]:
-    """Return the findings about settings that prevent discovery."""
+    """Return findings about settings that prevent discovery."""
     findings = []
     if domains and alone:
         others = ", ".join(map(str, domains))
@@ -293,7 +293,7 @@ def network_findings(
 
 
 def rmw_findings(environ: Mapping[str, str]) -> list[Finding]:
-    """Return a finding if ROS 2 nodes started from this environment use another RMW."""
+    """Return a finding if ROS 2 nodes started from this environment would use another RMW."""
     hint = unheard_middleware(environ)
     if hint is None:
         return []

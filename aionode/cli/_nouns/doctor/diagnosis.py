@@ -1,4 +1,4 @@
-"""Why endpoints do not communicate, as far as the graph shows it."""
+"""Diagnose why endpoints do not communicate, from the graph."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ __all__ = ["Finding", "diagnose", "diagnose_names"]
 CLOCK = "/clock"
 
 NAMED = 5
-"""Number of nodes that one finding names."""
+"""Maximum number of nodes that one finding names."""
 
 USED_BY_TOOLS = {"/rosout", "/parameter_events", CLOCK}
-"""Topics that normally have publishers without subscriptions, or the reverse."""
+"""Topics that normally have publishers without subscriptions, or vice versa."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Finding:
         severity: ``problem`` for what does not work, ``hint`` for what may be unintended.
         subject: The topic, service, node or setting concerned.
         text: What was found.
-        remedy: How to mend it.
+        remedy: How to fix it.
     """
 
     severity: Literal["problem", "hint"]
@@ -57,7 +57,7 @@ def diagnose(nodes: Sequence[NodeInfo], endpoints: Sequence[EndpointInfo]) -> li
 
 
 def same_names(nodes: Sequence[NodeInfo]) -> Iterator[Finding]:
-    """Yield a finding for each name that several nodes share."""
+    """Yield a finding for each name shared by several nodes."""
     for name, count in Counter(node.fully_qualified_name for node in nodes).items():
         if count > 1:
             yield Finding(
@@ -69,7 +69,7 @@ def same_names(nodes: Sequence[NodeInfo]) -> Iterator[Finding]:
 
 
 def same_servers(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
-    """Yield a finding for each service and action that has servers in several nodes."""
+    """Yield a finding for each service and action with servers in several nodes."""
     servers: dict[str, dict[str, None]] = {}
     for endpoint in endpoints:
         if endpoint.kind is EndpointKind.SERVER:
@@ -101,7 +101,7 @@ def described(endpoint: EndpointInfo) -> str:
 
 
 def mismatches(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
-    """Yield a finding for each pair of one name that does not communicate, or not over DDS."""
+    """Yield findings for pairs of one name that do not communicate, or would not over DDS."""
     endpoints = list(endpoints)
     by_name: dict[tuple[EndpointKind, str], list[EndpointInfo]] = {}
     for endpoint in endpoints:
@@ -113,7 +113,7 @@ def mismatches(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 
 
 def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Finding]:
-    """Yield why two endpoints of one name do not communicate."""
+    """Yield the reasons why two endpoints with the same name do not communicate."""
     pair = f"{described(offering)} and {described(requesting)}"
     difference = offering.compare(requesting)
     if difference is None:
@@ -121,11 +121,11 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
     differing = {
         "type": (
             f"their types are {offering.type_name} and {requesting.type_name}",
-            "use one type on both sides, or different names",
+            "use the same type on both sides, or different names",
         ),
         "distribution": (
-            "one is of ROS 2 Humble, the other of a newer distribution",
-            "use one distribution",
+            "one uses ROS 2 Humble, the other a newer distribution",
+            "use the same distribution",
         ),
         "definition": (
             (
@@ -144,7 +144,7 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             "problem",
             subject_of(offering),
             f"{pair} do not communicate: QoS {difference.reason}",
-            "request no more than is offered, or offer more",
+            "request less, or offer more",
         )
     elif requesting.node.bridged:
         yield Finding(
@@ -158,14 +158,14 @@ def mismatch(offering: EndpointInfo, requesting: EndpointInfo) -> Iterator[Findi
             "hint",
             subject_of(offering),
             f"{pair} communicate over rmw_zenoh, but would not over DDS: QoS {difference.reason}",
-            "request no more than is offered, or offer more",
+            "request less, or offer more",
         )
 
 
 def time_without_source(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
-    """Yield a finding if nodes follow simulated time, and nobody publishes it.
+    """Yield a finding if nodes use simulated time, but nobody publishes it.
 
-    Nodes of ROS subscribe to it while their parameter `use_sim_time` is true.
+    ROS nodes subscribe to it while their parameter `use_sim_time` is true.
     """
     of_clock = [endpoint for endpoint in endpoints if endpoint.name == CLOCK]
     nodes = sorted({end.node.fully_qualified_name for end in of_clock})
@@ -176,7 +176,7 @@ def time_without_source(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
         yield Finding(
             "problem",
             f"topic {CLOCK}",
-            f"{named}: use_sim_time is true, and nobody publishes {CLOCK}: their clocks stand at "
+            f"{named}: use_sim_time is true, but nobody publishes {CLOCK}: their clocks stand at "
             "0, and their timers wait",
             "start the simulator, or `aionode bag play --clock`; or `aionode param set "
             f"{nodes[0]} use_sim_time false`",
@@ -187,7 +187,7 @@ def time_without_source(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 
 
 def diagnose_names(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
-    """Yield a finding for each subscription and client without a counterpart of its name."""
+    """Yield a finding for each subscription and client without a counterpart of the same name."""
     known = [e for e in endpoints if e.name not in USED_BY_TOOLS and not is_hidden(e.name)]
     used = {(endpoint.kind, endpoint.name) for endpoint in known}
     for waiting in known:
@@ -204,17 +204,17 @@ def diagnose_names(endpoints: Iterable[EndpointInfo]) -> Iterator[Finding]:
 
 
 def unmatched(waiting: EndpointInfo) -> Finding:
-    """Return the finding for an endpoint without any candidate for its counterpart."""
+    """Return the finding for an endpoint that has no candidate for a counterpart."""
     return Finding(
         "hint",
         subject_of(waiting),
         f"the {described(waiting)} is waiting: there is no {waiting.kind.opposite.value}",
-        "start the node that has one, or look for it in another domain or on another machine",
+        "start the node that has one, or check other domains and machines",
     )
 
 
 def misnamed(waiting: EndpointInfo, near: EndpointInfo) -> Finding:
-    """Return the finding for an endpoint whose counterpart has a similar name."""
+    """Return the finding for an endpoint whose likely counterpart has a similar name."""
     text = f"the {described(waiting)} is waiting, but the {described(near)} uses {near.name}"
     if near.type_name != waiting.type_name:
         text += f" (with type {near.type_name}, not {waiting.type_name})"

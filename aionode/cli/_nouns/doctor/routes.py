@@ -1,7 +1,7 @@
 """The route by which each publisher reaches each subscription, as seen by another process.
 
-The publishing process knows exactly: `publisher.stats.routes`. Other processes only see which
-processes are linked and which could be.
+Only the publishing process knows exactly: `publisher.stats.routes`. Others see which processes are
+linked and which could be.
 """
 
 from __future__ import annotations
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 
 __all__ = ["Pair", "link_findings", "pairs_of", "query_links"]
 
-UNLINKED: Final = "they could be linked, and are not"
-VERSIONS: Final = "their versions of the link differ"
+UNLINKED: Final = "they could be linked, but are not"
+VERSIONS: Final = "they use different versions of the link protocol"
 
 HINTS: Final = {
     UNLINKED: (
-        "could be linked, and are not: Zenoh carries everything between them",
+        "could be linked, but are not: everything between them goes over Zenoh",
         "look for a warning about the link in their logs; both need the same XDG_RUNTIME_DIR",
     ),
     VERSIONS: (
-        "have different versions of the link: Zenoh carries everything between them",
-        "run both with the same version of aionode",
+        "use different versions of the link protocol: everything between them goes over Zenoh",
+        "use the same version of aionode for both",
     ),
 }
 
@@ -53,7 +53,7 @@ class Pair(NamedTuple):
 
     @property
     def nodes(self) -> tuple[str, str]:
-        """The full names of both nodes."""
+        """Full names of both nodes."""
         return (
             self.publisher.node.fully_qualified_name,
             self.subscription.node.fully_qualified_name,
@@ -108,7 +108,7 @@ def pairs_of(endpoints: Iterable[EndpointInfo], links: LinkStatus) -> list[Pair]
         if publisher.kind is EndpointKind.PUBLISHER
         for subscription in subscriptions.get(publisher.name, ())
         if publisher.matches(subscription)
-        and not (publisher.node.bridged and subscription.node.bridged)  # that is DDS's own business
+        and not (publisher.node.bridged and subscription.node.bridged)  # between them, DDS decides
     ]
 
 
@@ -135,21 +135,21 @@ def route(
 def why_unlinked(
     publisher: EndpointInfo, subscription: EndpointInfo, advertisements: Mapping[str, Advertisement]
 ) -> str:
-    """Return why the processes of two endpoints are not linked, judging by their advertisements."""
+    """Return why two processes are not linked, judging by their advertisements."""
     nodes = (publisher.node, subscription.node)
     mine, theirs = (advertisements.get(node.participant) for node in nodes)
     if mine is None or theirs is None:
         silent = [n.fully_qualified_name for n in nodes if n.participant not in advertisements]
-        return f"no link offered by {' and '.join(silent)}"
+        return f"no link is offered by {' and '.join(silent)}"
     if mine.host != theirs.host:
-        return "on two hosts"
+        return "they are on different hosts"
     if mine.uid != theirs.uid:
-        return "of two users"
+        return "they belong to different users"
     return UNLINKED if mine.version == theirs.version else VERSIONS
 
 
 def link_findings(pairs: Iterable[Pair]) -> list[Finding]:
-    """Return a finding for each two processes that could be linked and are not."""
+    """Return a finding for each pair of processes that could be linked but is not."""
     findings: dict[frozenset[str], Finding] = {}
     for pair in pairs:
         if pair.reason not in HINTS:

@@ -1,4 +1,4 @@
-"""Why a transform is missing, as far as a look at /tf shows it."""
+"""Diagnose why a transform is missing, by listening to /tf."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ LISTEN_S = 1.5
 """Time to listen to /tf, in seconds."""
 
 OLD_S = 5.0
-"""From which age on a transform counts as no longer sent, in seconds."""
+"""Age from which a transform counts as no longer published, in seconds."""
 
 AHEAD_S = 0.5
-"""Seconds by which a stamp may be ahead of this machine's clock."""
+"""How far a stamp may be ahead of this machine's clock, in seconds."""
 
 
 ZERO = Time()
-"""The latest common time."""
+"""Stands for the latest common time."""
 
 
 async def transform_findings(node: Node, wanted: tuple[str, str] | None) -> list[Finding]:
-    """Return what is wrong with the transforms on the network.
+    """Return findings about the transforms on the network.
 
-    Without publishers of /tf and /tf_static, and without a wanted transform, it does not listen.
+    It listens only if there are publishers of /tf or /tf_static, or a transform is wanted.
 
     Args:
         node: The command's node.
@@ -45,7 +45,7 @@ async def transform_findings(node: Node, wanted: tuple[str, str] | None) -> list
     topics = {endpoint.name for endpoint in lookup.endpoints(node, EndpointKind.PUBLISHER)}
     if not topics & {"/tf", "/tf_static"} and wanted is None:
         return []
-    from aionode.tf import Buffer as TfBuffer  # only where transforms are used
+    from aionode.tf import Buffer as TfBuffer  # imported only where transforms are used
 
     buffer = TfBuffer(node)
     await node.get_clock().sleep(LISTEN_S)
@@ -53,7 +53,7 @@ async def transform_findings(node: Node, wanted: tuple[str, str] | None) -> list
     return [
         *missing(buffer, wanted),
         *unconnected(edges),
-        # Stamps of simulated time say nothing on this machine's clock.
+        # Stamps in simulated time cannot be compared with this machine's clock.
         *(() if "/clock" in topics else wrong_stamps(edges)),
         *two_broadcasters(buffer),
     ]
@@ -68,28 +68,28 @@ def missing(buffer: Buffer, wanted: tuple[str, str] | None) -> Iterator[Finding]
     if possible:
         return
     known = buffer._getFrameStrings()
-    remedy = "see `aionode tf tree`: one of the frames between them is not sent, or has no parent"
+    remedy = "see `aionode tf tree`: a frame between them is not published, or has no parent"
     for name in wanted:
         if name not in known:
             close = lookup.close_to(name, known)
-            remedy = f"nothing that was heard on /tf or /tf_static names '{name}'{close}"
+            remedy = f"no transform on /tf or /tf_static mentions '{name}'{close}"
     yield Finding("problem", f"transform from [{source}] to [{target}]", reason, remedy)
 
 
 def unconnected(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
-    """Yield a finding if there is more than one tree."""
+    """Yield a finding if the frames form more than one tree."""
     trees = roots(edges)
     if len(trees) > 1:
         yield Finding(
             "hint",
             "/tf",
-            f"the frames form {len(trees)} unconnected trees, below {', '.join(trees[:10])}",
-            "publish the transform that connects them, such as with `aionode tf static`",
+            f"the frames form {len(trees)} unconnected trees (roots: {', '.join(trees[:10])})",
+            "publish the transform that connects them, for example with `aionode tf static`",
         )
 
 
 def wrong_stamps(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
-    """Yield a finding for each frame whose newest transform is old, or from the future."""
+    """Yield a finding for each frame whose newest transform is old, or in the future."""
     for edge in edges:
         if edge.static:
             continue
@@ -99,7 +99,7 @@ def wrong_stamps(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
                 edge.child,
                 f"its transform in {edge.parent} is {edge.age_sec:.1f} s old, from "
                 f"{edge.broadcaster}",
-                "see whether that node still publishes, and whether the clocks of both agree",
+                "check that the node still publishes, and that the clocks of both machines agree",
             )
         elif edge.age_sec < -AHEAD_S:
             yield Finding(
@@ -112,11 +112,11 @@ def wrong_stamps(edges: Sequence[FrameEdge]) -> Iterator[Finding]:
 
 
 def two_broadcasters(buffer: Buffer) -> Iterator[Finding]:
-    """Yield a finding for each frame that two nodes send."""
+    """Yield a finding for each frame that two nodes publish."""
     for frame, rival in buffer._BufferCore__rivals.items():
         yield Finding(
             "hint",
             frame,
-            f"{rival} and {buffer._BufferCore__authorities[frame]} both send its transform",
+            f"{rival} and {buffer._BufferCore__authorities[frame]} both publish its transform",
             "stop one of them, or rename its frame",
         )

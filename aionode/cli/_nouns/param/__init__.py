@@ -80,7 +80,7 @@ async def parameters_of(
         node: The command's node.
         node_name: Name of the other node.
         hidden: Whether it may be a hidden node.
-        timeout: Maximum time to wait for it, and for its services, in seconds.
+        timeout: Maximum time to wait for the node and its services, in seconds.
 
     Raises:
         CommandError: there is no such node, it has no parameter services, or it does not answer.
@@ -138,7 +138,7 @@ async def not_declared(client: AsyncParameterClient, wanted: Sequence[str]) -> C
 
 
 async def names_of(node: Node, node_name: str) -> list[str]:
-    """Return the sorted names of the parameters of a node."""
+    """Return the sorted parameter names of a node."""
     from aionode.parameter_client import AsyncParameterClient
 
     client = AsyncParameterClient(node, node_name)
@@ -151,14 +151,16 @@ async def names_of(node: Node, node_name: str) -> list[str]:
 node_argument = name_argument("node")
 parameter_argument = click.argument("parameter_name", shell_complete=complete_of_node(names_of))
 node_options = (hidden_option("--include-hidden-nodes", what="nodes"), timeout_option)
-"""The options that all commands have."""
+"""Options of all commands."""
 
 
 @command(
     param_command,
     "list",
     name_argument("node", required=False),
-    click.option("--filter", "pattern", metavar="REGEX", help="Only names that match."),
+    click.option(
+        "--filter", "pattern", metavar="REGEX", help="Only names that match this pattern."
+    ),
     click.option(
         "--param-prefixes",
         "prefixes",
@@ -240,7 +242,7 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
     """
     try:
         with warnings.catch_warnings():
-            # Python warns of what later versions may read in another way, such as "[[".
+            # Python warns about patterns that later versions may read differently, such as "[[".
             warnings.simplefilter("ignore", FutureWarning)
             compiled = re.compile(pattern or "")
     except (re.error, OverflowError, RecursionError) as error:
@@ -256,7 +258,7 @@ def pattern_from(pattern: str | None) -> Callable[[str], bool]:
     "get",
     node_argument,
     parameter_argument,
-    click.option("--hide-type", is_flag=True, help="Print the value only."),
+    click.option("--hide-type", is_flag=True, help="Print only the value."),
     *node_options,
 )
 async def get(
@@ -333,9 +335,9 @@ async def set_parameter(
 
 
 def parameter_value(text: str) -> Any:
-    """Return the message for a value in YAML, read as ``ros2 param set`` reads it.
+    """Return the message for a YAML value, parsed as ``ros2 param set`` does.
 
-    `get_parameter_value` would store text with an unclosed bracket or quote as a string.
+    `get_parameter_value` would accept text with an unclosed bracket or quote as a string.
 
     Raises:
         CommandError: brackets or quotes are not balanced, or the value is a mapping.
@@ -348,7 +350,7 @@ def parameter_value(text: str) -> Any:
 
 
 def expect_value(text: str) -> None:
-    """Raise CommandError unless a text is a scalar or a list in YAML."""
+    """Raise CommandError unless a text is a YAML scalar or list."""
     import yaml
 
     from aionode._process.bounded_yaml import composed_yaml
@@ -461,8 +463,8 @@ async def dump(node: Node, node_name: str, *, output: Output, **reach: Any) -> N
 async def get_all(client: AsyncParameterClient, names: list[str]) -> list[Parameter]:
     """Return the parameters that have a value.
 
-    A node answers a request that includes a parameter without a value with an empty list; then each
-    parameter is requested alone.
+    A node answers a request that includes a parameter without a value with an empty list; in that
+    case, each parameter is requested separately.
     """
     parameters = await client.get_parameters(names)
     if parameters or not names:
@@ -521,7 +523,7 @@ async def load(
         parameters = [like(before.get(key), key, value) for key, value in values.items()]
         results = await client.set_parameters(parameters)
     for parameter, result in zip(parameters, results, strict=True):
-        # `dump` includes read-only parameters; loading the same value of one is not a failure.
+        # `dump` includes read-only parameters; loading one with its current value is not a failure.
         if not result.successful and before.get(parameter.name) == parameter:
             result.successful = True
             result.reason = "it already has this value"
@@ -540,9 +542,9 @@ async def load(
 
 
 def like(before: Parameter | None, name: str, value: Any) -> Parameter:
-    """Return a parameter with a value from a file, keeping its type where YAML cannot express it.
+    """Return a parameter with a value from a file, keeping its type if YAML cannot express it.
 
-    That concerns bytes, which a file may hold as integers, and empty lists.
+    This concerns bytes, which a file may contain as integers, and empty lists.
     """
     from aionode.parameter import Parameter, ParameterType
 

@@ -1,4 +1,4 @@
-"""Parameters as text in the words of ros2, as records, and as parameter files."""
+"""Parameters as text in ros2's layout, as records, and as parameter files."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ LABELS = (
 
 
 def plain(parameter: Parameter, *, as_numbers: bool = False) -> Any:
-    """Return the value of a parameter for printing, with bytes as ros2 has them or as numbers."""
+    """Return the value of a parameter for printing, with bytes as in ros2 or as numbers."""
     value = parameter.value
     if isinstance(value, bytes | bytearray):
         value = [bytes((number,)) for number in value]
@@ -60,7 +60,7 @@ def plain(parameter: Parameter, *, as_numbers: bool = False) -> Any:
 
 
 def description(descriptor: ParameterDescriptor) -> list[str]:
-    """Return the description of a parameter in the lines of ros2."""
+    """Return the description of a parameter as lines, in ros2's layout."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES[descriptor.type]}"]
     if descriptor.description:
         lines.append(f"  Description: {descriptor.description}")
@@ -78,7 +78,7 @@ def description(descriptor: ParameterDescriptor) -> list[str]:
 
 
 def ranges_of(descriptor: ParameterDescriptor) -> list[Any]:
-    """Return the range of a numeric parameter, or nothing."""
+    """Return the range of a numeric parameter, or an empty list."""
     return [*descriptor.floating_point_range, *descriptor.integer_range]
 
 
@@ -100,19 +100,19 @@ def descriptor_record(node_name: str, descriptor: ParameterDescriptor) -> dict[s
 
 
 def file_form(parameters: Iterable[Parameter], *, as_numbers: bool = False) -> dict[str, Any]:
-    """Return parameters in the form of a parameter file: sorted, nested where names have dots."""
+    """Return the contents of a parameter file: sorted, nested where names have dots."""
     values: dict[str, Any] = {}
-    # `a` sorts before `a.b`; then `a.b` cannot be nested below it and keeps its dotted name.
+    # `a` sorts before `a.b`, which then cannot be nested below it and keeps its dotted name.
     for parameter in sorted(parameters, key=attrgetter("name")):
         insert(values, parameter.name, plain(parameter, as_numbers=as_numbers))
     return ordered(values)
 
 
 def file_text(record: dict[str, Any]) -> str:
-    """Return the text of a parameter file, in the lines of ``ros2 param dump``.
+    """Return the text of a parameter file, in the layout of ``ros2 param dump``.
 
-    Strings that the rules of such files would read as numbers are quoted, which ros2 leaves out.
-    Those rules differ from YAML's: ``INF`` is a number, for example.
+    Unlike ros2, it quotes strings that parameter files would read as numbers. The rules differ from
+    YAML's: ``INF`` is a number, for example.
     """
     import yaml
 
@@ -130,7 +130,7 @@ def file_text(record: dict[str, Any]) -> str:
 
 
 def insert(values: dict[str, Any], name: str, value: Any) -> None:
-    """Insert a value; the dotted parts of its name become nested keys."""
+    """Insert a value, turning the dotted parts of its name into nested keys."""
     first, dot, rest = name.partition(".")
     if dot and isinstance(values.get(first, {}), dict):
         insert(values.setdefault(first, {}), rest, value)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["echo", "list_frames", "send_static", "tf_command", "tree"]
 
 WAITING_S = 1.0
-"""Time between two reports of `echo` on what it waits for, in seconds."""
+"""Interval between reports of what `echo` is waiting for, in seconds."""
 
 LATEST = Time()
 
@@ -34,12 +34,12 @@ LISTEN_S = 2.0
 
 namespace_option = click.option(
     "--namespace", default="",
-    help="Whose /tf to read, where robots remap it into their namespaces: /robot7.",
+    help="Namespace of /tf, if robots remap it, such as /robot7.",
 )  # fmt: skip
 
 
 def buffer_in(node: Node, namespace: str) -> Buffer:
-    """Return a buffer of the transforms in a namespace; by default the global ones."""
+    """Return a buffer of the transforms in a namespace; the default is the global one."""
     inside = f"/{namespace.strip('/')}".rstrip("/")
     return Buffer(node, tf_topic=f"{inside}/tf", tf_static_topic=f"{inside}/tf_static")
 
@@ -118,7 +118,7 @@ def echo_text(transform: TransformStamped) -> str:
 
 
 def listed(*numbers: float) -> str:
-    """Return numbers with three digits, in brackets."""
+    """Return numbers with three decimals, in brackets."""
     return f"[{', '.join(f'{number:.3f}' for number in numbers)}]"
 
 
@@ -154,7 +154,7 @@ def record_of(transform: TransformStamped) -> dict[str, Any]:
 
 seconds_option = click.option(
     "--seconds", "listen_s", type=seconds, default=LISTEN_S, show_default=True,
-    help="How long to listen.",
+    help="How long to listen, in seconds.",
 )  # fmt: skip
 
 
@@ -179,8 +179,8 @@ async def list_frames(
 @command(
     tf_command,
     "tree",
-    click.option("--dot", is_flag=True, help="Print it for Graphviz, as view_frames does."),
-    click.option("--svg", is_flag=True, help="Print it as a picture."),
+    click.option("--dot", is_flag=True, help="Print it in Graphviz format, as view_frames does."),
+    click.option("--svg", is_flag=True, help="Print it as an SVG image."),
     namespace_option,
     seconds_option,
     sim_time=True,
@@ -194,7 +194,7 @@ async def tree(
     namespace: str = "",
     listen_s: float = LISTEN_S,
 ) -> None:
-    """Print the tree of frames, with rate, age and broadcaster of each."""
+    """Print the tree of frames, with the rate, age and broadcaster of each."""
     buffer = await heard(node, namespace, listen_s, output)
     now = node.get_clock().now()
     edges = edges_of(buffer, now.nanoseconds)
@@ -211,7 +211,7 @@ async def tree(
 
 
 def number_option(name: str, text: str) -> Any:
-    """Return the declaration of an option that is a number."""
+    """Return the declaration of a numeric option."""
     return click.option(f"--{name}", type=float, default=None, help=text)
 
 
@@ -252,7 +252,7 @@ async def send_static(
 def static_transform(
     frame_id: str, child_frame_id: str, numbers: dict[str, float | None]
 ) -> TransformStamped:
-    """Return the transform that the options describe."""
+    """Return the transform described by the options."""
     from aionode.interfaces.geometry_msgs.msg import (
         Quaternion,
         Transform,
@@ -268,13 +268,15 @@ def static_transform(
     ):
         raise click.UsageError("give either --qx --qy --qz --qw or --roll --pitch --yaw, not both")
     if not frame_id.removeprefix("/") or frame_id == child_frame_id or not child_frame_id:
-        raise click.UsageError("--frame-id and --child-frame-id have to be two different names")
+        raise click.UsageError("--frame-id and --child-frame-id must be different")
     i, j, k, w = from_angles(*(angle or 0.0 for angle in angles))
     if any(number is not None for number in quaternion):
         i, j, k = (number or 0.0 for number in quaternion[:3])
         w = 1.0 if quaternion[3] is None else quaternion[3]
     if abs(i * i + j * j + k * k + w * w - 1.0) >= 0.01:
-        raise click.UsageError("the quaternion does not have length 1, so every buffer refuses it")
+        raise click.UsageError(
+            "the quaternion is not normalized (length 1), so every buffer rejects it"
+        )
     x, y, z = (numbers[name] or 0.0 for name in "xyz")
     return TransformStamped(
         header=Header(frame_id=frame_id),

@@ -1,4 +1,4 @@
-"""The tree of frames as text and as a picture."""
+"""The tree of frames as text and as an image."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ if TYPE_CHECKING:
 __all__ = ["FrameEdge", "as_svg", "as_text", "edges_of"]
 
 WIDTH, HEIGHT = 170, 92
-"""The size of the place for one frame in the picture, in pixels."""
+"""The space for one frame in the image, in pixels."""
 
 BOX = 30
-"""The height of the box of a frame, in pixels."""
+"""The height of a frame's box, in pixels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class FrameEdge:
 
     Attributes:
         child: The frame.
-        parent: The frame it is in.
+        parent: Its parent frame.
         static: Whether it never changes.
-        broadcaster: The node that sends it.
-        rate_hz: How often it comes; 0 for static ones.
-        age_sec: How old the newest one is; 0 for static ones.
+        broadcaster: The node that publishes it.
+        rate_hz: Its rate; 0 for static transforms.
+        age_sec: The age of the newest one; 0 for static transforms.
     """
 
     child: str
@@ -47,7 +47,7 @@ class FrameEdge:
         return asdict(self)
 
     def facts(self) -> str:
-        """Return what is known of it, in a few words."""
+        """Return what is known about it, in a few words."""
         if self.static:
             return f"static, {self.broadcaster}"
         return f"{self.rate_hz:.1f} Hz, {self.age_sec:.3f} s old, {self.broadcaster}"
@@ -58,7 +58,7 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
 
     Args:
         core: The buffer.
-        now_ns: The time, to tell how old they are.
+        now_ns: The current time, from which ages are computed.
     """
     edges = []
     for name, frame in sorted(core._BufferCore__frames.items()):
@@ -80,14 +80,14 @@ def edges_of(core: BufferCore, now_ns: int) -> list[FrameEdge]:
 
 
 def roots(edges: Sequence[FrameEdge]) -> list[str]:
-    """Return the frames without parents; of a loop, one of its frames."""
+    """Return the frames without a parent; for a loop, one of its frames."""
     children = {edge.child for edge in edges}
     heads = sorted({edge.parent for edge in edges} - children)
     reached = set(heads)
     for root in heads:
         reached.update(name for _, name, _ in walked(edges, root))
     for edge in edges:
-        if edge.child not in reached:  # only a loop is left
+        if edge.child not in reached:  # only loops are left
             heads.append(edge.child)
             reached.add(edge.child)
             reached.update(name for _, name, _ in walked(edges, edge.child))
@@ -95,7 +95,7 @@ def roots(edges: Sequence[FrameEdge]) -> list[str]:
 
 
 def walked(edges: Sequence[FrameEdge], root: str) -> Iterator[tuple[str, str, FrameEdge]]:
-    """Yield what is below a frame, depth first: the prefix of its line, its name, its edge."""
+    """Yield what is below a frame, depth first: the line's prefix, the frame's name, its edge."""
     below: dict[str, list[FrameEdge]] = {}
     for edge in edges:
         below.setdefault(edge.parent, []).append(edge)
@@ -106,7 +106,7 @@ def walked(edges: Sequence[FrameEdge], root: str) -> Iterator[tuple[str, str, Fr
         following = next(rest, None)
         if following is None:
             stack.pop()
-        elif following.child not in seen:  # else it is a loop
+        elif following.child not in seen:  # otherwise it is a loop
             child = following.child
             seen.add(child)
             is_last = following is below[name][-1]
@@ -116,7 +116,7 @@ def walked(edges: Sequence[FrameEdge], root: str) -> Iterator[tuple[str, str, Fr
 
 
 def as_text(edges: Sequence[FrameEdge]) -> str:
-    """Return the tree as lines."""
+    """Return the tree as lines of text."""
     lines = []
     for root in roots(edges):
         lines.append(root)
@@ -129,7 +129,7 @@ def as_text(edges: Sequence[FrameEdge]) -> str:
 
 
 def as_svg(edges: Sequence[FrameEdge]) -> str:
-    """Return the tree as a picture in the format SVG."""
+    """Return the tree as an SVG image."""
     places = placed(edges)
     wide = max((x for x, _ in places.values()), default=0.0) + 1
     high = max((y for _, y in places.values()), default=0) + 1
@@ -157,7 +157,7 @@ def as_svg(edges: Sequence[FrameEdge]) -> str:
 
 
 def line(above: tuple[float, int], below: tuple[float, int], edge: FrameEdge) -> str:
-    """Return the line between two frames, with what is known of the transform."""
+    """Return the SVG line between two frames, labelled with what is known about the transform."""
     x1, y1 = above[0] * WIDTH + WIDTH / 2, above[1] * HEIGHT + 10 + BOX
     x2, y2 = below[0] * WIDTH + WIDTH / 2, below[1] * HEIGHT + 10
     dash = ' stroke-dasharray="4 3"' if edge.static else ""
@@ -171,12 +171,12 @@ def line(above: tuple[float, int], below: tuple[float, int], edge: FrameEdge) ->
 
 
 def shown(name: str, limit: int) -> str:
-    """Return a name as it stands in the picture."""
+    """Return a name as shown in the image."""
     return escape(name if len(name) <= limit else f"{name[: limit - 1]}…")
 
 
 def placed(edges: Sequence[FrameEdge]) -> dict[str, tuple[float, int]]:
-    """Return where each frame stands: column and row. Parents stand above their children."""
+    """Return the position of each frame: column and row. Parents are above their children."""
     depths: dict[str, int] = {}
     order: list[str] = []
     for root in roots(edges):

@@ -1,4 +1,4 @@
-"""``aionode topic``: list, inspect and publish; `echo` and `measure` have the rest."""
+"""``aionode topic``: list, inspect and publish; `echo` and `measure` contain the rest."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ add_type_and_find(topic_command, TOPIC)
     count_option("topics"),
     hidden_option("--include-hidden-topics", what="topics"),
     click.option(
-        "-v", "--verbose", is_flag=True, help="Print the numbers of publishers and subscribers."
+        "-v", "--verbose", is_flag=True, help="Print the number of publishers and subscribers."
     ),
 )
 async def list_topics(
@@ -106,7 +106,7 @@ def verbose_text(
     types_by_name: dict[str, list[str]],
     numbers: dict[str, dict[EndpointKind, int]],
 ) -> str:
-    """Return the topics with endpoints of one kind, and how many."""
+    """Return text that lists the topics with endpoints of one kind, and how many there are."""
     text = f"{title} topics:\n"
     for name, types in types_by_name.items():
         if number := numbers[name][kind]:
@@ -219,10 +219,10 @@ def prepare_pub(options: dict[str, Any]) -> None:
         "-p", "--print", "print_nth", metavar="N", type=whole, default=1,
         help="Print only every N-th message.",
     ),
-    click.option("-1", "--once", is_flag=True, help="Publish one message and end."),
+    click.option("-1", "--once", is_flag=True, help="Publish one message and exit."),
     click.option(
         "-t", "--times", metavar="N", type=whole, default=0,
-        help="Publish N messages and end.",
+        help="Publish N messages and exit.",
     ),
     click.option(
         "-w", "--wait-matching-subscriptions", "wait_for", metavar="N", type=whole,

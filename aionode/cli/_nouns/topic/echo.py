@@ -51,17 +51,17 @@ if TYPE_CHECKING:
 __all__ = ["echo", "echoing", "name_option", "qos_from", "qos_options"]
 
 DEPTH = 1000
-"""Default queue depth: the maximum number of messages that wait to be printed."""
+"""Default queue depth: the maximum number of messages waiting to be printed."""
 
 echoing = click.Group("topic")
-"""The command of this module; the group ``topic`` has it too."""
+"""The command of this module, which the group ``topic`` includes."""
 
 
-# Options, those of publishers included
+# Options, including those for publishers
 
 
 def name_option(whose: str) -> Callable[[CommandT], CommandT]:
-    """Return the option that names the node of the command itself."""
+    """Return the option for the name of the command's own node."""
     return click.option(
         "-n", "--node-name", "own_name", help=f"Name of the {whose} node (default: a hidden one)."
     )
@@ -73,7 +73,7 @@ POLICIES = {
     "durability": DurabilityPolicy,
     "liveliness": LivelinessPolicy,
 }
-"""The policies that have an option each."""
+"""The QoS policies that have their own option."""
 
 
 def qos_options(preset: str) -> tuple[Callable[[CommandT], CommandT], ...]:
@@ -88,7 +88,7 @@ def qos_options(preset: str) -> tuple[Callable[[CommandT], CommandT], ...]:
             type=short_keys(QoSPresetProfiles),
             help=f"Preset to start from (default: {preset}).",
         ),
-        click.option("--qos-depth", type=whole, help="Length of the queue."),
+        click.option("--qos-depth", type=whole, help="Queue length."),
         *(click.option(f"--qos-{name}", type=short_keys(kind)) for name, kind in POLICIES.items()),
         click.option("--qos-liveliness-lease-duration-seconds", type=positive, metavar="N"),
     )
@@ -115,7 +115,7 @@ def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
         given["durability"] == "transient_local"
         and given["reliability"] is given["profile"] is None
     ):
-        # Over DDS, best-effort subscriptions get nothing of what was kept.
+        # Over DDS, best-effort subscriptions receive none of the stored messages.
         profile.reliability = ReliabilityPolicy.RELIABLE
     lease = given["liveliness_lease_duration_seconds"]
     if lease is not None:
@@ -127,8 +127,8 @@ def qos_from(preset: str, options: dict[str, Any]) -> QoSProfile | None:
 
 
 def complete_fields(ctx: click.Context, param: click.Parameter, incomplete: str) -> list[str]:
-    """Complete the path of a field of the topic earlier on the command line."""
-    # An option that has no value yet ends click's parsing: it leaves the arguments as they are.
+    """Complete a field path for the topic given earlier on the command line."""
+    # At an option without a value, click stops parsing and leaves the arguments as they are.
     given = [*ctx.args, ctx.params.get("topic_name"), ctx.params.get("message_type")]
     name, *types = list(filter(None, given)) or [""]
     if name and not types:
@@ -139,7 +139,7 @@ def complete_fields(ctx: click.Context, param: click.Parameter, incomplete: str)
 
 
 def field_paths(cls: Any) -> Iterator[str]:
-    """Yield the paths of all fields of a message class; those of messages in arrays have none."""
+    """Yield the paths of all fields of a message class, except those inside arrays."""
     from aionode.message import fields
 
     for field in fields(cls):
@@ -149,7 +149,7 @@ def field_paths(cls: Any) -> Iterator[str]:
 
 
 def prepare_echo(options: dict[str, Any]) -> None:
-    """Replace the options of the profile and the length of arrays by their meaning."""
+    """Replace the options for the QoS profile and the array length by their values."""
     options["qos"] = qos_from("sensor_data", options)
     clear_full_length(options)
 
@@ -174,8 +174,8 @@ def prepare_echo(options: dict[str, Any]) -> None:
         metavar="EXPR",
         help="Receive only messages that pass this filter of DDS, such as 'pose.x > 1'.",
     ),
-    click.option("--once", is_flag=True, help="Print one message and end."),
-    click.option("--timeout", metavar="N", type=positive, help="End after N seconds."),
+    click.option("--once", is_flag=True, help="Print one message and exit."),
+    click.option("--timeout", metavar="N", type=positive, help="Exit after N seconds."),
     click.option(
         "-i",
         "--include-message-info",

@@ -1,8 +1,8 @@
 """``aionode topic hz``, ``bw`` and ``delay``, and the statistics that they print.
 
 Messages are timed on arrival, not when they are processed, and decoded only if their content is
-needed, so the results hold at rates too high for printing. Messages of the first moments are not
-counted: connecting delays them.
+needed, so the results also hold at rates too high for printing. Messages of the first moments are
+not counted, because connecting delays them.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ PRINT_PERIOD_S = 1.0
 CONNECTING_S = 0.3
 """Time during which messages reach a new subscription late and in bursts, in seconds.
 
-During this time publishers of other processes are discovered and switch to a link, which normally
+During this time, publishers in other processes are discovered and switch to a link, which normally
 takes 0.1 s.
 """
 
@@ -62,13 +62,13 @@ QOS = qos_profile_sensor_data.replace(depth=DEPTH)
 HZ_HEADER = ("topic", "rate", "min_delta", "max_delta", "std_dev", "window")
 
 LEAST_FIRST = (5, 4, 3, 2)
-"""The columns that a narrow terminal leaves out, the least important one first."""
+"""The columns that a narrow terminal omits, least important first."""
 
 SILENT = ("-",) * (len(HZ_HEADER) - 1)
-"""The columns of a silent topic."""
+"""The cells of a silent topic."""
 
 measuring = click.Group("topic")
-"""The commands of this module; the group ``topic`` has them too."""
+"""The commands of this module, which the group ``topic`` includes."""
 
 
 def window_option(default: int) -> Callable[[CommandT], CommandT]:
@@ -94,7 +94,7 @@ def window_option(default: int) -> Callable[[CommandT], CommandT]:
     window_option(10_000),
     filter_option("Count"),
     click.option(
-        "--wall-time", is_flag=True, help="Measure in this machine's time, not in ROS time."
+        "--wall-time", is_flag=True, help="Measure by this machine's clock, not in ROS time."
     ),
     interfaces=True,
     sim_time=True,
@@ -128,7 +128,7 @@ async def hz(
 
     async def subscribe(name: str) -> None:
         msg_type = await wait_for_type(node, name, output, spinner=len(names) == 1)
-        if len(names) > 1 and not output.is_terminal:  # there, the table has its row already
+        if len(names) > 1 and not output.is_terminal:  # a terminal has it in the table
             output.text(f"Subscribed to [{name}]")
         meter.follow(msg_type, name, partial(on_message, name), raw=filter_text is None)
 
@@ -139,16 +139,16 @@ async def hz(
     table = RateTable(intervals)
     with output.live() if output.is_terminal else nullcontext() as update:
         show = partial(print_rates, table, output, update)
-        # At the same time: a topic that has no publisher yet must not hide the others.
+        # Concurrently: a topic without a publisher must not hold up the others.
         await asyncio.gather(meter.report(show), *map(subscribe, names))
 
 
 class Meter:
-    """Receives the messages of topics, and reports once a second.
+    """Receives the messages of topics and reports once a second.
 
     Args:
         node: The command's node.
-        output: Where to warn when messages arrive faster than they can be counted.
+        output: Where to warn if messages arrive faster than they can be counted.
     """
 
     def __init__(self, node: Node, output: Output) -> None:
@@ -166,7 +166,7 @@ class Meter:
         *,
         raw: bool,
     ) -> None:
-        """Call `on_message` with each message that arrives after publishers have been connected."""
+        """Call `on_message` with each message that arrives once publishers are connected."""
         others = len(self._node.context.transports) > 1  # beyond this process
         begins_ns = self._node.context.time_base.system_ns() + int(CONNECTING_S * 1e9) * others
 
@@ -206,13 +206,13 @@ def arrival_ns(node: Node, info: MessageInfo, *, wall_time: bool = False) -> int
 
 
 def spread_text(spread: Spread) -> str:
-    """Return the extremes and deviation in seconds, and the number of durations, as ros2 does."""
+    """Return the extremes and deviation in seconds, and the number of samples, in ros2's layout."""
     _, low, high, deviation, count = hz_values(spread)
     return f"\tmin: {low}s max: {high}s std dev: {deviation}s window: {count}"
 
 
 def spread_record(spread: Spread) -> dict[str, Any]:
-    """Return the parts of a record that `spread_text` shows."""
+    """Return the fields that `spread_text` shows, as a record."""
     return {
         "min_s": spread.low / 1e9,
         "max_s": spread.high / 1e9,
@@ -233,7 +233,7 @@ def hz_values(spread: Spread) -> tuple[str, str, str, str, str]:
 
 
 def hz_record(name: str, spread: Spread | None) -> dict[str, Any]:
-    """Return the record of one topic; of a silent one the rate is 0."""
+    """Return the record of one topic; the rate of a silent one is 0."""
     if spread is None:
         silent = dict.fromkeys(("min_s", "max_s", "std_dev_s"))
         return {"topic": name, "rate_hz": 0.0, **silent, "window": 0}
@@ -241,9 +241,9 @@ def hz_record(name: str, spread: Spread | None) -> dict[str, Any]:
 
 
 class RateTable:
-    """The newest statistics of several topics, each once a second.
+    """The latest statistics of several topics, updated once a second.
 
-    A topic is silent until its second message, and again when its next one is long overdue.
+    A topic is silent until its second message, and again once its next one is long overdue.
 
     Args:
         intervals: For each topic, the time between its messages.
@@ -255,7 +255,7 @@ class RateTable:
         self._silent_s = dict.fromkeys(intervals, 0.0)
 
     def update(self) -> bool:
-        """Take the messages of the last second; return whether any came, or a topic fell silent."""
+        """Process the last second's messages; return whether any came, or a topic fell silent."""
         changed = False
         for name, before in self._shown.items():
             new = self._intervals[name].spread()
@@ -281,7 +281,7 @@ class RateTable:
 
 
 def overdue_s(spread: Spread) -> float:
-    """Return after how many silent seconds a topic counts as silent: a few of its intervals."""
+    """Return after how many seconds without messages a topic is silent: a few intervals."""
     return 1.0 + 3 * spread.high / 1e9
 
 
@@ -297,7 +297,7 @@ def print_rate(output: Output, name: str, intervals: Intervals) -> None:
 def print_rates(
     table: RateTable, output: Output, update: Callable[[Callable[[int], str]], None] | None
 ) -> None:
-    """Print the statistics of several topics, unless none is new; `update` redraws a terminal."""
+    """Print new statistics of several topics, if there are any; `update` redraws a terminal."""
     changed = table.update()
     if update is not None:
         update(partial(hz_table, table.rows()))
@@ -308,17 +308,17 @@ def print_rates(
 
 
 def hz_table(rows: list[tuple[str, ...]], width: int | None = None) -> str:
-    """Return the statistics as a table, without the columns that do not fit into `width`."""
+    """Return the statistics as a table, without columns that do not fit into `width`."""
     kept = range(len(HZ_HEADER)) if width is None else columns_for(rows, width)
     return table_text([[row[i] for i in kept] for row in (HZ_HEADER, *rows)])
 
 
 def columns_for(rows: list[tuple[str, ...]], width: int) -> list[int]:
-    """Return which columns fit into `width`; topic and rate always stay."""
+    """Return which columns fit into `width`; topic and rate are always kept."""
     widths = [max(map(len, column)) for column in zip(HZ_HEADER, *rows, strict=True)]
     kept = list(range(len(HZ_HEADER)))
     for column in LEAST_FIRST:
-        if sum(widths[i] + 3 for i in kept) - 3 < width:  # no line fills the terminal
+        if sum(widths[i] + 3 for i in kept) - 3 < width:  # not the full width
             break
         kept.remove(column)
     return kept
@@ -404,7 +404,7 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
     meter = Meter(node, output)
 
     def on_message(msg: Any, info: MessageInfo) -> None:
-        # Not converted to `Time`, which rejects times before 1970; a received stamp may be one.
+        # Not converted to `Time`, which rejects times before 1970 that a received stamp may have.
         stamp_ns = msg.header.stamp.sec * 1_000_000_000 + msg.header.stamp.nanosec
         delays.add(arrival_ns(node, info) - stamp_ns)
 
@@ -423,7 +423,7 @@ async def delay(node: Node, topic_name: str, *, output: Output, window: int = 10
 
 
 def has_header(msg_type: Any) -> bool:
-    """Return whether messages of a type have a stamped header."""
+    """Return whether messages of a type have a header with a stamp."""
     return any(
         field.name == "header"
         and field.type.nested is not None
@@ -432,7 +432,7 @@ def has_header(msg_type: Any) -> bool:
     )
 
 
-# Statistics: pure computation, which receives and prints nothing
+# Statistics: pure computation without I/O
 
 
 @dataclass(frozen=True, slots=True)
@@ -447,7 +447,7 @@ class Spread:
 
     @property
     def rate_hz(self) -> float:
-        """Number of such durations in a second; 0 if all of them are zero."""
+        """The number of such durations per second; 0 if all of them are zero."""
         return 1e9 / self.mean if self.mean else 0.0
 
 
@@ -460,7 +460,7 @@ def spread_of(values: Sequence[int]) -> Spread:
 
 
 class Window:
-    """The newest durations, and whether any has been added since the last `spread`."""
+    """The newest durations, and whether any was added since the last `spread`."""
 
     def __init__(self, size: int) -> None:
         self._values: deque[int] = deque(maxlen=size)
@@ -526,10 +526,10 @@ class Bandwidth:
         self._messages.append((now_ns, size_bytes))
 
     def rate(self, now_ns: int) -> Throughput | None:
-        """Return the rate since the oldest message; None with less than two.
+        """Return the rate since the oldest message; None if there are fewer than two.
 
-        The oldest message starts the measured time, so its own bytes do not count. The time ends
-        with the newest message, or at `now_ns` once the next one is overdue.
+        The oldest message starts the measured period, so its own bytes do not count. The period
+        ends with the newest message, or at `now_ns` once the next one is overdue.
         """
         if len(self._messages) < 2:
             return None
@@ -553,7 +553,7 @@ def size_texts(bytes_per_s: float, *sizes: float) -> list[str]:
 
 
 def table_text(rows: Sequence[Sequence[str]]) -> str:
-    """Return a table; its first row is the heading."""
+    """Return a table as text; the first row is the heading."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     head = "   ".join(word.center(width) for word, width in zip(rows[0], widths, strict=True))
     line = "=" * (sum(widths) + 3 * (len(widths) - 1))
