@@ -1,7 +1,8 @@
-"""Bags: recordings of topics, as files that ROS 2, Foxglove and this module read and write.
+"""Bags: recordings of topics, in files shared with ROS 2 and Foxglove.
 
-`open` reads a bag: MCAP and sqlite3 files of any version of rosbag2, split and compressed ones too.
-`BagWriter` writes one as rosbag2 does. It needs the extra ``bag``: ``pip install aionode[bag]``.
+`open` reads a bag: MCAP and sqlite3 files of any rosbag2 version, including split and compressed
+ones. `BagWriter` writes bags as rosbag2 does. It requires the extra ``bag``:
+``pip install aionode[bag]``.
 
 ::
 

@@ -1,4 +1,4 @@
-"""Reads bags, whatever program has written them."""
+"""Reads bags written by any program."""
 
 from __future__ import annotations
 
@@ -32,28 +32,28 @@ __all__ = ["Bag", "Records", "open"]
 T = TypeVar("T")
 
 END_NS: Final = 1 << 64
-"""A time after all that a bag can have."""
+"""A time after everything that a bag can contain."""
 
 BATCH: Final = 256
-"""Records that an async iteration reads at once, in a thread."""
+"""Records that an async iteration reads at a time, in a thread."""
 
 TURN: Final = 64
-"""Records that are read before other threads get their turn."""
+"""Records to read before other threads get a turn."""
 
 BATCH_BYTES: Final = 8 << 20
-"""A batch ends with the record that makes it this large."""
+"""A batch ends with the record that makes it at least this large."""
 
 
 class Bag:
-    """A recording that is open for reading; ``with`` closes it.
+    """A bag that is open for reading; ``with`` closes it.
 
     Attributes:
         path: The folder or file.
-        topics: Its topics by name. Of a topic whose type has changed, the first type is there, with
-            the messages of all; `connections` has them one by one.
+        topics: Its topics by name. If the type of a topic changed, its first type is listed, with
+            the messages of all types; `connections` lists them separately.
         connections: Each topic with each of its types.
-        custom_data: What its recorder has noted besides.
-        losses: What its recorder has lost, for each topic with losses; None if it does not tell.
+        custom_data: Additional metadata from its recorder.
+        losses: What its recorder lost, for each topic with losses; None if it does not report any.
     """
 
     def __init__(
@@ -108,17 +108,17 @@ class Bag:
 
     @property
     def end_ns(self) -> int:
-        """The time of the last message in nanoseconds since 1970; 0 without one."""
+        """The time of the last message in nanoseconds since 1970; 0 if there is none."""
         return max((source.end_ns for source in self._sources), default=0)
 
     @property
     def start(self) -> Time:
-        """The time of the first message; 0 without one."""
+        """The time of the first message; 0 if there is none."""
         return time_of(self.start_ns)
 
     @property
     def end(self) -> Time:
-        """The time of the last message; 0 without one."""
+        """The time of the last message; 0 if there is none."""
         return time_of(self.end_ns)
 
     @property
@@ -128,7 +128,7 @@ class Bag:
 
     @property
     def files(self) -> list[tuple[int, str]]:
-        """Its files in order of time, each after the time of its first message in nanoseconds."""
+        """Its files in time order, as pairs of first message time in nanoseconds and name."""
         return sorted((source.start_ns, source.path.name) for source in self._sources)
 
     def read(
@@ -137,13 +137,13 @@ class Bag:
         start: Time | Duration | None = None,
         end: Time | Duration | None = None,
     ) -> Records:
-        """Return the records in order of time, for ``for`` and for ``async for``.
+        """Return the records in time order, for use with ``for`` or ``async for``.
 
         Args:
-            topics: The names of the topics that are wanted; all if not given.
-            start: The time of the first record that is wanted, or how long after the start of the
-                bag that is.
-            end: The time before which the records end, or how long after the start of the bag.
+            topics: Names of the topics to read; all by default.
+            start: The time of the first record to read, or how long after the start of the bag to
+                begin.
+            end: The time before which to stop, or how long after the start of the bag.
 
         Raises:
             BagError: the bag has no such topic. After the last record: some could not be read.
@@ -175,10 +175,10 @@ class Bag:
 
 
 class Records:
-    """Some records of a bag: iterate over them, with ``for`` or with ``async for``.
+    """Some records of a bag, to iterate over with ``for`` or ``async for``.
 
-    Each iteration begins anew. ``async for`` reads in a thread, so the event loop never waits for
-    the disk. What is damaged is left out: the other records come, and the error after them.
+    Each iteration starts over. ``async for`` reads in a thread, so the event loop never waits for
+    the disk. Damaged records are skipped; the error is raised after all others.
     """
 
     def __init__(
@@ -194,7 +194,7 @@ class Records:
         self._limits = (topics, start_ns, end_ns)
 
     def __iter__(self) -> Iterator[Record]:
-        """Iterate over the records in order of time.
+        """Iterate over the records in time order.
 
         Raises:
             BagError: after the last record: some could not be read.
@@ -218,11 +218,11 @@ class Records:
             if topics is None or topic.name in topics
         )
         if count != promised and start_ns <= self._bag.start_ns and end_ns == END_NS:
-            problem = f"it says that it has {promised} messages, and {count} can be read"
+            problem = f"it claims to have {promised} messages, but {count} can be read"
             raise BagError(str(self._bag.path), problem, CHECK)
 
     async def __aiter__(self) -> AsyncIterator[Record]:
-        """Iterate over the records in order of time; they are read in a thread.
+        """Iterate over the records in time order, reading them in a thread.
 
         Raises:
             BagError: after the last record: some could not be read.
@@ -234,12 +234,12 @@ class Records:
 
 
 class Batches(Generic[T]):
-    """Records, as many at a time as one call should read.
+    """Records in batches, each as large as one call should read.
 
     Args:
         records: The records.
         size_of: The size of each in bytes.
-        most: How many are read at once.
+        most: Maximum number of records per batch.
     """
 
     def __init__(
@@ -251,12 +251,12 @@ class Batches(Generic[T]):
         self._error: BagError | None = None
 
     def next(self) -> list[T]:
-        """Return the next records; none at the end.
+        """Return the next records; an empty list at the end.
 
-        In between it lets other threads run: the event loop may wait for its turn.
+        It yields to other threads while reading: the event loop may be waiting for its turn.
 
         Raises:
-            BagError: some could not be read; those that could were returned before.
+            BagError: some records could not be read; the others were returned before.
         """
         if self._error is not None:
             raise self._error
@@ -294,10 +294,10 @@ def first_ns(sources: list[Source], told_ns: int) -> int:
 
 
 def merged_topics(sources: list[Source], listed: list[TopicInfo]) -> list[TopicInfo]:
-    """Return the topics of all files, each once, with its messages added up.
+    """Merge the topics of all files, adding up their messages.
 
-    Its name and type are what makes it one: files and metadata may tell of its QoS differently.
-    Topics without messages may be in the metadata alone; hashes may be there alone, too.
+    Name and type identify a topic: files and metadata may describe its QoS differently. Topics
+    without messages, and type hashes, may appear only in the metadata.
     """
     topics: dict[tuple[str, str], TopicInfo] = {}
     merged: dict[tuple[str, str, str], TopicInfo] = {}
@@ -326,8 +326,8 @@ def open(path: str | PathLike[str]) -> Bag:  # noqa: A001  # as in `bag.open(pat
         path: A folder with ``metadata.yaml``, or a single ``.mcap`` or ``.db3`` file.
 
     Raises:
-        BagError: it is no bag, or is damaged; the text says how to repair it.
-        FileNotFoundError: there is nothing of this name.
+        BagError: it is not a bag, or is damaged; the message says how to repair it.
+        FileNotFoundError: there is no such file or folder.
         OSError: it cannot be read.
     """
     place = Path(path)
@@ -339,7 +339,9 @@ def open(path: str | PathLike[str]) -> Bag:  # noqa: A001  # as in `bag.open(pat
     mode = str(metadata.get("compression_mode") or "").lower()
     form = str(metadata.get("compression_format") or "").lower()
     if mode == "message" and form != "zstd":
-        raise BagError(str(path), f"its messages are compressed by {form!r}", "only zstd is read")
+        raise BagError(
+            str(path), f"its messages are compressed by {form!r}", "only zstd can be read"
+        )
     storage = metadata["storage_identifier"]
     kinds: dict[str, type[McapSource | SqliteSource]] = {
         "mcap": McapSource,
@@ -348,7 +350,7 @@ def open(path: str | PathLike[str]) -> Bag:  # noqa: A001  # as in `bag.open(pat
     kind = kinds.get(storage)
     if kind is None:
         problem = f"{FILE_NAME} names the storage {storage!r}"
-        raise BagError(str(path), problem, "mcap and sqlite3 are read")
+        raise BagError(str(path), problem, "only mcap and sqlite3 can be read")
     sources: list[Source] = []
     try:
         for name in dict.fromkeys(Path(name).name for name in metadata["relative_file_paths"]):
@@ -358,15 +360,15 @@ def open(path: str | PathLike[str]) -> Bag:  # noqa: A001  # as in `bag.open(pat
     except BaseException as error:
         close_all(sources)
         if isinstance(error, FileNotFoundError) or getattr(error, "errno", 0) == ENAMETOOLONG:
-            problem = f"{FILE_NAME} names {brief(name)}, which is not there"
-            remedy = "`aionode bag reindex` writes a new one"
+            problem = f"{FILE_NAME} lists {brief(name)}, which does not exist"
+            remedy = "`aionode bag reindex` rebuilds it"
             raise BagError(str(path), problem, remedy) from error
         raise
     return Bag(place, sources, metadata)
 
 
 def close_all(sources: list[Source]) -> None:
-    """Close files that were opened before one failed."""
+    """Close files that were opened before one failed to open."""
     for source in sources:
         source.close()
 
@@ -375,7 +377,7 @@ def source_of(path: Path) -> Source:
     """Open a single file.
 
     Raises:
-        BagError: it is no file of a bag.
+        BagError: it is not a bag file.
     """
     suffix = Path(path.stem).suffix if path.suffix == ".zstd" else path.suffix
     if suffix == ".mcap":

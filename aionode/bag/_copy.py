@@ -1,4 +1,4 @@
-"""Copies records from bags into a new one: a piece, several in one, another compression."""
+"""Copies records of bags into a new one: a piece, a merge, or with another compression."""
 
 from __future__ import annotations
 
@@ -30,19 +30,19 @@ def cut(
     topics: Iterable[str] | None = None,
     **options: Any,
 ) -> int:
-    """Copy a piece of a bag, and return how many messages it has.
+    """Copy a piece of a bag, and return its number of messages.
 
     Args:
         path: The bag.
         out: The folder of the new bag, which must not exist.
-        start: The time of its first message, or how long after the start of the bag that is.
+        start: The time of its first message, or how long after the start of the bag to begin.
         end: The time before which it ends, or how long after the start of the bag.
-        topics: The names of its topics; all if not given.
-        options: How it is written, as for `BagWriter`.
+        topics: Names of its topics; all by default.
+        options: Options for writing it; see `BagWriter`.
 
     Raises:
         BagError: the bag cannot be read, has no such topic, or the folder exists.
-        BagWriteError: the disk is full, or fails.
+        BagWriteError: the disk is full or fails.
     """
     with open(path) as bag:
         if topics is not None:
@@ -51,16 +51,16 @@ def cut(
 
 
 def merge(paths: Iterable[str | PathLike[str]], out: str | PathLike[str], **options: Any) -> int:
-    """Copy several bags into one, in order of time, and return how many messages it has.
+    """Merge several bags into one in time order, and return its number of messages.
 
     Args:
         paths: The bags.
         out: The folder of the new bag, which must not exist.
-        options: How it is written, as for `BagWriter`.
+        options: Options for writing it; see `BagWriter`.
 
     Raises:
         BagError: a bag cannot be read, or the folder exists.
-        BagWriteError: the disk is full, or fails.
+        BagWriteError: the disk is full or fails.
     """
     return convert(paths, out, **options)
 
@@ -74,19 +74,19 @@ def convert(
     end: Time | Duration | None = None,
     **options: Any,
 ) -> int:
-    """Write bags of any kind anew, as one MCAP bag, and return how many messages it has.
+    """Convert bags of any format to one MCAP bag, and return its number of messages.
 
     Args:
         paths: The bags.
         out: The folder of the new bag, which must not exist.
-        selection: Which topics it has; all if not given.
-        start: The time of its first message, or how long after the start of each bag that is.
+        selection: Its topics; all by default.
+        start: The time of its first message, or how long after the start of each bag to begin.
         end: The time before which it ends, or how long after the start of each bag.
-        options: How it is written, as for `BagWriter`.
+        options: Options for writing it; see `BagWriter`.
 
     Raises:
         BagError: a bag cannot be read, or the folder exists.
-        BagWriteError: the disk is full, or fails.
+        BagWriteError: the disk is full or fails.
     """
     with ExitStack() as stack:
         bags = [stack.enter_context(open(path)) for path in paths]
@@ -95,7 +95,7 @@ def convert(
 
 
 def custom_data_of(bags: list[Bag]) -> dict[str, str]:
-    """Return the custom data of a bag that is made of others, with the sums of their losses."""
+    """Return the custom data of a bag made from others, including the sums of their losses."""
     custom: dict[str, str] = {}
     for bag in bags:
         custom |= bag.custom_data
@@ -109,7 +109,7 @@ def merged_records(
     start: Time | Duration | None = None,
     end: Time | Duration | None = None,
 ) -> Iterator[Record]:
-    """Yield the wanted records of several bags in order of time."""
+    """Yield the selected records of several bags in time order."""
     streams = []
     for bag in bags:
         topics = None

@@ -1,4 +1,4 @@
-"""Repairs bags: files that were not closed, and metadata that are missing."""
+"""Repairs bags: files that were not closed, and missing metadata."""
 
 from __future__ import annotations
 
@@ -31,22 +31,22 @@ __all__ = ["Checked", "check", "reindex"]
 
 FIRST: Final = len(MAGIC) + HEAD.size
 LONGEST_HEADER: Final = 64
-"""The first record of a file is the header, which is shorter than this, in bytes."""
+"""Upper limit of the length of the header, the first record of a file, in bytes."""
 
 UNKNOWN: Final = 0x80
-"""The first kind of record that the format leaves to programs, and that all others pass over."""
+"""The first opcode of the range that MCAP reserves for programs; all other readers skip it."""
 
 END: Final = frozenset({Opcode.DATA_END, Opcode.FOOTER})
 
 
 class Checked(NamedTuple):
-    """The findings in one file.
+    """What was found in one file.
 
     Attributes:
         file: Its name.
-        repaired: Whether it was damaged, and can be read now.
-        messages: How many messages it has.
-        removed_bytes: How many bytes could not be used: at its end, or in damaged chunks.
+        repaired: Whether it was damaged, and is readable now.
+        messages: Number of messages.
+        removed_bytes: Number of bytes that were unusable, at its end or in damaged chunks.
     """
 
     file: str
@@ -56,18 +56,18 @@ class Checked(NamedTuple):
 
 
 def check(path: str | PathLike[str]) -> list[Checked]:
-    """Check a bag, and repair what a power cut left: files without an end, missing metadata.
+    """Check a bag, and repair what a power cut left: unfinished files, missing metadata.
 
-    All messages are read. A damaged MCAP file is cut after its last complete chunk, and gets a new
-    summary; damaged chunks before that are made records that readers pass over. Other files stay
-    as they are.
+    All messages are read. A damaged MCAP file is truncated after its last complete chunk and gets a
+    new summary; earlier damaged chunks are turned into records that readers skip. Other files are
+    not changed.
 
     Args:
         path: A folder, or a single file.
 
     Raises:
-        BagError: a file cannot be repaired; the others were checked all the same.
-        FileNotFoundError: there is nothing of this name.
+        BagError: a file cannot be repaired; the others were checked nevertheless.
+        FileNotFoundError: there is no such file or folder.
         OSError: a file cannot be read or written.
     """
     place = Path(path)
@@ -92,7 +92,7 @@ def check(path: str | PathLike[str]) -> list[Checked]:
 
 
 def is_indexed(folder: Path, checked: list[Checked]) -> bool:
-    """Return whether the metadata fit the files."""
+    """Return whether the metadata match the files."""
     try:
         metadata = read_metadata(folder)
         names = {Path(name).name for name in metadata["relative_file_paths"]}
@@ -105,7 +105,7 @@ def is_indexed(folder: Path, checked: list[Checked]) -> bool:
 
 
 def files_of(folder: Path) -> list[Path]:
-    """Return the files of a bag in the order of their numbers."""
+    """Return the files of a bag, ordered by their numbers."""
     files = [*folder.glob("*.mcap"), *folder.glob("*.db3"), *folder.glob("*.zstd")]
     if not files:
         raise BagError(str(folder), "there is no .mcap or .db3 file in the folder")
@@ -130,7 +130,7 @@ def check_file(file: Path) -> Checked:
 
 
 def readable_messages(file: Path) -> int:
-    """Read all messages of a file, and return how many there are.
+    """Read all messages of a file, and count them.
 
     Raises:
         BagError: it is damaged.
@@ -144,7 +144,7 @@ def readable_messages(file: Path) -> int:
 
 
 def repaired(file: Path, size: int) -> Checked:
-    """Cut a file after its last complete chunk, and write a new summary."""
+    """Truncate a file after its last complete chunk, and write a new summary."""
     if has_hardly_begun(file):
         file.unlink()
         McapWriter(file).close()
@@ -163,14 +163,14 @@ def repaired(file: Path, size: int) -> Checked:
 
 
 def pass_over(file: Path, at: int) -> None:
-    """Make a record one that readers pass over: its bytes stay, and its kind is nobody's."""
+    """Make readers skip a record: its bytes stay, but its opcode becomes one that nobody uses."""
     with file.open("r+b") as stream:
         stream.seek(at)
         stream.write(bytes([UNKNOWN]))
 
 
 def has_hardly_begun(file: Path) -> bool:
-    """Return whether a file ends, or goes on with zeros, before its first record is complete."""
+    """Return whether a file ends, or continues with zeros, before its first record is complete."""
     with file.open("rb") as stream:
         begin = stream.read(LONGEST_HEADER).rstrip(b"\0")
         if not MAGIC.startswith(begin[: len(MAGIC)]):
@@ -181,7 +181,7 @@ def has_hardly_begun(file: Path) -> bool:
 
 
 def heads(stream: BinaryIO, at: int, size: int) -> Iterator[tuple[int, int, int]]:
-    """Yield the kind, the offset and the length of each record that may be whole."""
+    """Yield the opcode, offset and length of each record that may be complete."""
     while at <= size - HEAD.size:
         stream.seek(at)
         opcode, length = HEAD.unpack(stream.read(HEAD.size))
@@ -193,19 +193,19 @@ def heads(stream: BinaryIO, at: int, size: int) -> Iterator[tuple[int, int, int]
 
 
 class Scan:
-    """The records of a file that can be used.
+    """The usable records of a file.
 
     Attributes:
-        end: Where they end.
+        end: Offset at which they end.
         spans: Its chunks.
-        schemas: Its schemas by number.
-        channels: Its channels by number.
+        schemas: Its schemas by id.
+        channels: Its channels by id.
         metadata: Its metadata records.
-        rest: The index of the last chunk, if that was cut off.
-        damaged: Where chunks stand that are not whole, and how long they are.
+        rest: The index of the last chunk, if it was cut off.
+        damaged: Offsets and lengths of incomplete or damaged chunks.
 
     Raises:
-        BagError: it is no MCAP file, one without chunks, or has a chunk that is too large to read.
+        BagError: it is not an MCAP file, has no chunks, or has a chunk that is too large to read.
     """
 
     def __init__(self, file: Path, stream: BinaryIO, size: int) -> None:
@@ -220,18 +220,20 @@ class Scan:
         self._offsets: dict[int, int] = {}
         self._chunk: ChunkIndex | None = None
         if stream.read(len(MAGIC)) != MAGIC:
-            raise BagError(str(file), "it does not begin as an MCAP file, so nothing can be saved")
-        with contextlib.suppress(*DAMAGE):  # of the summary, which may be what is damaged
+            raise BagError(
+                str(file), "it does not start like an MCAP file, so nothing can be recovered"
+            )
+        with contextlib.suppress(*DAMAGE):  # of the summary, which may be the damaged part
             _, self.schemas, self.channels, _ = read_summary(stream)
         stream.seek(self.end)
         self._read(file, stream, size)
         self._finish_last_chunk()
         if self.end == len(MAGIC):
-            raise BagError(str(file), "it has no complete record, so nothing can be saved")
+            raise BagError(str(file), "it has no complete record, so nothing can be recovered")
 
     def _read(self, file: Path, stream: BinaryIO, size: int) -> None:
-        """Take one record after another, as long as they can be used."""
-        bad: list[tuple[int, int]] = []  # since the last record that can be used
+        """Process the records one by one, as long as they are usable."""
+        bad: list[tuple[int, int]] = []  # since the last usable record
         for opcode, at, length in heads(stream, self.end, size):
             if opcode == Opcode.MESSAGE:
                 problem = "its messages are not in chunks, so they have no index to repair"
@@ -257,7 +259,7 @@ class Scan:
         return sum(sum(span.counts.values()) for span in self.spans)
 
     def _take(self, opcode: int, at: int, data: bytes) -> None:
-        """Take the record at an offset; it raises one of `DAMAGE` if that is none."""
+        """Process the record at an offset; raise one of `DAMAGE` if it is not valid."""
         fields = ReadDataStream(BytesIO(data))
         if opcode == Opcode.MESSAGE_INDEX and self._chunk is not None:
             index = MessageIndex.read(fields)
@@ -282,7 +284,7 @@ class Scan:
             self.metadata.append(MetadataIndex(at, HEAD.size + len(data), record.name))
 
     def _take_chunk(self, chunk: Chunk, start: int, length: int) -> None:
-        """Take a chunk that is whole."""
+        """Process a complete chunk."""
         content = checked_content(chunk)
         entries: dict[int, list[int]] = {}
         schemas, channels = dict(self.schemas), dict(self.channels)
@@ -311,7 +313,7 @@ class Scan:
         self._chunk.message_end_time = max(times, default=0)
 
     def _finish_chunk(self) -> None:
-        """Note a chunk with its index; one that is not whole is left out, and readers search."""
+        """Record a chunk and its index; omit an incomplete index, which makes readers search."""
         index, self._chunk = self._chunk, None
         if index is None:
             return
@@ -323,7 +325,7 @@ class Scan:
         self._note(index)
 
     def _finish_last_chunk(self) -> None:
-        """Note the last chunk with its index, of which the end may be missing."""
+        """Record the last chunk and its index, whose end may be missing."""
         index = self._chunk
         if index is None or self._offsets.keys() == self._entries.keys():
             self._finish_chunk()
@@ -343,15 +345,15 @@ class Scan:
 
 
 def reindex(path: str | PathLike[str]) -> None:
-    """Write the ``metadata.yaml`` of a bag anew, from its files.
+    """Rebuild the ``metadata.yaml`` of a bag from its files.
 
-    The custom data of the old one are kept, if it can be read.
+    The custom data are kept if the old file is readable.
 
     Args:
         path: The folder.
 
     Raises:
-        BagError: there are no files, or one is damaged: `check` repairs it.
+        BagError: there are no files, or one is damaged and `check` can repair it.
         OSError: a file cannot be read, or the metadata cannot be written.
     """
     folder = Path(path)
@@ -377,7 +379,7 @@ def reindex(path: str | PathLike[str]) -> None:
 
 
 def custom_data_in(folder: Path) -> dict[str, str]:
-    """Return the custom data in the metadata of a folder; none if they cannot be read."""
+    """Return the custom data in the metadata of a folder; empty if they cannot be read."""
     with contextlib.suppress(BagError):
         custom = read_metadata(folder).get("custom_data")
         if isinstance(custom, dict):

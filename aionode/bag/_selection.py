@@ -1,4 +1,4 @@
-"""The choice of topics to record or to play."""
+"""Selecting the topics to record or to play."""
 
 from __future__ import annotations
 
@@ -36,20 +36,19 @@ def kind_of(topic: str) -> tuple[str, str]:
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """The choice of topics, with rosbag2's options and their meaning.
+    """A selection of topics, with rosbag2's options and semantics.
 
     Attributes:
         topics: Names of topics.
-        services: Names of services, which are recorded by their introspection events.
+        services: Names of services, recorded through their introspection events.
         actions: Names of actions.
         types: Names of types.
-        regex: What the names of others match that are wanted as well; of topics, services and
-            actions.
-        every: Of which kinds all are wanted: ``topic``, ``service``, ``action``.
-        exclude_regex: What the names match that are not wanted.
-        exclude: Names of topics, services and actions that are not wanted.
-        exclude_types: Names of types that are not wanted.
-        hidden: Whether hidden topics are among all.
+        regex: Pattern for the names of further topics, services and actions to select.
+        every: The kinds to select completely: ``topic``, ``service``, ``action``.
+        exclude_regex: Pattern for names to exclude.
+        exclude: Names of topics, services and actions to exclude.
+        exclude_types: Names of types to exclude.
+        hidden: Whether `every` includes hidden topics.
     """
 
     topics: Collection[str] = ()
@@ -64,19 +63,19 @@ class Selection:
     hidden: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what is no regular expression.
+        """Reject invalid regular expressions.
 
         Raises:
-            BagError: it is none.
+            BagError: one is invalid.
         """
         for text in (self.regex, self.exclude_regex):
             try:
                 re.compile(text)
             except re.error as error:
-                raise BagError(text, f"no regular expression: {error}") from error
+                raise BagError(text, f"not a regular expression: {error}") from error
 
     def wants(self, topic: str, typename: str) -> bool:
-        """Return whether a topic is wanted."""
+        """Return whether a topic is selected."""
         kind, name = kind_of(topic)
         named = {"topic": self.topics, "service": self.services, "action": self.actions}[kind]
         if name in named or topic in self.topics:
@@ -93,5 +92,5 @@ class Selection:
 
 
 def is_hidden(name: str) -> bool:
-    """Return whether a part of a name begins with an underscore."""
+    """Return whether a part of a name starts with an underscore."""
     return any(part.startswith("_") for part in name.split("/"))

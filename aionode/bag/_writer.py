@@ -1,4 +1,4 @@
-"""Writes a bag: a folder with MCAP files and their metadata, as rosbag2 does."""
+"""Writes a bag: a folder of MCAP files and their metadata, as rosbag2 does."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ __all__ = ["BagWriter", "topic_info"]
 
 RESERVE: Final = ".reserve"
 RESERVE_BYTES: Final = 64 << 10
-"""Space that is kept free for the summary and the metadata of a bag on a full disk."""
+"""Space reserved for the summary and the metadata of a bag, in case the disk fills up."""
 
 DEFAULT_QOS: Final = QoSProfile(depth=10)
 
@@ -51,7 +51,7 @@ def topic_info(
     msg_type: Any,
     qos: Iterable[QoSProfile] = (DEFAULT_QOS,),
 ) -> TopicInfo:
-    """Return the entry of a topic whose messages are of a known class."""
+    """Return the entry of a topic whose message class is known."""
     return TopicInfo(
         name=name,
         type=type_name(msg_type),
@@ -66,25 +66,26 @@ def topic_info(
 class BagWriter:
     """A bag that is open for writing; ``with`` closes it.
 
-    A call may wait for the disk: a program with an event loop uses a `Recorder`, or a thread.
+    Calls may block on the disk: programs with an event loop use a `Recorder` or a thread.
 
     Args:
         path: The folder, which must not exist.
-        compression: ``zstd``, ``zstd_small``, which is slow, ``lz4`` or ``none``.
-        max_bytes: The size from which on a new file begins; 0 for one file.
-        max_duration_ns: The time after which a new file begins, in nanoseconds; 0 for one file.
-        max_messages: How many messages a file takes; 0 for no limit.
-        max_files: How many files are kept: older ones are removed; 0 for all.
-        custom_data: What else the metadata say.
-        on_split: Called with the names of the file that was closed and of the new one.
+        compression: ``zstd``, ``zstd_small`` (slow), ``lz4`` or ``none``.
+        max_bytes: The size at which to start a new file; 0 for a single file.
+        max_duration_ns: The duration after which to start a new file, in nanoseconds; 0 for one
+            file.
+        max_messages: Maximum number of messages per file; 0 for no limit.
+        max_files: Number of files to keep, removing older ones; 0 for all.
+        custom_data: Additional metadata.
+        on_split: Called with the names of the closed file and the new one.
 
     Attributes:
         path: The folder.
         topics: The topics, with counts.
 
     Raises:
-        BagError: the folder exists, or there is no such compression.
-        OSError: it cannot be made.
+        BagError: the folder exists, or the compression is unknown.
+        OSError: it cannot be created.
     """
 
     def __init__(
@@ -113,7 +114,7 @@ class BagWriter:
         self._closed: list[tuple[FilePart, dict[int, int]]] = []
         self._channels: dict[int, int] = {}
         self._numbers: dict[tuple[str, str, str], int] = {}
-        self._latched: dict[int, deque[tuple[int, int, Parts]]] = {}  # number, time, bytes
+        self._latched: dict[int, deque[tuple[int, int, Parts]]] = {}  # id, time, bytes
         self._file_number = 0
         self._is_open = True
         try:
@@ -147,21 +148,21 @@ class BagWriter:
 
     @property
     def message_count(self) -> int:
-        """The number of messages in the bag, with those that wait to be written."""
+        """The number of messages in the bag, including those waiting to be written."""
         return sum(topic.message_count for topic in self.topics)
 
     @property
     def file_name(self) -> str:
-        """The name of the file in work."""
+        """The name of the current file."""
         return self._file.path.name
 
     def add_topic(self, topic: TopicInfo, *, latched_depth: int = 0) -> int:
-        """Add a topic, or find it again, and return its number.
+        """Add a topic, or look up an existing one, and return its id.
 
         Args:
             topic: Its name and type.
-            latched_depth: How many of its last messages each further file begins with, as for
-                subscriptions that come late.
+            latched_depth: How many of its last messages to repeat at the start of each further
+                file, as for late subscriptions.
         """
         number = self._numbers.get(topic.key)
         if number is None:
@@ -184,14 +185,14 @@ class BagWriter:
         """Add a message.
 
         Args:
-            topic: The number of its topic.
-            time_ns: When it was received, in nanoseconds since 1970.
-            raw: Its CDR bytes, or a list of their parts, which are kept and must not change.
-            publish_time_ns: When it was published; the same if not given.
-            sequence: Its number, given by its publisher.
+            topic: The id of its topic.
+            time_ns: The receive time, in nanoseconds since 1970.
+            raw: Its CDR bytes, or a list of parts, which are kept and must not change.
+            publish_time_ns: The publish time; defaults to `time_ns`.
+            sequence: The publisher's sequence number.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         if self._has_limits and self._is_full(time_ns):
             self.split(time_ns)
@@ -209,7 +210,7 @@ class BagWriter:
         self._file.add_message(channel, sequence, time_ns, sent_ns, raw)
 
     def write_message(self, topic: str, message: Any, time: Time) -> None:
-        """Add a message by its topic's name and its class; see `write`."""
+        """Add a message by the name and class of its topic; see `write`."""
         number = self.add_topic(topic_info(topic, type(message)))
         self.write(number, time.nanoseconds, cdr.encode(message))
 
@@ -224,27 +225,27 @@ class BagWriter:
         )
 
     def flush(self) -> None:
-        """Write what waits, so that a process that is killed does not lose it.
+        """Write pending messages, so that they survive if the process is killed.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         self._file.flush()
 
     def sync(self) -> None:
-        """Write what waits, and wait until the disk has it, so that a power cut does not lose it.
+        """Write pending messages and sync them to disk, so that they survive a power cut.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         self._file.flush()
         self._file.sync()
 
     def split(self, time_ns: int) -> None:
-        """End the file, and begin the next one with the latched messages, at `time_ns`.
+        """Finish the file, and start the next one with the latched messages, at `time_ns`.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         closed = self.file_name
         self._close_file()
@@ -262,11 +263,11 @@ class BagWriter:
             self._on_split(closed, self.file_name)
 
     def close(self) -> None:
-        """Write what waits, the summary and the metadata. Closing it again has no effect.
+        """Write pending messages, the summary and the metadata. Closing again has no effect.
 
         Raises:
-            BagWriteError: messages were lost since the disk was full or failed; the bag can be read
-                all the same.
+            BagWriteError: messages were lost because the disk was full or failed; the bag is
+                readable nevertheless.
         """
         if not self._is_open:
             return
@@ -289,18 +290,18 @@ class BagWriter:
             raise failure
 
     def _removed_file(self) -> BagWriteError | None:
-        """Count what files had that somebody has removed; return the error for the first."""
+        """Subtract files that were removed from the counts; return the error for the first."""
         failure: BagWriteError | None = None
         for part, counts in self._closed:
             place = self.path / part[0]
             if sum(counts.values()) and not place.exists():
                 counts.clear()
-                problem = "the file was removed, and what it had is lost"
+                problem = "the file was removed, and its messages are lost"
                 failure = failure or BagWriteError(str(place), problem)
         return failure
 
     def _is_full(self, time_ns: int) -> bool:
-        """Return whether a message of this time belongs to the next file."""
+        """Return whether a message with this time belongs in the next file."""
         max_bytes, max_duration_ns, max_messages = self._limits
         if self._count_in_file == 0:
             return False
@@ -311,7 +312,7 @@ class BagWriter:
         )
 
     def _open_channel(self, number: int) -> int:
-        """Add a topic to the file in work."""
+        """Add a topic to the current file."""
         topic = self.topics[number]
         metadata = {"offered_qos_profiles": profiles_to_yaml(topic.qos)}
         if topic.type_hash:
@@ -322,14 +323,14 @@ class BagWriter:
         return channel
 
     def _new_file(self) -> McapWriter:
-        """Open the next file, which says in a metadata record what the bag is."""
+        """Open the next file, with a metadata record that describes the bag."""
         name = f"{self.path.name}_{self._file_number}.mcap"
         self._count_in_file = 0
         self._file_start_ns = 0
         return McapWriter(self.path / name, compression=self._compression)
 
     def _close_file(self) -> None:
-        """Close the file in work, and note what it has."""
+        """Close the current file, and record what it contains."""
         file = self._file
         try:
             with contextlib.suppress(BagWriteError):  # `close` raises it again
@@ -341,7 +342,7 @@ class BagWriter:
             self._closed.append((part, counts))
 
     def _remove_oldest(self) -> None:
-        """Remove files beyond the limit, and what they had from the counts."""
+        """Remove files beyond the limit, and subtract them from the counts."""
         while self._max_files and len(self._closed) >= self._max_files:
             part, counts = self._closed.pop(0)
             (self.path / part[0]).unlink(missing_ok=True)
@@ -349,12 +350,12 @@ class BagWriter:
                 self.topics[number].message_count -= count
 
     def _count_again(self) -> None:
-        """Set the counts of the topics to what the files have."""
+        """Set the counts of the topics to what the files contain."""
         for number, topic in enumerate(self.topics):
             topic.message_count = sum(counts.get(number, 0) for _, counts in self._closed)
 
     def _file_metadata(self) -> str:
-        """Return the metadata of the file in work, as text."""
+        """Return the metadata of the current file as text."""
         file = self._file
         topics = []
         for number, channel in self._channels.items():
@@ -368,7 +369,7 @@ class BagWriter:
         return metadata_of(topics, files, custom_data=self.custom_data, ros_distro=distro)
 
     def write_metadata(self) -> None:
-        """Write ``metadata.yaml`` anew, as it is now.
+        """Write ``metadata.yaml`` in its current state.
 
         Raises:
             OSError: it cannot be written.

@@ -1,4 +1,4 @@
-"""The YAML files that rosbag2 takes, on the command line and in programs of `rosbag2_py`."""
+"""rosbag2's YAML files, used on the command line and by programs of `rosbag2_py`."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ PRESETS: Final = {
     "zstd_fast": "zstd",
     "zstd_small": "zstd_small",
 }
-"""The compression of chunks for each of rosbag2's presets for MCAP."""
+"""The compression of chunks for each of rosbag2's MCAP presets."""
 
 COMPRESSIONS: Final = {"None": "none", "Lz4": "lz4", "Zstd": "zstd"}
 """The compression for each name in the configuration files of its MCAP plugin."""
 
 
 def content_of(path: str) -> dict[str, Any]:
-    """Return what a YAML file has.
+    """Return the content of a YAML file.
 
     Raises:
-        ValueError: it has no names with values.
+        ValueError: it is not a mapping.
     """
     try:
         content = loaded_yaml(read_file(path))
     except yaml.YAMLError as error:
-        raise ValueError(f"{path}: no YAML: {' '.join(str(error).split())}") from error
+        raise ValueError(f"{path}: not YAML: {' '.join(str(error).split())}") from error
     if not isinstance(content, dict):
-        raise ValueError(f"{path}: there are no names with values in it")  # noqa: TRY004  # of a file, and not of an argument
+        raise ValueError(f"{path}: not a mapping of names to values")  # noqa: TRY004  # of a file, and not of an argument
     return content
 
 
 def static_topics_in(path: str | None) -> dict[str, str]:
-    """Return the types by topic of a file for ``--static-topics-path``; none without a file.
+    """Return types by topic from a file for ``--static-topics-path``; empty without a file.
 
     Raises:
-        ValueError: it is no such file.
+        ValueError: it is not such a file.
     """
     if not path:
         return {}
@@ -58,10 +58,10 @@ def static_topics_in(path: str | None) -> dict[str, str]:
 
 
 def chunk_compression(preset: str | None, config: str | None, compression: str) -> str:
-    """Return how chunks are compressed, by the most particular of three options.
+    """Return how to compress chunks, by the most specific of three options.
 
     Raises:
-        ValueError: the file names no compression of MCAP.
+        ValueError: the file does not name a compression of MCAP.
     """
     if config is not None:
         named = content_of(config).get("compression")
@@ -76,7 +76,7 @@ def bags_in(path: str, key: str) -> list[dict[str, Any]]:
     """Return the entries of a list of bags in a file.
 
     Raises:
-        ValueError: there is none, or one has no ``uri``.
+        ValueError: there is none, or an entry has no ``uri``.
     """
     listed = content_of(path).get(key)
     if not isinstance(listed, list) or not all(
@@ -92,23 +92,25 @@ def inputs_in(path: str | None) -> list[str]:
 
 
 def outputs_in(path: str) -> list[tuple[str, dict[str, Any]]]:
-    """Return the new bags of a file for ``--output-options``: folder, and how `convert` makes it.
+    """Return the new bags in a file for ``--output-options``: folder, and options of `convert`.
 
     Raises:
-        ValueError: it is no such file, or asks for a bag that is not written.
+        ValueError: it is not such a file, or asks for a format that cannot be written.
     """
     try:
         return [output_in(path, entry) for entry in bags_in(path, "output_bags")]
-    except (TypeError, AttributeError, OverflowError) as error:  # of a list for a number
-        raise ValueError(f"{path}: a value of output_bags is of another kind: {error}") from error
+    except (
+        TypeError,
+        AttributeError,
+        OverflowError,
+    ) as error:  # such as a list instead of a number
+        raise ValueError(f"{path}: a value in output_bags has the wrong type: {error}") from error
 
 
 def output_in(path: str, entry: dict[str, Any]) -> tuple[str, dict[str, Any]]:
     """Return one entry of `outputs_in`."""
     if entry.get("storage_id") not in {None, "", "mcap"}:
-        raise ValueError(
-            f"{path}: {entry['uri']}: aionode writes mcap, and not {entry['storage_id']}"
-        )
+        raise ValueError(f"{path}: {entry['uri']}: aionode writes mcap, not {entry['storage_id']}")
     every = [
         kind
         for kind in ("topic", "service", "action")
@@ -119,7 +121,7 @@ def output_in(path: str, entry: dict[str, Any]) -> tuple[str, dict[str, Any]]:
         every = ["topic", "service", "action"]
     preset = entry.get("storage_preset_profile") or None
     if preset is not None and preset not in PRESETS:
-        raise ValueError(f"{path}: there is no storage_preset_profile {preset}")
+        raise ValueError(f"{path}: unknown storage_preset_profile {preset}")
     start_ns, end_ns = entry.get("start_time_ns", -1), entry.get("end_time_ns", -1)
     return (
         str(entry["uri"]),

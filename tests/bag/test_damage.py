@@ -155,7 +155,7 @@ def test_a_count_that_is_not_what_can_be_read_is_an_error(tmp_path: Path) -> Non
     counts = at + HEAD.size + 8 + 2 + 4 * 4 + 8 + 8 + 4
     data[counts + 2] += 3
     file.write_bytes(data)
-    with pytest.raises(BagError, match="says that it has 11 messages, and 8 can be read"):
+    with pytest.raises(BagError, match="claims to have 11 messages, but 8 can be read"):
         texts(tmp_path / "run")
     assert [found.repaired for found in bag.check(tmp_path / "run")] == [True]
     assert len(texts(tmp_path / "run")) == 8
@@ -341,7 +341,7 @@ def test_a_chunk_that_is_larger_than_is_believable_is_refused(
     packed = zstandard.compress(plain) if compression == "zstd" else lz4.frame.compress(plain)
     if compression == "lz4" and said > 100:
         packed = packed[:1000]
-    with pytest.raises(Exception, match=r"where its head says|fewer than|at most"):
+    with pytest.raises(Exception, match=r"but its header says|fewer than|at most"):
         decompressed(compression, packed, said)
 
 
@@ -366,7 +366,7 @@ def test_a_full_temporary_folder_is_named(tmp_path: Path, monkeypatch: pytest.Mo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("aionode.bag.files.compression.write_plain", is_full)
-    with pytest.raises(BagError, match=r"no space .* set TMPDIR"):
+    with pytest.raises(BagError, match=r"not enough space .* set TMPDIR"):
         bag.open(packed)
 
 
@@ -427,7 +427,7 @@ def test_rows_of_a_topic_that_is_not_listed_are_said(tmp_path: Path) -> None:
     sql(tmp_path / "run" / "run_0.db3", "UPDATE messages SET topic_id = 7 WHERE id = 2")
     heard, error = heard_before_error(tmp_path / "run")
     assert heard == ["a", "c"]
-    assert "1 messages are of topic 7" in str(error)
+    assert "1 messages belong to topic 7" in str(error)
 
 
 # Names of others

@@ -301,7 +301,7 @@ async def test_a_request_that_nobody_serves_is_named(
         bag.Player(tmp_path / "run", context=context, send_requests=("service",)) as player,
     ):
         assert await player.play()
-    assert [each.message for each in caplog.records if "nobody serves it" in each.message]
+    assert [each.message for each in caplog.records if "it has no server" in each.message]
 
 
 async def test_messages_are_played_in_the_order_in_which_they_were_sent(tmp_path: Path) -> None:

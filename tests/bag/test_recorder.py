@@ -164,7 +164,7 @@ async def test_a_topic_of_an_unknown_type_is_named_once_and_the_rest_is_recorded
             await settle()
             assert recorder.stats.keys() >= {"/words", "/more"}
             assert "/odd" not in recorder.stats
-            assert recorder.summary().endswith("lost: /odd: all, nobody describes its type")
+            assert recorder.summary().endswith("lost: /odd: all, as no node describes its type")
     assert texts(tmp_path / "run") == ["a"]
     told = [each.message for each in caplog.records if "/odd is not recorded" in each.message]
     assert len(told) == 1

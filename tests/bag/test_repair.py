@@ -119,7 +119,7 @@ def test_a_file_that_is_no_mcap_file_is_refused(tmp_path: Path) -> None:
     """There is nothing to save, and nothing may be destroyed."""
     file = tmp_path / "x.mcap"
     file.write_bytes(b"hello, world")
-    with pytest.raises(BagError, match="nothing can be saved"):
+    with pytest.raises(BagError, match="nothing can be recovered"):
         bag.check(file)
     assert file.read_bytes() == b"hello, world"
 

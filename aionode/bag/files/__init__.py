@@ -1,1 +1,1 @@
-"""The files of a bag: their formats, and what all of them have."""
+"""The file formats of bags, and what they have in common."""

@@ -1,7 +1,7 @@
-"""The chunks of MCAP files, read one message after the other.
+"""Reads the chunks of MCAP files message by message.
 
-The library `mcap` makes objects of all messages of a chunk before it yields the first. While it
-does, which takes many milliseconds, the event loop hardly runs.
+The library `mcap` creates objects for all messages of a chunk before it yields the first one. That
+takes many milliseconds, during which the event loop hardly runs.
 """
 
 from __future__ import annotations
@@ -28,26 +28,26 @@ if TYPE_CHECKING:
 __all__ = ["HEAD", "MESSAGE", "Row", "checked_content", "rows_of", "size_of"]
 
 HEAD: Final = struct.Struct("<BQ")
-"""The head of each record: its kind and its length."""
+"""The header of each record: opcode and length."""
 
 MESSAGE: Final = struct.Struct("<HIQQ")
-"""The head of a message: channel, sequence, and the times of logging and publishing."""
+"""The header of a message: channel, sequence number, log time and publish time."""
 
 Row = tuple[int, int, int, int, int, int]
-"""A message: log time, channel, sequence, publish time, and where its bytes begin and end."""
+"""A message: log time, channel, sequence, publish time, and the start and end of its bytes."""
 
 
 def checked_content(chunk: Chunk) -> bytes:
     """Return the records of a chunk.
 
     Raises:
-        McapError: it is damaged; so are errors of the compression's library.
+        McapError: it is damaged; errors of the compression library also mean damage.
     """
     content = decompressed(chunk.compression, chunk.data, chunk.uncompressed_size)
     if len(content) != chunk.uncompressed_size or (
         chunk.uncompressed_crc and zlib.crc32(content) != chunk.uncompressed_crc
     ):
-        raise McapError("its checksum does not fit")
+        raise McapError("its checksum does not match")
     return content
 
 
@@ -59,14 +59,14 @@ def size_of(file: IO[bytes]) -> int:
 def rows_of(
     file: IO[bytes], index: ChunkIndex, channels: Container[int] | None, start_ns: int, end_ns: int
 ) -> tuple[bytes, Iterator[Row]]:
-    """Return the content of a chunk, and its messages of some channels in order of time.
+    """Return the content of a chunk, and its messages on some channels in time order.
 
     Args:
         file: The file.
-        index: Where the chunk is.
-        channels: Which channels are wanted; all if not given.
-        start_ns: The time of the first message that is wanted.
-        end_ns: The time before which they end.
+        index: The chunk's entry in the summary.
+        channels: The channels to read; all if None.
+        start_ns: The time of the first message to read.
+        end_ns: The time before which to stop.
     """
     size = size_of(file)
     if not 0 <= index.chunk_start_offset <= size - HEAD.size:
@@ -74,7 +74,7 @@ def rows_of(
     file.seek(index.chunk_start_offset)
     opcode, length = HEAD.unpack(file.read(HEAD.size))
     if opcode != Opcode.CHUNK or length > size - index.chunk_start_offset - HEAD.size:
-        raise McapError("there is no whole chunk")
+        raise McapError("there is no complete chunk")
     content = checked_content(Chunk.read(ReadDataStream(BytesIO(file.read(length)))))
     rows = list(wanted_rows(content, channels, start_ns, end_ns))
     rows.sort(key=itemgetter(0))
@@ -84,7 +84,7 @@ def rows_of(
 def wanted_rows(
     content: bytes, channels: Container[int] | None, start_ns: int, end_ns: int
 ) -> Iterator[Row]:
-    """Yield the messages of a chunk in the order in which they are there."""
+    """Yield the messages of a chunk in file order."""
     at, size = 0, len(content)
     head, message = HEAD.unpack_from, MESSAGE.unpack_from
     while at < size:
@@ -94,7 +94,7 @@ def wanted_rows(
         if opcode != Opcode.MESSAGE:
             continue
         if at > size or length < MESSAGE.size:
-            raise McapError("a message goes beyond its chunk, or is none")
+            raise McapError("a record extends beyond the chunk, or is not a valid message")
         channel, sequence, log_ns, publish_ns = message(content, body)
         if start_ns <= log_ns < end_ns and (channels is None or channel in channels):
             yield log_ns, channel, sequence, publish_ns, body + MESSAGE.size, at

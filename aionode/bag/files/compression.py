@@ -1,4 +1,4 @@
-"""Decompresses parts of bags, and whole files, as far as their size is believable."""
+"""Decompresses parts of bags, and whole files, up to a plausible size."""
 
 from __future__ import annotations
 
@@ -29,71 +29,71 @@ __all__ = [
 ]
 
 LARGEST_PART: Final = 128 << 20
-"""A chunk or message may have so many bytes, and more if its compressed form justifies it."""
+"""Bytes that a chunk or message may have; more if its compressed size justifies it."""
 
 LARGEST_FILE: Final = 256 << 20
-"""The limit for a whole file, which is decompressed to a temporary folder."""
+"""The same limit for a whole file, which is decompressed to a temporary folder."""
 
 LIMIT_VARIABLE: Final = "AIONODE_BAG_LARGEST_BYTES"
-"""The variable of the environment that raises both."""
+"""The environment variable that raises both limits."""
 
 PART_RATIO: Final = 20
 FILE_RATIO: Final = 100
 PIECE: Final = 1 << 20
 
 LFS: Final = b"version https://git-lfs.github.com/spec/"
-"""How the text begins that Git has in place of a large file."""
+"""The start of the pointer file that Git LFS puts in place of a large file."""
 
 
 class TooLargeError(McapError):
-    """A part of a bag is larger than is believable, which is no damage that can be repaired."""
+    """A part of a bag is implausibly large, which is not damage that could be repaired."""
 
 
 def limit_of(largest: int, ratio: int, compressed_size: int) -> int:
-    """Return how many bytes so many compressed ones may stand for."""
+    """Return how many bytes a given number of compressed bytes may plausibly expand to."""
     given = os.environ.get(LIMIT_VARIABLE, "")
     raised = int(given) if given.isascii() and given.isdigit() else 0
     return max(largest + ratio * compressed_size, raised)
 
 
 def expect_plain_size(size: int, compressed_size: int) -> None:
-    """Raise `TooLargeError` if a part that says that it is so large cannot be one of a bag."""
+    """Raise `TooLargeError` if the declared size of a part is implausible."""
     most = limit_of(LARGEST_PART, PART_RATIO, compressed_size)
     if size > most:
         raise TooLargeError(
-            f"{compressed_size} bytes that say they are {size} when decompressed, "
-            f"where at most {most} are taken"
+            f"{compressed_size} bytes claim to be {size} when decompressed, "
+            f"but at most {most} are allowed"
         )
 
 
 def decompressed(compression: str, data: bytes, size: int) -> bytes:
-    """Return the plain form of a part of a bag, which says how large that is.
+    """Decompress a part of a bag that declares its size.
 
     Raises:
-        McapError: it is larger than it says, or than is believable, or its compression is unknown.
+        McapError: it is larger than declared, implausibly large, or its compression is unknown.
     """
     expect_plain_size(size, len(data))
     if not compression:
         return data
     if compression == "zstd":
         declared = zstandard.frame_content_size(data)
-        if declared not in {-1, size}:  # the library would take that much memory at once
-            raise McapError(f"{declared} bytes where its head says {size}")
+        if declared not in {-1, size}:  # the library would allocate that much memory right away
+            raise McapError(f"{declared} bytes, but its header says {size}")
         plain = zstandard.ZstdDecompressor().decompress(data, max_output_size=size) if size else b""
     elif compression == "lz4":
         plain = lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=size + 1)
     else:
         raise McapError(f"unknown compression {compression!r}")
     if len(plain) != size:
-        raise McapError(f"more or fewer than the {size} bytes that its head says")
+        raise McapError(f"more or fewer than the {size} bytes that its header says")
     return plain
 
 
 def plain_message(data: bytes) -> bytes:
-    """Return a message that rosbag2 has compressed by itself.
+    """Decompress a message that rosbag2 compressed individually.
 
     Raises:
-        McapError: it is larger than is believable; so are errors of the compression's library.
+        McapError: it is implausibly large; errors of the compression library also mean damage.
     """
     size = zstandard.frame_content_size(data)
     if size >= 0:
@@ -104,14 +104,14 @@ def plain_message(data: bytes) -> bytes:
 
 
 def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
-    """Return a file of a bag and a stream of it; a compressed one is decompressed first.
+    """Return the path and stream of a bag file, decompressing it first if necessary.
 
     Args:
         path: The file.
-        stack: What closes the file, and removes the decompressed one.
+        stack: Closes the file, and removes the decompressed copy.
 
     Raises:
-        BagError: it is no file of a bag, or decompresses to more than is believable.
+        BagError: it is not a bag file, or decompresses to an implausible size.
         OSError: it cannot be read.
     """
     state = path.stat()
@@ -132,25 +132,25 @@ def plain_file(path: Path, stack: ExitStack) -> tuple[Path, IO[bytes]]:
             raise
         raise BagError(
             str(path),
-            f"{gettempdir()} has no space for what it decompresses to",
-            "decompress it by `zstd -d` where there is space, or set TMPDIR",
+            f"{gettempdir()} has not enough space for the decompressed file",
+            "decompress it with `zstd -d` where there is space, or set TMPDIR",
         ) from error
     return plain, stack.enter_context(plain.open("rb"))
 
 
 def expect_no_pointer(path: Path, content: bytes) -> None:
-    """Raise `BagError` if the content of a file is a pointer of Git LFS."""
+    """Raise `BagError` if the content of a file is a Git LFS pointer."""
     if content.startswith(LFS):
         raise BagError(
             str(path),
-            "it is the pointer that Git LFS has in place of the file",
+            "it is only the Git LFS pointer to the file",
             "`git lfs pull` fetches the file",
         )
 
 
 def write_plain(path: Path, compressed: IO[bytes], plain: Path, most: int) -> None:
-    """Decompress a file into another one, as long as that is not larger than `most`."""
-    problem = f"it decompresses to more than {most} bytes, which no bag of its size does"
+    """Decompress a file into another one, up to a size of `most` bytes."""
+    problem = f"it decompresses to more than {most} bytes, which is implausible for its size"
     with plain.open("wb") as out:
         reader = zstandard.ZstdDecompressor().stream_reader(compressed, read_across_frames=True)
         while piece := reader.read(PIECE):

@@ -1,4 +1,4 @@
-"""The losses of recorders, as bags keep them: in the custom data, which rosbag2 keeps as well."""
+"""Losses of a recorder, stored in the bag's custom data, which rosbag2 preserves."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
 __all__ = ["LOSSES", "Lost", "added_losses", "losses_from", "losses_text"]
 
 LOSSES: Final = "messages_lost"
-"""The key of the losses in the custom data of a bag."""
+"""The key for losses in the custom data of a bag."""
 
 
 class Lost(NamedTuple):
-    """The messages of one topic that a recorder has lost.
+    """The messages of one topic that a recorder lost.
 
     Attributes:
-        in_transport: How many were published and did not arrive, by their numbers.
-        in_recorder: How many arrived and were not written.
+        in_transport: How many were published but did not arrive, judging by sequence numbers.
+        in_recorder: How many arrived but were not written.
     """
 
     in_transport: int
@@ -27,12 +27,12 @@ class Lost(NamedTuple):
 
 
 def losses_text(losses: Mapping[str, Lost]) -> str:
-    """Return losses as the text that is in the custom data; topics without any are left out."""
+    """Return losses as text for the custom data, omitting topics without any."""
     return json.dumps({name: lost._asdict() for name, lost in losses.items() if any(lost)})
 
 
 def losses_from(custom_data: Mapping[str, str]) -> dict[str, Lost] | None:
-    """Return the losses by topic; None if the custom data tell of none."""
+    """Return the losses by topic; None if the custom data contain none."""
     try:
         listed = json.loads(custom_data[LOSSES])
         return {
@@ -40,11 +40,11 @@ def losses_from(custom_data: Mapping[str, str]) -> dict[str, Lost] | None:
             for name, counts in listed.items()
         }
     except (KeyError, TypeError, ValueError, AttributeError):
-        return None  # another recorder, or somebody's own entry of this name
+        return None  # another recorder's, or a user's own entry of this name
 
 
 def added_losses(losses: Iterable[Mapping[str, Lost] | None]) -> dict[str, Lost] | None:
-    """Return the sums of several bags; None unless each of them tells."""
+    """Return the sums over several bags; None unless all of them report losses."""
     total: dict[str, Lost] = {}
     for by_topic in losses:
         if by_topic is None:

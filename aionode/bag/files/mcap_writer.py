@@ -1,8 +1,8 @@
-"""Writes one MCAP file: the chunks are made here, all other records by the library `mcap`.
+"""Writes one MCAP file: chunks are built here, all other records by the library `mcap`.
 
-The library copies each message several times. Here the bytes of a message are handed to the system
-as they are, and small ones are joined once. Checksums, compression and writing let other threads
-run, so a writer belongs in a thread of its own.
+The library copies each message several times. Here, the bytes of a message are passed to the system
+without copying, and small messages are joined once. Checksums, compression and writing release the
+GIL, so a writer belongs in a thread of its own.
 """
 
 from __future__ import annotations
@@ -59,28 +59,28 @@ LIBRARY: Final = "aionode"
 COMPRESSIONS: Final = ("zstd", "zstd_small", "lz4", "none")
 LEVELS: Final = {"zstd": 1, "zstd_small": 19}
 CHUNK_BYTES: Final = 1 << 20
-"""A chunk is written once it is larger than this; a reader has to decompress a whole one."""
+"""Size at which a chunk is written; readers have to decompress whole chunks."""
 
 LARGE_BYTES: Final = 64 << 10
-"""Messages from this size on are not copied, and are tried for compression first."""
+"""Size from which messages are not copied, and a sample decides whether to compress them."""
 
 WORTH_SAVING: Final = 0.95
-"""A chunk with large messages is compressed if a sample of the last one shrinks to less."""
+"""A chunk with large messages is compressed if a sample of the last one shrinks below this."""
 
 MESSAGE_HEADER: Final = struct.Struct("<BQHIQQ")
 CHUNK_HEADER: Final = struct.Struct("<BQQQQI")
 INDEX_HEADER: Final = struct.Struct("<BQHI")
 FULL: Final = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 MOST_PARTS: Final = 512
-"""Pieces that one `writev` takes: systems have a limit, which is 1024 on Linux."""
+"""Maximum number of pieces per `writev`; systems have a limit, which is 1024 on Linux."""
 
 MOST_AT_ONCE: Final = 256 << 10
-"""Bytes that one call writes. Many kernels let nothing else run on that processor meanwhile,
-and the event loop may wait for it: 6 MB were seen to take 15 ms and longer."""
+"""Maximum number of bytes per write. Many kernels run nothing else on that processor meanwhile,
+and the event loop may have to wait: 6 MB were seen to take 15 ms and longer."""
 
 
 def record_bytes(*records: McapRecord) -> bytes:
-    """Return records of the library as bytes."""
+    """Serialize records of the library."""
     builder = RecordBuilder()
     for record in records:
         record.write(builder)
@@ -89,11 +89,11 @@ def record_bytes(*records: McapRecord) -> bytes:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """A chunk that was written, as the summary lists it.
+    """A chunk that was written, as listed in the summary.
 
     Attributes:
         index: Its entry in the summary.
-        counts: How many messages it has, by channel.
+        counts: Number of messages by channel.
     """
 
     index: ChunkIndex
@@ -101,13 +101,13 @@ class Span:
 
     @property
     def end(self) -> int:
-        """The offset at which the records of the chunk end."""
+        """The offset at which the chunk's records end."""
         index = self.index
         return index.chunk_start_offset + index.chunk_length + index.message_index_length
 
 
 def write_error(path: Path, error: OSError) -> BagWriteError:
-    """Return the error for a file that the system does not write."""
+    """Return the error for a file that the system cannot write."""
     problem = error.strerror or str(error)
     return BagWriteError(str(path), problem, is_full=error.errno in FULL)
 
@@ -130,7 +130,7 @@ class ChunkWriter:
         self.size += len(data)
 
     def add(self, channel: int, sequence: int, log_ns: int, publish_ns: int, raw: Parts) -> None:
-        """Add a message. Its bytes are kept, and must not change."""
+        """Add a message. Its bytes are kept and must not change."""
         if isinstance(raw, list):
             parts, size, largest = raw, sum(map(len, raw)), max(raw, key=len)
         else:
@@ -154,7 +154,7 @@ class ChunkWriter:
             self.largest = largest
 
     def joined(self) -> list[bytes | memoryview]:
-        """Return the bytes of the chunk, with small pieces joined and large messages as given."""
+        """Return the chunk's bytes, with small pieces joined and large messages as they are."""
         if not self.largest:
             return [b"".join(self.parts)]
         pieces: list[bytes | memoryview] = []
@@ -180,20 +180,20 @@ class Scanned(Protocol):
 
 
 class McapWriter:
-    """One MCAP file of profile ros2, open for writing.
+    """An MCAP file with profile ros2 that is open for writing.
 
     Args:
         path: The file, which must not exist.
         compression: One of `COMPRESSIONS`.
-        chunk_bytes: The size from which on a chunk is written.
+        chunk_bytes: The size at which a chunk is written.
 
     Attributes:
-        size: The bytes in the file, and those that wait for it.
-        counts: How many messages were added, by channel.
-        spans: The chunks that are in the file.
+        size: The number of bytes in the file, and pending.
+        counts: Number of messages added, by channel.
+        spans: The chunks in the file.
 
     Raises:
-        OSError: the file cannot be made.
+        OSError: the file cannot be created.
     """
 
     def __init__(
@@ -220,15 +220,15 @@ class McapWriter:
 
     @classmethod
     def resume(cls, path: Path, scan: Scanned) -> McapWriter:
-        """Return a file that was not closed, open for writing after its last complete chunk.
+        """Open a file that was not closed, for writing after its last complete chunk.
 
         Args:
             path: The file.
-            scan: What it has.
+            scan: Its usable content.
 
         Raises:
             OSError: it cannot be opened.
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         writer = cls.__new__(cls)
         writer.path, writer.compression, writer.spans = path, "", scan.spans
@@ -247,24 +247,24 @@ class McapWriter:
 
     @property
     def size(self) -> int:
-        """The bytes in the file, and those that wait for it."""
+        """The number of bytes in the file, and pending."""
         return self._offset + self._chunk.size
 
     @property
     def message_count(self) -> int:
-        """The number of messages that were added."""
+        """The number of messages added."""
         return sum(self.counts.values())
 
     @property
     def start_ns(self) -> int:
-        """The earliest time of a message; 2**64 - 1 without one."""
+        """The earliest time of a message; 2**64 - 1 if there is none."""
         return min(
             [span.index.message_start_time for span in self._filled()] + [self._chunk.start_ns]
         )
 
     @property
     def end_ns(self) -> int:
-        """The latest time of a message; 0 without one."""
+        """The latest time of a message; 0 if there is none."""
         return max([span.index.message_end_time for span in self._filled()] + [self._chunk.end_ns])
 
     def _filled(self) -> list[Span]:
@@ -273,13 +273,13 @@ class McapWriter:
     def add_channel(
         self, topic: str, encoding: str, metadata: dict[str, str], schema: tuple[str, str, str]
     ) -> int:
-        """Add a channel, and its schema if that is new; return its number.
+        """Add a channel, and its schema if it is new; return the channel's id.
 
         Args:
             topic: The name of the topic.
             encoding: How its messages are encoded.
-            metadata: What is known of it besides.
-            schema: The name of its type, the format of the definition, and the definition.
+            metadata: Additional information about it.
+            schema: The name of its type, and the format and text of the definition.
         """
         name, schema_encoding, text = schema
         data = text.encode()
@@ -335,13 +335,13 @@ class McapWriter:
         self._metadata.append(index)
 
     def flush(self) -> None:
-        """Write the chunk in work, so that a process that is killed does not lose it.
+        """Write the current chunk, so that it survives if the process is killed.
 
         Raises:
-            BagWriteError: the file cannot grow; it ends with the chunk before.
+            BagWriteError: the file cannot grow; it ends with the previous chunk.
         """
         if self._failure is not None:
-            raise self._failure  # the space that is left is for the summary and the metadata
+            raise self._failure  # the remaining space is reserved for the summary and the metadata
         chunk = self._chunk
         if not chunk.size:
             return
@@ -385,16 +385,16 @@ class McapWriter:
         self.spans.append(Span(index, counts))
 
     def _saves(self, raw: bytes | memoryview) -> bool:
-        """Return whether compression makes a large message smaller, by a sample of its middle."""
+        """Return whether compressing a large message is worthwhile, from a sample of its middle."""
         middle = len(raw) // 2
         sample = bytes(raw[middle - LARGE_BYTES // 2 : middle + LARGE_BYTES // 2])
         stored = sum(map(len, self._compress([sample], len(sample))))
         return stored < WORTH_SAVING * len(sample)
 
     def sync(self) -> None:
-        """Wait until the disk has what was written, so that a power cut does not lose it.
+        """Sync the file to disk, so that its content survives a power cut.
 
-        A file that is removed takes bytes without an error, until it is closed and they are gone.
+        A removed file accepts bytes without an error, and they are gone when it is closed.
 
         Raises:
             BagWriteError: the file was removed.
@@ -404,16 +404,16 @@ class McapWriter:
         if not os.fstat(self._fd).st_nlink:
             self.spans = []
             self.counts = dict.fromkeys(self.counts, 0)
-            raise BagWriteError(str(self.path), "the file was removed, and what it had is lost")
+            raise BagWriteError(str(self.path), "the file was removed, and its messages are lost")
 
     def close(self) -> None:
-        """Write what waits and the summary, and close the file.
+        """Write pending messages and the summary, and close the file.
 
-        On a full disk, chunks are taken back from the end until the summary has room.
+        On a full disk, chunks are removed from the end until there is room for the summary.
 
         Raises:
-            BagWriteError: messages were lost since the file could not grow. It has a summary all
-                the same, unless not even that could be written; `counts` tells what it has.
+            BagWriteError: messages were lost because the file could not grow. It has a summary
+                nevertheless, unless not even that could be written; `counts` is what it contains.
         """
         failure: BagWriteError | None = None
         try:
@@ -440,13 +440,13 @@ class McapWriter:
             raise failure
 
     def abandon(self) -> None:
-        """Close the file as it is, without a summary. Closing it again has no effect."""
+        """Close the file as it is, without a summary. Closing again has no effect."""
         fd, self._fd = self._fd, -1
         if fd >= 0:
             os.close(fd)
 
     def _forget_chunk(self) -> None:
-        """Count the messages of the chunk in work as lost."""
+        """Count the messages of the current chunk as lost."""
         for channel, entries in self._chunk.entries.items():
             self.counts[channel] -= len(entries) // 2
         self._chunk = ChunkWriter()
@@ -465,7 +465,7 @@ class McapWriter:
         return True
 
     def _summary(self) -> list[bytes]:
-        """Return all that follows the last chunk."""
+        """Return everything that follows the last chunk."""
         data_end = record_bytes(DataEnd(data_section_crc=0))
         start = self._offset + len(data_end)
         groups: list[tuple[Opcode, Iterable[McapRecord]]] = [
@@ -505,10 +505,10 @@ class McapWriter:
         )
 
     def _write(self, pieces: Sequence[bytes | memoryview]) -> None:
-        """Write pieces at the end of the file, all or none.
+        """Append pieces to the file, all or none.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         try:
             write_all(self._fd, pieces)
@@ -524,7 +524,7 @@ class McapWriter:
 
 
 def write_all(fd: int, pieces: Iterable[bytes | memoryview]) -> None:
-    """Write all pieces, in as many calls as the system needs, and none of them a long one."""
+    """Write all pieces, in as many calls as necessary, keeping each call short."""
     waiting = [
         memoryview(piece)[at : at + MOST_AT_ONCE]
         for piece in pieces
@@ -541,14 +541,14 @@ def write_all(fd: int, pieces: Iterable[bytes | memoryview]) -> None:
 
 
 def index_record(channel: int, entries: list[int]) -> bytes:
-    """Return the record that says where the messages of a channel are in a chunk."""
+    """Return the index record for the messages of a channel in a chunk."""
     size = 8 * len(entries)
     header = INDEX_HEADER.pack(Opcode.MESSAGE_INDEX, 6 + size, channel, size)
     return header + struct.pack(f"<{len(entries)}Q", *entries)
 
 
 def compressor(compression: str) -> Callable[[Pieces, int], Pieces]:
-    """Return what compresses the pieces of a chunk, whose size is its second argument."""
+    """Return a function that compresses the pieces of a chunk, given their total size."""
     if compression == "lz4":
         return lambda pieces, _: [lz4.frame.compress(b"".join(pieces))]
     if compression == "none":

@@ -1,4 +1,4 @@
-"""``metadata.yaml``: what rosbag2 writes beside the files of a bag."""
+"""``metadata.yaml``, which rosbag2 writes next to the files of a bag."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ NEVER_NS: Final = 2**63 - 1
 """The start of a bag without messages, as rosbag2 writes it."""
 
 FilePart = tuple[str, int, int, int]
-"""One file of a bag: its name, the times of its first and last message in nanoseconds, and how many
-messages it has."""
+"""A file of a bag: its name, the times of its first and last message in nanoseconds, and its
+number of messages."""
 
 
 def metadata_of(
@@ -81,7 +81,7 @@ def metadata_of(
 
 
 def topic_metadata(topic: TopicInfo) -> dict[str, Any]:
-    """Return what the metadata say of one topic."""
+    """Return the metadata of one topic."""
     return {
         "name": topic.name,
         "type": topic.type,
@@ -97,7 +97,7 @@ def metadata_text(metadata: Mapping[str, Any]) -> str:
 
 
 def write_metadata(folder: Path, metadata: Mapping[str, Any]) -> None:
-    """Write ``metadata.yaml``; the one before stays until the new one is whole.
+    """Write ``metadata.yaml``, replacing the old file only once the new one is complete.
 
     Raises:
         OSError: it cannot be written.
@@ -112,9 +112,9 @@ def write_metadata(folder: Path, metadata: Mapping[str, Any]) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Wait until the disk has the names of the files in a folder, so that a power cut keeps them.
+    """Sync a folder to disk, so that the names of its files survive a power cut.
 
-    A folder that cannot be read is left to the system.
+    A folder that cannot be opened for reading is left to the system.
 
     Raises:
         OSError: the disk fails.
@@ -133,7 +133,7 @@ def read_metadata(folder: Path) -> dict[str, Any]:
     """Return the metadata of a bag, whatever its version.
 
     Raises:
-        BagError: the file is missing, or is none.
+        BagError: the file is missing, or invalid.
     """
     path = folder / FILE_NAME
     try:
@@ -147,14 +147,14 @@ def read_metadata(folder: Path) -> dict[str, Any]:
             raise ValueError("NUL in the name of a file")  # noqa: TRY301  # as the others
     except FileNotFoundError as error:
         raise BagError(
-            str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` writes one"
+            str(folder), f"there is no {FILE_NAME}", "`aionode bag reindex` creates one"
         ) from error
     except BagError:
         raise
     except (OSError, yaml.YAMLError, LookupError, TypeError, ValueError) as error:
         what = " ".join(str(error).split())
         problem = f"{FILE_NAME} cannot be used ({type(error).__name__}: {what})"
-        raise BagError(str(folder), problem, "`aionode bag reindex` writes a new one") from error
+        raise BagError(str(folder), problem, "`aionode bag reindex` rebuilds it") from error
     return metadata
 
 
@@ -166,9 +166,9 @@ def start_in(metadata: Mapping[str, Any]) -> int:
 
 
 def topics_in(metadata: Mapping[str, Any]) -> list[TopicInfo]:
-    """Return the topics that the metadata of a bag list; what rosbag2 does not write is left out.
+    """Return the topics listed in a bag's metadata, ignoring what rosbag2 would not write.
 
-    How many messages they have only the files tell.
+    Their numbers of messages are known only from the files.
     """
     listed = metadata.get("topics_with_message_count")
     topics = []

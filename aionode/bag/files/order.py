@@ -1,4 +1,4 @@
-"""Puts the records of several files, or of several chunks, in order of time."""
+"""Merges the records of several files or chunks in time order."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ __all__ = ["in_order"]
 
 
 def in_order(streams: list[tuple[int, Iterator[Record]]]) -> Iterator[Record]:
-    """Yield the records of several streams in order of time.
+    """Yield the records of several streams in time order.
 
-    A stream is read only once its start has come, so that few files are in work at a time.
+    A stream is read only once its start time is reached, so that few files are in use at a time.
 
     Args:
-        streams: Each stream, in order by itself, and a time before which it has no record.
+        streams: Streams that are each in order, with a time before which they have no record.
     """
     if len(streams) == 1:
         yield from streams[0][1]

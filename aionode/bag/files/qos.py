@@ -1,4 +1,4 @@
-"""QoS profiles as bags have them: YAML, with names since version 9 and with numbers before."""
+"""QoS profiles in bags: YAML, with names since version 9 and numbers before."""
 
 from __future__ import annotations
 
@@ -42,14 +42,14 @@ POLICIES: Final = {
 }
 DURATIONS: Final = ("deadline", "lifespan", "liveliness_lease_duration")
 SHOWN: Final = 200
-"""So much of what is no profile is in an error, in characters."""
+"""Maximum number of characters of an invalid profile that an error quotes."""
 
 FOXY_INFINITE: Final = {"sec": 2147483647, "nsec": 4294967295}
-"""The infinite time of DDS, which Foxy wrote."""
+"""The infinite duration of DDS, as written by Foxy."""
 
 
 def to_builtins(qos: QoSProfile) -> dict[str, Any]:
-    """Return a profile as rosbag2 writes it since version 9."""
+    """Return a profile in the form that rosbag2 writes since version 9."""
     full = qos.resolved()
     durations = {name: seconds_of(getattr(full, name)) for name in DURATIONS}
     return {
@@ -78,18 +78,18 @@ def profiles_to_yaml(profiles: Iterable[QoSProfile]) -> str:
 
 
 def yaml_text(value: object) -> str:
-    """Return builtin values as YAML, by the C library where PyYAML has it: threads wait for it."""
+    """Return builtin values as YAML, using libyaml if available, as other threads wait for it."""
     try:
         return str(yaml.dump(value, Dumper=FAST_DUMPER, sort_keys=False))
-    except UnicodeEncodeError:  # of a name that is not UTF-8
+    except UnicodeEncodeError:  # for a name that is not UTF-8
         return yaml.safe_dump(value, sort_keys=False)
 
 
 def profiles_from(value: object) -> tuple[QoSProfile, ...]:
-    """Return the profiles of a topic, given as a list or as YAML text.
+    """Return the profiles of a topic from a list or from YAML text.
 
     Raises:
-        ValueError: there is no list of profiles in it.
+        ValueError: it does not contain a list of profiles.
     """
     if isinstance(value, str):
         try:
@@ -104,7 +104,7 @@ def profiles_from(value: object) -> tuple[QoSProfile, ...]:
 
 
 def readable_profiles(value: object) -> tuple[tuple[QoSProfile, ...], str]:
-    """Return the profiles of a topic, and why there are none if they cannot be read."""
+    """Return the profiles of a topic, and the reason if they cannot be read."""
     try:
         return profiles_from(value), ""
     except ValueError as error:
@@ -112,10 +112,10 @@ def readable_profiles(value: object) -> tuple[tuple[QoSProfile, ...], str]:
 
 
 def profile_from(item: Mapping[str, Any]) -> QoSProfile:
-    """Return the profile that a mapping describes; what it leaves out has its default.
+    """Return the profile described by a mapping; missing policies get their defaults.
 
     Raises:
-        ValueError: a value is no such policy, depth or duration.
+        ValueError: a value is not a valid policy, depth or duration.
     """
     fields: dict[str, Any] = {}
     try:
@@ -128,7 +128,7 @@ def profile_from(item: Mapping[str, Any]) -> QoSProfile:
                 fields[name] = duration_from(item[name])
         depth = int(item.get("depth", 10))
         if depth == 0 and fields.get("history") is HistoryPolicy.KEEP_LAST:
-            del fields["history"]  # the default of the middleware, as depth 0 means
+            del fields["history"]  # use the default of the middleware, which depth 0 stands for
         fields["depth"] = depth
         fields["avoid_ros_namespace_conventions"] = bool(
             item.get("avoid_ros_namespace_conventions", False)
@@ -142,18 +142,18 @@ def profile_from(item: Mapping[str, Any]) -> QoSProfile:
         AttributeError,
         InvalidQoSProfileException,
     ) as error:
-        raise ValueError(f"{str(dict(item))[:SHOWN]} is no QoS profile: {error}") from error
+        raise ValueError(f"{str(dict(item))[:SHOWN]} is not a QoS profile: {error}") from error
 
 
 def qos_overrides(path: str | PathLike[str]) -> dict[str, QoSProfile]:
-    """Return the profiles in a YAML file as rosbag2 takes it, by topic.
+    """Read a YAML file of QoS overrides as used by rosbag2, and return the profiles by topic.
 
     Args:
-        path: The file: the policies of each topic, by short names such as ``best_effort``.
+        path: The file: policies by topic, with short names such as ``best_effort``.
 
     Raises:
         OSError: it cannot be read.
-        ValueError: it is no such file.
+        ValueError: it is not such a file.
     """
     try:
         content = loaded_yaml(read_file(path)) or {}
@@ -163,7 +163,7 @@ def qos_overrides(path: str | PathLike[str]) -> dict[str, QoSProfile]:
 
 
 def duration_from(value: Mapping[str, int]) -> Duration:
-    """Return a duration; an infinite one is cut to the longest that there is."""
+    """Return a duration; an infinite one becomes the longest that can be represented."""
     if dict(value) == FOXY_INFINITE:
         return Duration(nanoseconds=CONST_INFINITE_NS)
     ns = int(value.get("sec", 0)) * 10**9 + int(value.get("nsec", 0))

@@ -1,4 +1,4 @@
-"""The content of a bag: topics, and records of their messages."""
+"""The contents of a bag: topics, and records of their messages."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from aionode.qos import QoSProfile
 __all__ = ["MOST_NS", "Record", "TopicInfo", "time_of"]
 
 MOST_NS: Final = 2**63 - 1
-"""The latest time that a `Time` shows, in nanoseconds."""
+"""The latest time that a `Time` can represent, in nanoseconds."""
 
 
 def time_of(ns: int) -> Time:
-    """Return nanoseconds since 1970 as a `Time`; a time that no `Time` can show is cut off."""
+    """Convert nanoseconds since 1970 to a `Time`, clamping times that it cannot represent."""
     return Time(nanoseconds=min(max(ns, 0), MOST_NS), clock_type=ClockType.ROS_TIME)
 
 
@@ -28,11 +28,11 @@ class TopicInfo(msgspec.Struct, kw_only=True, eq=False):
         type: The ROS name of its type, such as ``std_msgs/msg/String``.
         type_hash: The RIHS01 hash of the type; empty if the bag has none.
         qos: The profiles that its publishers offered.
-        message_count: How many of its messages the bag has.
-        serialization_format: How messages are encoded: ``cdr``.
-        encoding: The format of `definition`: ``ros2msg``, ``ros2idl``, or empty without one.
-        definition: The text of the type, with all types that it uses.
-        problem: What of the topic could not be read, so that it is missing here; empty if nothing.
+        message_count: Number of its messages in the bag.
+        serialization_format: The encoding of messages: ``cdr``.
+        encoding: The format of `definition`: ``ros2msg``, ``ros2idl``, or empty if there is none.
+        definition: The text of the type's definition, including all types that it uses.
+        problem: What could not be read about the topic, and is missing here; empty if nothing.
     """
 
     name: str
@@ -48,20 +48,20 @@ class TopicInfo(msgspec.Struct, kw_only=True, eq=False):
 
     @property
     def msg_type(self) -> Any:
-        """The class of its messages: aionode's, or one made of the definition in the bag.
+        """The class of its messages: aionode's own, or one built from the definition in the bag.
 
         Raises:
             InterfaceNotFoundError: neither aionode nor the bag has a definition of the type.
         """
         if self._class is None:
-            from aionode.bag.files.types import class_of  # bags are often copied without decoding
+            from aionode.bag.files.types import class_of  # copying a bag does not need it
 
             self._class = class_of(self.type, self.type_hash, self.encoding, self.definition)
         return self._class
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """The identity of a topic: its name, and its type with the hash."""
+        """What identifies a topic: its name, its type and the type's hash."""
         return (self.name, self.type, self.type_hash)
 
 
@@ -70,9 +70,9 @@ class Record:
 
     Attributes:
         info: Its topic.
-        time_ns: When it was received, in nanoseconds since 1970.
-        publish_time_ns: When it was published; the same as `time_ns` if the bag does not tell.
-        sequence: Its number, given by its publisher; 0 if the bag does not tell.
+        time_ns: The receive time, in nanoseconds since 1970.
+        publish_time_ns: The publish time; `time_ns` if the bag does not contain it.
+        sequence: The publisher's sequence number; 0 if the bag does not contain it.
         raw: The message as CDR bytes.
     """
 
@@ -103,12 +103,12 @@ class Record:
 
     @property
     def time(self) -> Time:
-        """When it was received."""
+        """The receive time."""
         return time_of(self.time_ns)
 
     @property
     def publish_time(self) -> Time:
-        """When it was published; the same as `time` if the bag does not tell."""
+        """The publish time; `time` if the bag does not contain it."""
         return time_of(self.publish_time_ns)
 
     @property

@@ -1,4 +1,4 @@
-"""Reads the MCAP files of bags, and what all files of bags have in common."""
+"""Reads the MCAP files of bags; defines what all bag files have in common."""
 
 from __future__ import annotations
 
@@ -47,17 +47,17 @@ DAMAGE: Final = (
     LookupError,
     AssertionError,
 )
-"""Exceptions of the libraries for a damaged file."""
+"""Exceptions that the libraries raise for a damaged file."""
 
 
 class Source(Protocol):
     """One file of a bag.
 
     Attributes:
-        path: Where it is.
+        path: Its path.
         topics: Its topics, with counts.
-        start_ns: The time of its first message; `MOST_NS` without one.
-        end_ns: The time of its last message; 0 without one.
+        start_ns: The time of its first message; `MOST_NS` if there is none.
+        end_ns: The time of its last message; 0 if there is none.
     """
 
     path: Path
@@ -72,9 +72,9 @@ class Source(Protocol):
         end_ns: int,
         problems: list[BagError],
     ) -> Iterator[Record]:
-        """Yield the records of some topics from one time on until before another, in order.
+        """Yield the records of some topics from `start_ns` until before `end_ns`, in order.
 
-        What is damaged is left out, and added to `problems`.
+        Damaged records are skipped and reported in `problems`.
         """
 
     def close(self) -> None:
@@ -82,7 +82,7 @@ class Source(Protocol):
 
 
 def topic_of(schema: Schema | None, channel: Channel, messages: int) -> TopicInfo:
-    """Return the topic that a channel of an MCAP file is."""
+    """Return the topic that a channel of an MCAP file represents."""
     definition = "" if schema is None else schema.data.decode(errors="replace")
     qos, problem = readable_profiles(channel.metadata.get("offered_qos_profiles", ""))
     return TopicInfo(
@@ -102,11 +102,11 @@ class McapSource:
     """An MCAP file.
 
     Args:
-        path: The file; one that ends in ``.zstd`` is decompressed into a temporary folder.
-        compressed_messages: Whether each message is compressed by itself.
+        path: The file; a ``.zstd`` file is decompressed into a temporary folder.
+        compressed_messages: Whether each message is compressed individually.
 
     Raises:
-        BagError: it is no MCAP file, or was not closed.
+        BagError: it is not an MCAP file, or was not closed.
         OSError: it cannot be read.
     """
 
@@ -147,7 +147,7 @@ class McapSource:
         end_ns: int,
         problems: list[BagError],
     ) -> Iterator[Record]:
-        """Yield the records of some topics from one time on until before another, in order."""
+        """Yield the records of some topics from `start_ns` until before `end_ns`, in order."""
         wanted = None
         if topics is not None:
             wanted = {
@@ -208,8 +208,8 @@ class McapSource:
         end_ns: int,
         problems: list[BagError],
     ) -> Iterator[Record]:
-        """Yield messages that stand in the file by themselves."""
-        rows: list[tuple[int, int, int]] = []  # time, and where it is
+        """Yield messages that are not in chunks."""
+        rows: list[tuple[int, int, int]] = []  # time, offset and length
         try:
             for at, length, channel, time_ns in self._lone_messages():
                 if start_ns <= time_ns < end_ns and (wanted is None or channel in wanted):
@@ -228,7 +228,7 @@ class McapSource:
             yield Record(info, time_ns, message.publish_time, message.sequence, message.data)
 
     def _lone_messages(self) -> Iterator[tuple[int, int, int, int]]:
-        """Yield where each message stands, how long it is, its channel and its time.
+        """Yield the offset, length, channel and time of each message outside chunks.
 
         Raises:
             McapError: the file is damaged.
@@ -257,7 +257,7 @@ class McapSource:
                 raise damaged(self.path, LookupError("it leaves out messages"), where)
 
     def _plain(self, records: Iterator[Record], problems: list[BagError]) -> Iterator[Record]:
-        """Yield records whose messages are compressed by themselves."""
+        """Yield records after decompressing their messages individually."""
         for record in records:
             try:
                 record.raw = plain_message(record.raw)
@@ -273,17 +273,17 @@ class McapSource:
 
 
 def has_any(chunk: ChunkIndex, wanted: AbstractSet[int] | None) -> bool:
-    """Return whether a chunk may have messages of some channels, as far as its index tells."""
+    """Return whether a chunk may contain messages of some channels, according to its index."""
     offsets = chunk.message_index_offsets
     return wanted is None or not offsets or not wanted.isdisjoint(offsets)
 
 
 def damaged(path: Path, error: Exception, where: str = "the file") -> BagError:
-    """Return the error for a file that is not complete, or for a part of one."""
+    """Return the error for an incomplete file, or for a damaged part of one."""
     what = str(error) or type(error).__name__
     if isinstance(error, TooLargeError):
         remedy = f"{LIMIT_VARIABLE} raises the limit"
-        return BagError(str(path), f"{where} is not read: {what}", remedy)
+        return BagError(str(path), f"{where} cannot be read: {what}", remedy)
     or_open = ", or was not closed" if where == "the file" else ""
     remedy = RECOVER if ".db3" in path.suffixes else CHECK
     return BagError(str(path), f"{where} is damaged{or_open} ({what})", remedy)

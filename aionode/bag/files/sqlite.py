@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["SqliteSource"]
 
 STEPS: Final = 100_000
-"""Steps of SQLite's machine between two looks at how many there were."""
+"""Steps of SQLite's virtual machine between two checks of their number."""
 
 STEPS_FOR_A_BYTE: Final = 10
 LEAST_STEPS: Final = 10_000_000
@@ -42,11 +42,11 @@ class SqliteSource:
     """A sqlite3 file of a bag.
 
     Args:
-        path: The file; one that ends in ``.zstd`` is decompressed into a temporary folder.
-        compressed_messages: Whether each message is compressed by itself.
+        path: The file; a ``.zstd`` file is decompressed into a temporary folder.
+        compressed_messages: Whether each message is compressed individually.
 
     Raises:
-        BagError: it is no such file, or is damaged.
+        BagError: it is not such a file, or is damaged.
         OSError: it cannot be read.
     """
 
@@ -55,7 +55,7 @@ class SqliteSource:
         self._compressed_messages = compressed_messages
         with ExitStack() as stack:
             plain, _ = plain_file(path, stack)
-            # A file beside it has what was not copied into the database yet.
+            # The write-ahead log holds what is not in the database yet.
             log = plain.with_name(f"{plain.name}-wal")
             is_whole = not (log.is_file() and log.stat().st_size)
             options = "mode=ro&immutable=1" if is_whole else "mode=ro"
@@ -77,7 +77,7 @@ class SqliteSource:
         self.topics = list(self._topics.values())
 
     def _limit_steps(self, base: sqlite3.Connection, size: int) -> None:
-        """Interrupt what takes more steps than a sound file of this size needs."""
+        """Interrupt queries that take more steps than an intact file of this size needs."""
         most = LEAST_STEPS + STEPS_FOR_A_BYTE * size
         self._steps = 0
 
@@ -121,19 +121,19 @@ class SqliteSource:
         end_ns: int,
         problems: list[BagError],
     ) -> Iterator[Record]:
-        """Yield the records of some topics from one time on until before another, in order."""
+        """Yield the records of some topics from `start_ns` until before `end_ns`, in order."""
         wanted = {
             number: info
             for number, info in self._topics.items()
             if topics is None or info.name in topics
         }
         for number, count in self._strays if topics is None else ():
-            what = f"{count} messages are of topic {brief(number)}, which it does not list"
+            what = f"{count} messages belong to topic {brief(number)}, which is not listed"
             problems.append(damaged(self.path, LookupError(what)))
         if not wanted:
             return
         self._steps = 0
-        # A time before 1970 counts as 0, and one that no `Time` shows is the last.
+        # Times before 1970 count as 0; times that `Time` cannot represent are clamped to the last.
         first_ns = start_ns if start_ns > 0 else -(2**63)
         last_ns = min(end_ns - 1, SQL_END_NS)
         indexed, order = ("", "timestamp") if self._is_whole else ("NOT INDEXED", "id")
@@ -152,7 +152,7 @@ class SqliteSource:
                         continue
                     try:
                         if not isinstance(data, bytes):
-                            raise TypeError("its data are no bytes")  # as others
+                            raise TypeError("its data are not bytes")  # as others
                         raw = plain_message(data) if self._compressed_messages else data
                     except DAMAGE as error:
                         problems.append(damaged(self.path, error, f"the message {row}"))
@@ -168,7 +168,7 @@ class SqliteSource:
 
 
 def expect_tables(base: sqlite3.Connection) -> None:
-    """Raise ValueError unless the tables of a bag are there: views may take for ever."""
+    """Raise ValueError unless the tables of a bag exist; views might never terminate."""
     named = base.execute("SELECT name, type, sql FROM sqlite_master").fetchall()
     tables = {
         name
@@ -181,12 +181,12 @@ def expect_tables(base: sqlite3.Connection) -> None:
 
 
 def columns_of(base: sqlite3.Connection, table: str) -> set[str]:
-    """Return the names of the columns of a table; none if it is not there."""
+    """Return the column names of a table; empty if it does not exist."""
     return {row[1] for row in base.execute(f"PRAGMA table_info({table})")}
 
 
 def topics_in(base: sqlite3.Connection) -> dict[int, TopicInfo]:
-    """Return the topics by number, without counts."""
+    """Return the topics by id, without counts."""
     definitions: dict[str, tuple[Any, ...]] = {}
     if columns_of(base, "message_definitions"):
         for kind, *rest in base.execute(
@@ -220,7 +220,7 @@ def topics_in(base: sqlite3.Connection) -> dict[int, TopicInfo]:
 
 
 def text_from(value: object) -> str:
-    """Return a text of a table, which may have any kind of value."""
+    """Return a column's value as text; SQLite allows any type of value."""
     if isinstance(value, bytes):
         return value.decode(errors="replace")
     return "" if value is None else str(value)

@@ -1,4 +1,4 @@
-"""The summary at the end of an MCAP file: its topics, its counts, and where its chunks are."""
+"""The summary at the end of an MCAP file: its topics, counts and chunk offsets."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ CRC: Final = 4
 
 
 class Summary(NamedTuple):
-    """What the summary of a file has.
+    """The contents of a file's summary.
 
     Attributes:
         statistics: Counts and times; None if the file has none, or no summary.
-        schemas: The types by number.
-        channels: The channels by number.
-        chunks: Where the chunks are.
+        schemas: The types by id.
+        channels: The channels by id.
+        chunks: The entries of the chunks.
     """
 
     statistics: Statistics | None
@@ -55,7 +55,7 @@ def read_summary(file: IO[bytes]) -> Summary:
     """Return the summary of a file.
 
     Raises:
-        McapError: the file is damaged, or was not closed; so are errors of the libraries.
+        McapError: the file is damaged or was not closed; errors of the libraries also mean damage.
     """
     found = Summary(None, {}, {}, [])
     statistics = None
@@ -75,7 +75,7 @@ def read_summary(file: IO[bytes]) -> Summary:
 
 
 def summary_bytes(file: IO[bytes]) -> bytes:
-    """Return the records of the summary; nothing if the file has none.
+    """Return the records of the summary; empty if the file has none.
 
     Raises:
         McapError: the end of the file is damaged.
@@ -83,14 +83,14 @@ def summary_bytes(file: IO[bytes]) -> bytes:
     size = size_of(file)
     file.seek(0)
     if file.read(len(MAGIC)) != MAGIC:
-        raise McapError("it does not begin as an MCAP file")
+        raise McapError("it does not start like an MCAP file")
     at = size - FOOTER - len(MAGIC)
     if at < len(MAGIC):
         raise McapError("it ends after its first bytes")
     file.seek(at)
     end = file.read()
     if not end.endswith(MAGIC) or HEAD.unpack_from(end) != (Opcode.FOOTER, FOOTER - HEAD.size):
-        raise McapError("it has no end")
+        raise McapError("its end is missing")
     footer = Footer.read(ReadDataStream(BytesIO(end[HEAD.size :])))
     if not footer.summary_start:
         return b""
@@ -100,22 +100,22 @@ def summary_bytes(file: IO[bytes]) -> bytes:
     summary = file.read(at - footer.summary_start)
     checked = zlib.crc32(end[: FOOTER - CRC], zlib.crc32(summary))
     if footer.summary_crc and checked != footer.summary_crc:
-        raise McapError("the checksum of its summary does not fit")
+        raise McapError("the checksum of its summary does not match")
     return summary
 
 
 def records_from(data: bytes) -> Iterator[tuple[int, bytes]]:
-    """Yield the records in a piece of a file: the kind of each, and its bytes.
+    """Yield the opcode and bytes of each record in a part of a file.
 
     Raises:
-        McapError: one goes beyond the end.
+        McapError: one extends beyond the end.
     """
     at = 0
     while at < len(data):
         opcode, length = HEAD.unpack_from(data, at)
         at += HEAD.size + length
         if at > len(data):
-            raise McapError("a record goes beyond its end")
+            raise McapError("a record extends beyond its end")
         yield opcode, data[at - length : at]
 
 

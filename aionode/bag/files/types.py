@@ -1,4 +1,4 @@
-"""Definitions of types, as bags have them, and the classes that they describe."""
+"""Type definitions in bags, and the classes that they describe."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LONG_NAME: Final = re.compile(r"\b([A-Za-z]\w*)/(?:msg|srv|action)/([A-Za-z]\w*)
 
 @cache
 def definition_of(cls: type[Any]) -> str:
-    """Return the definition of a message class and of all that it uses, in format ros2msg."""
+    """Return the definition of a message class and its dependencies, in ros2msg format."""
     sections = (
         f"{SEPARATOR}\nMSG: {short_name(type_name(part))}\n{own_text(part)}"
         for part in referenced_types(cls)
@@ -30,7 +30,7 @@ def definition_of(cls: type[Any]) -> str:
 
 
 def own_text(cls: type[Any]) -> str:
-    """Return the definition of one message, which names the parts of services by full name."""
+    """Return the definition of one message, naming the parts of services by full name."""
     from aionode.idl import definition_text  # only recordings of types by class need it
 
     package = type_name(cls).split("/")[0]
@@ -38,15 +38,15 @@ def own_text(cls: type[Any]) -> str:
 
 
 def short_name(typename: str) -> str:
-    """Return the name of a type as rosbag2 writes it in definitions."""
+    """Return a type's name as rosbag2 writes it in definitions."""
     return typename.replace("/msg/", "/")
 
 
 def class_of(typename: str, wanted_hash: str, encoding: str, definition: str) -> Any:
-    """Return the class of a type: ours if it is the same, or else one made of its definition.
+    """Return the class of a type: our own if it is the same, or else built from the definition.
 
     Raises:
-        InterfaceNotFoundError: the type is not known here, and its definition cannot be used.
+        InterfaceNotFoundError: the type is unknown here, and its definition cannot be used.
     """
     try:
         known = get_interface(typename)
@@ -67,8 +67,8 @@ def class_of(typename: str, wanted_hash: str, encoding: str, definition: str) ->
 
 @cache
 def made_class(typename: str, encoding: str, definition: str) -> Any:
-    """Return the class that a definition describes, or an equal one of aionode."""
-    from aionode.idl import define  # most bags have known types
+    """Return the class that a definition describes, or an equal one from aionode."""
+    from aionode.idl import define  # most bags contain known types only
 
     if encoding == "ros2idl":
         text = IDL_HEAD.sub("", definition)
@@ -86,11 +86,11 @@ def made_class(typename: str, encoding: str, definition: str) -> Any:
 
 
 def plain(typename: str) -> str:
-    """Return a name that a message may have: parts of services and actions have others."""
+    """Return a valid message name: the parts of services and actions have other names."""
     parts = typename.split("/")
     return f"{parts[0]}/msg/{parts[-1].replace('_', '')}"
 
 
 def with_plain_names(text: str) -> str:
-    """Return a definition whose types have such names."""
+    """Return a definition with its type names replaced by valid ones."""
     return LONG_NAME.sub(lambda match: plain(match[0]).replace("/msg/", "/"), text)

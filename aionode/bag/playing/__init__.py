@@ -1,1 +1,1 @@
-"""Plays bags as their messages came."""
+"""Plays bags, as they were recorded."""

@@ -1,4 +1,4 @@
-"""Reads the files of a player, one after another, in the order that is asked for."""
+"""Reads a player's files one after another, in the requested order."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ if TYPE_CHECKING:
 __all__ = ["FilesInPlay", "in_order_sent"]
 
 READ_AHEAD: Final = 1000
-"""Messages that are sorted at a time by the time of sending, as in rosbag2."""
+"""Messages that are sorted by send time at once, as in rosbag2."""
 
 
 class FilesInPlay:
-    """Publishes on ``events/read_split`` that a player goes on to the next file of a bag.
+    """Publishes on ``events/read_split`` when a player moves on to the next file of a bag.
 
     Args:
         node: The node of the player.
         bags: The bags.
 
     Attributes:
-        next_ns: The time at which the next file begins; `MOST_NS` if none does.
+        next_ns: The time at which the next file starts; `MOST_NS` if there is none.
     """
 
     def __init__(self, node: Node, bags: list[Bag]) -> None:
@@ -53,7 +53,7 @@ class FilesInPlay:
         self._note()
 
     def pass_to(self, time_ns: int) -> None:
-        """Tell of each file that is opened at a time, or before it."""
+        """Report each file that is opened at or before a time."""
         while self.next_ns <= time_ns < MOST_NS:
             _, closed, opened = self._files[self._next]
             name = self._node.get_fully_qualified_name()
@@ -70,10 +70,10 @@ class FilesInPlay:
 
 
 def in_order_sent(records: Iterator[Record]) -> Iterator[tuple[int, Record]]:
-    """Yield records in the order in which they were published, each after the time to play it.
+    """Yield records in the order of publishing, each after the time to play it.
 
-    The first one keeps the time at which it was received; the times between them are those of
-    publishing. Within `READ_AHEAD` records any order is put right.
+    The first one keeps its receive time; the intervals are those between publish times. Records are
+    sorted within a window of `READ_AHEAD`.
     """
     numbers = count()
     waiting: list[tuple[int, int, Record]] = []

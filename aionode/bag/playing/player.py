@@ -1,4 +1,4 @@
-"""Plays bags: publishes their messages at the times at which they were recorded."""
+"""Plays bags: publishes their messages at the recorded times."""
 
 from __future__ import annotations
 
@@ -43,10 +43,10 @@ __all__ = ["Player"]
 
 DEFAULT_DEPTH: Final = 10
 READ_AHEAD: Final = 1024
-"""Messages that are read at once, while those before them are published."""
+"""Messages to read at once, while those before them are being published."""
 
 EARLY_NS: Final = 100_000
-"""A message is published so early, in nanoseconds, rather than that the loop sleeps for it alone:
+"""A message may be published this much early, in nanoseconds, to avoid waking up for it alone:
 waking up takes as long as publishing several messages."""
 
 CLOCK_TOPIC: Final = "/clock"
@@ -55,42 +55,42 @@ CLOCK_TOPIC: Final = "/clock"
 class Player:
     """Plays one or more bags: ``async with Player("run") as player: await player.play()``.
 
-    It reads ahead in a thread, so that the event loop never waits for the disk. Times are those of
-    the recording, divided by the rate; waiting goes by the steady clock of the context.
+    A thread reads ahead, so that the event loop never waits for the disk. Times are those of the
+    recording, divided by the rate; waiting uses the steady clock of the context.
 
     Args:
-        path: The bag, or several, which are played as one, in order of time.
-        context: The context of its node; `Context.default()` by default.
+        path: The bag, or several, which are played as one in time order.
+        context: The context of its node; defaults to `Context.default()`.
         node_name: The name of its node.
-        rate: How fast, positive and finite: 2 plays in half of the time.
-        loop: Whether it begins again at the end, until it is stopped.
-        start_offset: Where to begin, after the start of the bag.
-        duration: How long to play, in the time of the recording; to the end by default.
-        until: The time in the recording at which to end.
-        delay_sec: How many seconds to wait before the first message.
-        selection: Which topics are played; all by default.
-        remap: New names of topics, by the recorded ones.
-        clock_hz: How often ``/clock`` is published, in Hz; 0 for never. That of the bag is left out
-            then.
-        clock_topics: The topics with whose messages ``/clock`` is published; ``*`` for all.
-        qos: Profiles of publishers by topic, in place of the recorded ones.
-        start_paused: Whether it begins paused.
-        in_order_sent: Whether messages are played in the order and at the times at which they were
-            published, not received; within 1000 messages, as in rosbag2.
-        send_requests: Of which kinds recorded requests are sent as by a client, in place of
-            publishing their events: ``service``, ``action``.
-        requests_source: Whose events tell of them: ``service_introspection`` for those of the
-            servers, or ``client_introspection``.
-        wait_acked_sec: How many seconds the end of `play` waits at most until messages are handed
-            over, as reliable subscriptions demand; 0 for no limit, None for no wait.
+        rate: The speed, positive and finite: 2 plays twice as fast.
+        loop: Whether to start over at the end, until stopped.
+        start_offset: Where to start, from the start of the bag.
+        duration: How long to play, in recorded time; defaults to the end.
+        until: The recorded time at which to stop.
+        delay_sec: Time to wait before the first message, in seconds.
+        selection: The topics to play; all by default.
+        remap: New topic names by recorded name.
+        clock_hz: The rate at which to publish ``/clock``, in Hz; 0 for never. If set, the recorded
+        ``/clock`` is not played.
+        clock_topics: Topics for which to publish ``/clock`` with each message; ``*`` for all.
+        qos: QoS profiles of publishers by topic, overriding the recorded ones.
+        start_paused: Whether to start paused.
+        in_order_sent: Whether to play messages by the time they were published, not received;
+            within windows of 1000 messages, as in rosbag2.
+        send_requests: The kinds of recorded requests to send as a client instead of publishing
+            their events: ``service``, ``action``.
+        requests_source: The events to take requests from: ``service_introspection`` for the
+            servers', or ``client_introspection``.
+        wait_acked_sec: How long `play` waits at the end until reliable subscriptions have received
+            all messages, in seconds; 0 for no limit, None for no wait.
 
     Attributes:
         node: Its node.
         bags: The bags.
-        played: How many messages it has published.
+        played: Number of messages published.
 
     Raises:
-        ValueError: the rate is not positive and finite, or there is no such source of requests.
+        ValueError: the rate is not positive and finite, or the source of requests is unknown.
     """
 
     def __init__(
@@ -124,7 +124,7 @@ class Player:
             raise ValueError(f"requests_source: {requests_source!r}; use {' or '.join(SOURCES)}")
         self._context = context
         self._node_name = node_name
-        self._anchor: tuple[int, int] | None = None  # of both clocks, in nanoseconds
+        self._anchor: tuple[int, int] | None = None  # recorded and steady time, in nanoseconds
         self._rate = 1.0
         self.set_rate(rate)
         self._loop = loop
@@ -156,7 +156,7 @@ class Player:
 
         Raises:
             BagError: a bag cannot be read.
-            FileNotFoundError: there is nothing of this name.
+            FileNotFoundError: there is no such file or folder.
         """
         async with AsyncExitStack() as stack:
             files = stack.enter_context(ExitStack())
@@ -191,7 +191,7 @@ class Player:
         self.stop()
         await self._stack.__aexit__(kind, error, traceback)
 
-    # For programs to call
+    # Public API
 
     @property
     def start(self) -> Time:
@@ -205,12 +205,12 @@ class Player:
 
     @property
     def time(self) -> Time:
-        """The present position, as a time of the recording."""
+        """The current position, as a recorded time."""
         return time_of(self._now_ns())
 
     @property
     def playing(self) -> bool:
-        """Whether it plays, or is paused in between."""
+        """Whether it is playing, possibly paused."""
         return self._is_playing
 
     @property
@@ -220,7 +220,7 @@ class Player:
 
     @property
     def rate(self) -> float:
-        """How fast it plays."""
+        """The current rate."""
         return self._rate
 
     async def play(
@@ -229,17 +229,17 @@ class Player:
         duration: Duration | None = None,
         until: Time | None = None,
     ) -> bool:
-        """Play, and return when the end is reached, or after `stop`.
+        """Play, and return when the end is reached or `stop` is called.
 
-        Cancelling ends it at once.
+        Cancelling stops it immediately.
 
         Args:
-            start_offset: Where to begin, in place of what was given to the player.
-            duration: How long to play, in the time of the recording.
-            until: The time in the recording at which to end.
+            start_offset: Where to start, overriding that of the player.
+            duration: How long to play, in recorded time.
+            until: The recorded time at which to stop.
 
         Returns:
-            False if another call plays already, and so nothing was done.
+            False if another call is already playing, so that this one did nothing.
 
         Raises:
             BagError: a file is damaged.
@@ -269,32 +269,32 @@ class Player:
         return True
 
     def pause(self) -> None:
-        """Stop the time of the recording until `resume`."""
+        """Stop the recorded time until `resume`."""
         self._position_ns = self._now_ns()
         self._is_paused = True
         self._wake.set()
 
     def resume(self) -> None:
-        """Go on."""
+        """Resume."""
         if self._is_paused:
             self._is_paused = False
             self._set_anchor(self._position_ns)
 
     def toggle_paused(self) -> None:
-        """Pause, or go on."""
+        """Pause or resume."""
         if self._is_paused:
             self.resume()
         else:
             self.pause()
 
     def set_rate(self, rate: float) -> None:
-        """Play faster or slower from now on.
+        """Change the rate from now on.
 
         Raises:
             ValueError: the rate is not positive and finite.
         """
         if not 0 < rate < float("inf"):
-            raise ValueError(f"rate: {rate} is not positive and finite; 1 is as it was recorded")
+            raise ValueError(f"rate: {rate} is not positive and finite; 1 is the recorded speed")
         if self._anchor is None:
             self._rate = rate
             return
@@ -303,7 +303,7 @@ class Player:
         self._set_anchor(now_ns)
 
     def seek(self, time: Time) -> bool:
-        """Go on at another time of the recording; return whether it has that time."""
+        """Continue at another recorded time; return whether the bag contains that time."""
         if not self.start.nanoseconds <= time.nanoseconds <= self.end.nanoseconds:
             return False
         self._seek_ns = self._position_ns = time.nanoseconds
@@ -311,14 +311,14 @@ class Player:
         return True
 
     async def play_next(self) -> bool:
-        """Publish the next message, while paused; return whether there was one."""
+        """Publish the next message while paused; return whether there was one."""
         return await self.burst(1) == 1
 
     async def burst(self, count: int = 0) -> int:
-        """Publish the next messages at once, while paused, and return how many there were.
+        """Publish the next messages immediately while paused, and return how many there were.
 
         Args:
-            count: How many; 0 for all that are left.
+            count: Number of messages; 0 for all that are left.
         """
         if not (self._is_paused and self._is_playing) or self._steps:
             return 0
@@ -347,19 +347,19 @@ class Player:
         return self._time_base.steady_ns()
 
     def _now_ns(self) -> int:
-        """Return the time of the recording now."""
+        """Return the current recorded time."""
         if self._is_paused or not self._is_playing or self._anchor is None:
             return self._position_ns
         steady_ns, bag_ns = self._anchor
         return bag_ns + int((self._steady_ns() - steady_ns) * self._rate)
 
     def _set_anchor(self, bag_ns: int) -> None:
-        """Seek to a time of the recording, and play on from there."""
+        """Seek to a recorded time, and continue from there."""
         self._anchor = (self._steady_ns(), bag_ns)
         self._wake.set()
 
     async def _sleep_until(self, steady_ns: int | None) -> None:
-        """Wait until a time of the steady clock, or until something has changed."""
+        """Wait until a steady time, or until something has changed."""
         self._wake.clear()
         alarm = None
         if steady_ns is not None:
@@ -400,7 +400,7 @@ class Player:
         return ((record.time_ns, record) for record in records)
 
     async def _play_records(self, records: Iterator[tuple[int, Record]]) -> int | None:
-        """Publish records at their times; return where to go on, or None at their end.
+        """Publish records at their times; return where to continue, or None at the end.
 
         Raises:
             BagError: a file is damaged.
@@ -417,11 +417,11 @@ class Player:
             finally:
                 reading.cancel()
         if isinstance(batch, BagError):
-            raise batch  # here, where no group is made of it
+            raise batch  # raised here, so that it is not wrapped in an exception group
         return None
 
     async def _publish_batch(self, batch: list[tuple[int, Record]]) -> bool:
-        """Publish records at their times; return False if it was stopped or has to seek."""
+        """Publish records at their times; return False if stopped or a seek is pending."""
         turn_ends_ns = self._steady_ns() + SLICE_NS
         for time_ns, record in batch:
             if not await self._is_due(time_ns):
@@ -433,7 +433,7 @@ class Player:
         return True
 
     async def _hand_over(self) -> None:
-        """Wait until what was published and asked has arrived, as far as that is wanted."""
+        """Wait until published messages and requests have arrived, if requested."""
         await self._requests.drain()
         if self._wait_acked_sec is not None:
             publishers = [
@@ -445,7 +445,7 @@ class Player:
                         await publisher.drain()
 
     async def _is_due(self, time_ns: int) -> bool:
-        """Wait until a time of the recording; return False if it was stopped or has to seek."""
+        """Wait until a recorded time; return False if stopped or a seek is pending."""
         while True:
             if self._is_stopped or self._seek_ns is not None:
                 return False
@@ -485,7 +485,7 @@ class Player:
             self._warn(f"{record.topic} is no longer played: {error}")
 
     def _publisher_of(self, topic: TopicInfo) -> None:
-        """Create the publisher of a topic, if that is wanted and its type is known."""
+        """Create the publisher of a topic, if it is selected and its type is known."""
         if self._selection is not None and not self._selection.wants(topic.name, topic.type):
             return
         if (self._tells_time and topic.name == CLOCK_TOPIC) or topic.key in self._publishers:
@@ -504,14 +504,14 @@ class Player:
         self._publishers[topic.key] = publisher
 
     def _offered(self, topic: TopicInfo) -> QoSProfile:
-        """Return the recorded profile, if there is one for all publishers."""
+        """Return the recorded profile, if all publishers had the same."""
         if topic.problem:
-            self._warn(f"{topic.name}: {topic.problem}, so the default is taken")
+            self._warn(f"{topic.name}: {topic.problem}, so the default QoS is used")
         profiles = list(dict.fromkeys(topic.qos))
         if len(profiles) == 1:
             return profiles[0]
         if profiles:
-            self._warn(f"{topic.name}: its publishers had different QoS, so the default is taken")
+            self._warn(f"{topic.name}: its publishers had different QoS, so the default is used")
         return QoSProfile(depth=DEFAULT_DEPTH)
 
     def _warn(self, text: str) -> None:
@@ -519,7 +519,7 @@ class Player:
 
 
 def batch_or_error(batches: Batches[tuple[int, Record]]) -> list[tuple[int, Record]] | BagError:
-    """Return the next records, or why some could not be read."""
+    """Return the next records, or the error that some could not be read."""
     try:
         return batches.next()
     except BagError as error:

@@ -1,4 +1,4 @@
-"""Sends the requests of a recording to services and actions, as their clients once did."""
+"""Sends the recorded requests of services and actions, as their clients did."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ SOURCES: Final = {
     "service_introspection": REQUEST_RECEIVED,
     "client_introspection": REQUEST_SENT,
 }
-"""Whose events tell of the requests: those of the server, or those of the client."""
+"""The events to take requests from: the server's, or the client's."""
 
 MOST_PENDING: Final = 1000
-"""Most requests that wait for their answers; further ones are left out, with a warning."""
+"""Maximum number of unanswered requests; further ones are skipped with a warning."""
 
 SEND_GOAL: Final = "send_goal/_service_event"
 CANCEL_GOAL: Final = "cancel_goal/_service_event"
 ANSWER_S: Final = 5.0
-"""Time for which the end of a recording waits for answers, in seconds."""
+"""How long to wait for answers at the end of a recording, in seconds."""
 
 Key = tuple[str, str, str]
 
@@ -42,13 +42,13 @@ class RequestSender:
 
     Args:
         node: The node of the player.
-        kinds: What is sent: ``service``, ``action``.
-        source: Whose events are taken; see `SOURCES`.
-        remap: New names, by the recorded ones.
-        warn: Called with what could not be sent.
+        kinds: What to send: ``service``, ``action``.
+        source: Which events to use; see `SOURCES`.
+        remap: New names by recorded name.
+        warn: Called with a description of what could not be sent.
 
     Raises:
-        ValueError: there is no such source.
+        ValueError: the source is unknown.
     """
 
     def __init__(
@@ -71,7 +71,7 @@ class RequestSender:
         self._told: set[str] = set()
 
     def takes(self, topic: TopicInfo) -> bool:
-        """Return whether the messages of a topic are sent as requests, and so not published."""
+        """Return whether a topic is sent as requests instead of being published."""
         kind, name = kind_of(topic.name)
         if kind not in self._kinds:
             return False
@@ -90,7 +90,7 @@ class RequestSender:
         return True
 
     def send(self, record: Record) -> None:
-        """Send the request that a record tells of, if it does."""
+        """Send the request in a record, if it contains one."""
         client = self._clients.get(record.info.key)
         is_goal = record.topic.endswith((SEND_GOAL, CANCEL_GOAL))
         if client is None and not is_goal:
@@ -120,7 +120,7 @@ class RequestSender:
             self._follow(name, sent)
 
     def _cancel(self, goal_id: bytes) -> None:
-        """Cancel a goal that was sent before, once it is accepted."""
+        """Cancel a goal that was sent earlier, once it is accepted."""
         sent = self._goals.get(goal_id)
         if sent is None:
             return
@@ -134,22 +134,22 @@ class RequestSender:
     def _has_room(self, name: str) -> bool:
         if len(self._pending) < MOST_PENDING:
             return True
-        self._tell(f"{name}: requests are left out, as {MOST_PENDING} have no answer yet")
+        self._tell(f"{name}: requests are skipped, as {MOST_PENDING} are still unanswered")
         return False
 
     def _is_there(self, name: str, ready: bool) -> bool:
         if not ready:
-            self._tell(f"{name}: a request is not sent, as nobody serves it")
+            self._tell(f"{name}: a request is not sent, as it has no server")
         return ready
 
     def _tell(self, text: str) -> None:
-        """Warn of something once."""
+        """Log a warning once."""
         if text not in self._told:
             self._told.add(text)
             self._warn(text)
 
     def _follow(self, name: str, answer: asyncio.Future[Any]) -> None:
-        """Keep an answer until it is there, and tell of it if it is an error."""
+        """Keep track of an answer until it arrives, and report it if it is an error."""
         self._pending.add(answer)
 
         def ended(_: object) -> None:
@@ -160,6 +160,6 @@ class RequestSender:
         answer.add_done_callback(ended)
 
     async def drain(self) -> None:
-        """Wait for the answers that have not come yet, for a few seconds at most."""
+        """Wait for outstanding answers, for a few seconds at most."""
         if self._pending:
             await asyncio.wait(self._pending, timeout=ANSWER_S)

@@ -1,4 +1,4 @@
-"""rosbag2's services of a player's node."""
+"""rosbag2's services of a player node."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Playing(Protocol):
 
     @property
     def playing(self) -> bool:
-        """Whether it plays, or is paused in between."""
+        """Whether it is playing, possibly paused."""
 
     @property
     def paused(self) -> bool:
@@ -30,28 +30,28 @@ class Playing(Protocol):
 
     @property
     def rate(self) -> float:
-        """How fast it plays."""
+        """The current rate."""
 
     def pause(self) -> None:
-        """Stop the time of the recording."""
+        """Stop the recorded time."""
 
     def resume(self) -> None:
-        """Go on."""
+        """Resume."""
 
     def toggle_paused(self) -> None:
-        """Pause, or go on."""
+        """Pause or resume."""
 
     def stop(self) -> None:
         """End `play`."""
 
     def set_rate(self, rate: float) -> None:
-        """Play faster or slower."""
+        """Change the rate."""
 
     def seek(self, time: Time) -> bool:
-        """Go on at another time."""
+        """Continue at another time."""
 
     async def burst(self, count: int = 0) -> int:
-        """Publish the next messages at once."""
+        """Publish the next messages immediately."""
 
     async def play(
         self,
@@ -63,7 +63,7 @@ class Playing(Protocol):
 
 
 def serve_player(node: Node, player: Playing) -> None:  # noqa: C901  # a handler for each service
-    """Offer ``~/pause`` and the others on a player's node."""
+    """Offer ``~/pause`` and the other services on a player's node."""
 
     def doing(act: Callable[[], None]) -> Callable[[Any, Any], Any]:
         def handler(_: Any, response: Any) -> Any:
@@ -75,13 +75,13 @@ def serve_player(node: Node, player: Playing) -> None:  # noqa: C901  # a handle
     def resume(request: Any, response: Any) -> Any:
         stamp = getattr(request, "resume_time", None)
         if stamp is not None and Time.from_msg(stamp).nanoseconds:
-            return answered(response, 3, "a player has no resume_time: leave it 0")
+            return answered(response, 3, "players do not support resume_time: leave it 0")
         player.resume()
         return answered(response, 0)
 
     def stop(_: Any, response: Any) -> Any:
         if not player.playing:
-            return answered(response, 1, "the player is stopped already")
+            return answered(response, 1, "the player is already stopped")
         player.stop()
         return answered(response, 0)
 

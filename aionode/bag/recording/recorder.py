@@ -1,4 +1,4 @@
-"""Records topics into a bag, and says what it lost."""
+"""Records topics into a bag, and reports what it lost."""
 
 from __future__ import annotations
 
@@ -35,25 +35,25 @@ __all__ = ["Recorder", "TopicStats", "adapted_qos"]
 
 CACHE_BYTES: Final = 100 << 20
 LEAST_DEPTH: Final = 1000
-"""The depth of subscriptions, at least: the loop may be busy for some milliseconds."""
+"""Minimum depth of subscriptions: the loop may be busy for some milliseconds."""
 
 BACK_NS: Final = 1_000_000_000
-"""A time that is so much before the last one is a clock that was set back, in nanoseconds."""
+"""How far time must jump back to count as a clock that was set back, in nanoseconds."""
 
 NODE_TIME: Final = 0
 PUBLISH_TIME: Final = 1
 RECEIVE_TIME: Final = 2
-"""The clocks by which something may be scheduled, with the numbers of rosbag2's services."""
+"""The clocks by which actions may be scheduled, with the numbers of rosbag2's services."""
 
 
 class Due(NamedTuple):
-    """An action that is due when a message of its time arrives.
+    """An action that is due when a message with its time arrives.
 
     Attributes:
         time_ns: The time, in nanoseconds since 1970.
-        mode: Whether that is the time of publishing or of receiving.
-        topic: The number of the topic that has to have it; -1 for any.
-        act: Called then, before the message is recorded.
+        mode: Whether that is the publish time or the receive time.
+        topic: The id of the topic whose messages count; -1 for any.
+        act: Called at that point, before the message is recorded.
     """
 
     time_ns: int
@@ -62,7 +62,7 @@ class Due(NamedTuple):
     act: Callable[[], None]
 
     def has_come(self, topic: int, time_ns: int, sent_ns: int) -> bool:
-        """Return whether a message has the time."""
+        """Return whether a message reaches the time."""
         if self.topic not in {-1, topic}:
             return False
         return (sent_ns if self.mode == PUBLISH_TIME else time_ns) >= self.time_ns
@@ -71,43 +71,43 @@ class Due(NamedTuple):
 class Recorder:
     """Records topics into a bag: ``async with Recorder("run", topics=["/scan"]) as recorder:``.
 
-    Messages are recorded from the moment at which the block is entered; its end closes the bag.
-    Bytes are written as they arrive, in a thread, so that the event loop never waits for the disk.
-    New topics are found while it runs.
+    Messages are recorded from the moment the block is entered; leaving it closes the bag. A thread
+    writes the bytes as they arrive, so that the event loop never waits for the disk. New topics are
+    found while it runs.
 
     Args:
         path: The folder of the bag, which must not exist.
-        topics: Names of topics; without these and without `selection`, all that are not hidden.
-        selection: Which topics, services and actions are wanted, in place of `topics`.
-        context: The context of its node; `Context.default()` by default.
+        topics: Names of topics; by default, without `selection`, all that are not hidden.
+        selection: Selects topics, services and actions, instead of `topics`.
+        context: The context of its node; defaults to `Context.default()`.
         node_name: The name of its node.
-        compression: ``zstd``, ``zstd_small``, which is slow, ``lz4`` or ``none``.
-        max_bytes: The size from which on a new file begins; 0 for one file.
-        max_duration_sec: The time after which a new file begins, in seconds; 0 for one file.
-        max_messages: How many messages a file takes; 0 for no limit.
-        max_files: How many files are kept: older ones are removed; 0 for all.
+        compression: ``zstd``, ``zstd_small`` (slow), ``lz4`` or ``none``.
+        max_bytes: The size at which to start a new file; 0 for a single file.
+        max_duration_sec: The time after which to start a new file, in seconds; 0 for a single file.
+        max_messages: Maximum number of messages per file; 0 for no limit.
+        max_files: Number of files to keep, removing older ones; 0 for all.
         cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
         cache_duration_sec: How long messages are kept in snapshot mode, in seconds; 0 for no limit.
-        snapshot: Whether messages are only kept, until `snapshot` writes them.
-        repeat_latched: Whether each further file begins with the last messages of the topics whose
-            publishers are all transient local; or for which topics, and how many messages of each:
-            0 for as many as are offered, ``*`` for all others.
-        discovery: Whether topics that appear later are recorded.
-        include_unpublished: Whether topics that only have subscriptions are recorded as well.
-        ignore_leaf: Whether topics without any other subscription are left out.
-        static_topics: Types by topic: these topics are recorded although nobody publishes yet.
-        qos: Profiles of subscriptions by topic, in place of those that fit the publishers.
-        use_sim_time: Whether the times are those of ``/clock``.
-        start_paused: Whether it begins paused.
-        loss_report_hz: How often losses are published at most, in Hz; 0 for never.
-        custom_data: What else the metadata say.
+        snapshot: Whether to only keep messages in memory, until `snapshot` writes them.
+        repeat_latched: Whether each further file starts with the last messages of the topics whose
+            publishers are all transient local; or a mapping of topics to their number of messages:
+            0 for as many as are offered, ``*`` for all other topics.
+        discovery: Whether to record topics that appear later.
+        include_unpublished: Whether to also record topics that only have subscriptions.
+        ignore_leaf: Whether to skip topics without any other subscription.
+        static_topics: Types by topic: these are recorded even before they are published.
+        qos: QoS profiles of subscriptions by topic, instead of ones adapted to the publishers.
+        use_sim_time: Whether to use the time of ``/clock``.
+        start_paused: Whether to start paused.
+        loss_report_hz: Maximum rate at which losses are published, in Hz; 0 for never.
+        custom_data: Additional metadata.
 
     Attributes:
         path: The folder of the bag.
         node: Its node.
 
     Raises:
-        BagError: `max_files` is given without a size, duration or count of one file.
+        BagError: `max_files` is given without a size, duration or message limit per file.
     """
 
     def __init__(
@@ -138,7 +138,10 @@ class Recorder:
         custom_data: Mapping[str, str] | None = None,
     ) -> None:
         if max_files and not (max_bytes or max_duration_sec or max_messages):
-            raise BagError(str(path), "max_files is given without a size, time or count of a file")
+            raise BagError(
+                str(path),
+                "max_files is given without a limit of size, duration or messages per file",
+            )
         self.path = path
         names = None if topics is None else list(topics)
         self._selection = selection or (
@@ -175,7 +178,7 @@ class Recorder:
         self._loss_report_hz = loss_report_hz
         self._unknown: dict[str, frozenset[bytes]] = {}
         self._unrecorded: set[str] = set()
-        """Topics of such types."""
+        """Topics whose types are unknown."""
         self._last_ns = 0
         self._recording: Recording | None = None
         self._stats: dict[str, TopicStats] = {}
@@ -186,11 +189,11 @@ class Recorder:
         self.node: Node = None  # type: ignore[assignment]  # until it is entered
 
     async def __aenter__(self) -> Self:
-        """Open the bag and subscribe to what there is.
+        """Open the bag, and subscribe to the existing topics.
 
         Raises:
             BagError: the folder exists.
-            BagWriteError: it cannot be made.
+            BagWriteError: it cannot be created.
         """
         async with AsyncExitStack() as stack:
             stack.push_async_callback(self.stop)
@@ -216,14 +219,14 @@ class Recorder:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Take what has arrived, and close the bag.
+        """Write what has arrived, and close the bag.
 
         Raises:
-            BagWriteError: the disk was full, or failed; what was written before can be read.
+            BagWriteError: the disk was full or failed; what was written before is readable.
         """
-        await self._stack.__aexit__(None, None, None)  # an error of the block stays as it is
+        await self._stack.__aexit__(None, None, None)  # an error of the block is kept as it is
 
-    # For programs to call
+    # Public API
 
     def write(self, topic: str, msg: Any, time: Time | None = None) -> None:
         """Record a message that is not published.
@@ -231,9 +234,9 @@ class Recorder:
         Args:
             topic: The name of the topic.
             msg: The message.
-            time: When it was received; now by default.
+            time: The receive time; defaults to now.
 
-        It is counted as lost if there is no room for what waits for the disk.
+        It is counted as lost if the write queue is full.
 
         Raises:
             MessageError: a value does not fit its field.
@@ -248,17 +251,17 @@ class Recorder:
 
     @property
     def stats(self) -> dict[str, TopicStats]:
-        """The messages recorded and lost, by topic; those of the last bag after `stop`."""
+        """The messages recorded and lost, by topic; after `stop`, those of the last bag."""
         return self._stats if self._recording is None else self._recording.stats
 
     @property
     def recording(self) -> bool:
-        """Whether a bag is open: not after `stop`."""
+        """Whether a bag is open; False after `stop`."""
         return self._recording is not None
 
     @property
     def paused(self) -> bool:
-        """Whether it is paused: what is published meanwhile is not recorded."""
+        """Whether it is paused, so that messages are not recorded."""
         return self._paused
 
     @property
@@ -271,13 +274,13 @@ class Recorder:
         self._paused = True
 
     def resume(self, at: Time | None = None, *, mode: int = NODE_TIME, topic: str = "") -> None:
-        """Record again, at once or later.
+        """Resume recording, now or later.
 
         Args:
-            at: From which time on; at once by default.
-            mode: By which time: 0 for that of the node, 1 for that of publishing, 2 for that of
-                receiving a message.
-            topic: The topic whose messages have that time; any by default.
+            at: When to resume; now by default.
+            mode: The clock for `at`: 0 for the node's time, 1 for the publish time, 2 for the
+                receive time of a message.
+            topic: The topic whose messages must reach that time; any by default.
 
         Raises:
             BagError: the topic is not recorded, or there is no such mode.
@@ -290,17 +293,17 @@ class Recorder:
         self._start_task(self._subscribe_to_new())
 
     def stop_discovery(self) -> None:
-        """Record no further topics."""
+        """Stop recording further topics."""
         self._discovers = False
 
     async def split(
         self, at: Time | None = None, *, mode: int = NODE_TIME, topic: str = ""
     ) -> None:
-        """Begin a new file, at once or later; see `resume`.
+        """Start a new file, now or later; see `resume`.
 
         Raises:
             BagError: the recorder is stopped, the topic is not recorded, or there is no such mode.
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         thread = self._open_recording.thread
         if at is None:
@@ -310,10 +313,10 @@ class Recorder:
             self._at(at, mode, topic, split)
 
     async def stop(self) -> None:
-        """Write what has arrived, and close the bag; the node stays. Again has no effect.
+        """Write what has arrived, and close the bag; the node stays. Stopping again has no effect.
 
         Raises:
-            BagWriteError: the disk was full, or failed; what was written before can be read.
+            BagWriteError: the disk was full or failed; what was written before is readable.
         """
         recording = self._recording
         if recording is None:
@@ -329,37 +332,37 @@ class Recorder:
         recording.raise_failure()
 
     async def record(self, path: str | PathLike[str] = "") -> None:
-        """Begin another bag, after `stop`.
+        """Start another bag after `stop`.
 
         Args:
-            path: Its folder, which must not exist; the same as before by default.
+            path: Its folder, which must not exist; by default the previous one.
 
         Raises:
             BagError: a bag is open, or the folder exists.
-            BagWriteError: it cannot be made.
+            BagWriteError: it cannot be created.
         """
         if self._recording is not None:
-            raise BagError(str(self.path), "the recorder records already", "stop it first")
+            raise BagError(str(self.path), "the recorder is already recording", "stop it first")
         self.path = path or self.path
         await self._open_bag()
         await self._subscribe_to_new()
 
     async def snapshot(self) -> None:
-        """Write what is kept, in snapshot mode, and wait until it is on the disk.
+        """Write the messages kept in snapshot mode, and wait until they are on disk.
 
         Raises:
             BagError: it is not in snapshot mode, or is stopped.
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         if not self._is_snapshot:
             raise BagError(str(self.path), "the recorder is not in snapshot mode")
         await self._open_recording.do(self._open_recording.thread.write_snapshot)
 
     async def failed(self) -> None:
-        """Wait until nothing can be written any more: the disk is full, or fails.
+        """Wait until nothing can be written any more because the disk is full or fails.
 
         Raises:
-            BagWriteError: always, then.
+            BagWriteError: always, at that point.
         """
         while True:
             await self._failed.wait()
@@ -368,15 +371,15 @@ class Recorder:
                 self._recording.raise_failure()
 
     def summary(self) -> str:
-        """Return in one line what was recorded and what was lost."""
+        """Summarize in one line what was recorded and what was lost."""
         return summary_of(self.stats, str(self.path), self._unrecorded - self.stats.keys())
 
-    # Inside
+    # Internals
 
     @property
     def _open_recording(self) -> Recording:
         if self._recording is None:
-            raise BagError(str(self.path), "the recorder is stopped", "begin another bag: record()")
+            raise BagError(str(self.path), "the recorder is stopped", "start another bag: record()")
         return self._recording
 
     async def _open_bag(self) -> None:
@@ -398,7 +401,7 @@ class Recorder:
         return self.node.get_clock().now().nanoseconds
 
     def _start_task(self, work: Coroutine[None, None, None]) -> None:
-        """Run something that ends with the recorder at the latest."""
+        """Run a coroutine that ends with the recorder at the latest."""
         task = self._tasks.create_task(work)
         self._later.add(task)
         task.add_done_callback(self._later.discard)
@@ -408,7 +411,7 @@ class Recorder:
             task.cancel()
 
     def _at(self, at: Time | None, mode: int, topic: str, act: Callable[[], None]) -> None:
-        """Do something at once, at a time of the node, or with the first message of a time."""
+        """Call `act` now, at a time of the node, or at the first message that reaches a time."""
         if mode not in {NODE_TIME, PUBLISH_TIME, RECEIVE_TIME}:
             raise BagError(str(self.path), f"there is no mode {mode}", "use 0, 1 or 2")
         number = -1
@@ -428,7 +431,7 @@ class Recorder:
         clock = self.node.get_clock()
         due = Time(nanoseconds=at.nanoseconds, clock_type=clock.clock_type)
         while clock.now() < due:
-            with contextlib.suppress(TimeSourceChangedError):  # it counts by the new one then
+            with contextlib.suppress(TimeSourceChangedError):  # the new time source counts then
                 await clock.sleep_until(due)
         act()
 
@@ -445,9 +448,9 @@ class Recorder:
     def _take(
         self, number: int, raw: Parts, sequence: int, source_ns: int, received_ns: int
     ) -> None:
-        """Take one message of a subscription, within the event that brings it."""
+        """Accept a message of a subscription, within the event that delivers it."""
         time_ns = self._now_ns() if self._use_sim_time else received_ns
-        sent_ns = source_ns if source_ns > 0 else time_ns  # a peer may say anything
+        sent_ns = source_ns if source_ns > 0 else time_ns  # peers may send anything
         if self._due:
             self._act_on(number, time_ns, sent_ns)
         if self._paused or self._recording is None:
@@ -455,8 +458,8 @@ class Recorder:
         if time_ns < self._last_ns - BACK_NS:
             back_sec, self._last_ns = (self._last_ns - time_ns) / 1e9, time_ns
             self._warn(
-                f"the clock was set back by {back_sec:.1f} s; the bag has the times as they were "
-                "shown"
+                f"the clock was set back by {back_sec:.1f} s; the bag contains the times as the "
+                "clock showed them"
             )
         self._last_ns = time_ns
         size = sum(map(len, raw)) if isinstance(raw, list) else len(raw)
@@ -475,7 +478,7 @@ class Recorder:
                 await graph.changed()
 
     async def _subscribe_to_new(self) -> None:
-        """Subscribe to each wanted topic that has no subscription yet."""
+        """Subscribe to each selected topic that has no subscription yet."""
         if self._recording is None:
             return
         numbers = self._recording.numbers
@@ -487,7 +490,7 @@ class Recorder:
                 await self._subscribe(key, endpoints)
 
     def _wanted(self) -> dict[Key, list[EndpointInfo]]:
-        """Return the wanted topics that there are, with their endpoints."""
+        """Return the selected topics that exist, with their endpoints."""
         kinds = TOPIC_KINDS if self._unpublished else (EndpointKind.PUBLISHER,)
         heard = None
         if self._ignores_leaf:
@@ -515,19 +518,19 @@ class Recorder:
             return
         others = recording.types_of(name)
         if others:
-            self._warn(f"{name} has the type {typename} besides {others[-1]}: both are recorded")
+            self._warn(f"{name} has the types {typename} and {others[-1]}: both are recorded")
         offered = [e.qos for e in endpoints if e.kind is EndpointKind.PUBLISHER]
         profile = self._qos.get(name) or adapted_qos(offered)
         info = topic_info(name, msg_type, offered)
         info.type_hash = key[2] if key[2].startswith("RIHS") else info.type_hash
         number = recording.number_of(info, self._repeated_depth(name, profile, offered))
-        recording.numbers[key] = number  # the graph may show no hash
+        recording.numbers[key] = number  # the graph may not show the hash
         recording.subscriptions[number] = direct_subscription(
             self.node, msg_type, name, partial(self._take, number), profile
         )
 
     def _repeated_depth(self, name: str, profile: QoSProfile, offered: list[QoSProfile]) -> int:
-        """Return with how many messages of a topic each further file begins."""
+        """Return how many messages of a topic each further file starts with."""
         depth = self._repeated.get(name, self._repeated.get("*"))
         if depth is None or profile.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
             return 0
@@ -536,7 +539,7 @@ class Recorder:
     async def _class_of(
         self, typename: str, topic: str, endpoints: list[EndpointInfo]
     ) -> Any | None:
-        """Return the class of a type; None, with one warning, if nobody describes it."""
+        """Return the class of a type; None, with one warning, if no node can describe it."""
         gids = frozenset(endpoint.gid for endpoint in endpoints)
         if self._unknown.get(typename) == gids:
             return None
@@ -554,7 +557,7 @@ class Recorder:
 
 
 def adapted_qos(offered: list[QoSProfile]) -> QoSProfile:
-    """Return the profile of a subscription that gets the messages of all these publishers.
+    """Return a QoS profile that receives the messages of all given publishers.
 
     It is reliable only if all are, and transient local only if all are, as in rosbag2.
     """

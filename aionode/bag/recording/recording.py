@@ -1,4 +1,4 @@
-"""One bag that a recorder writes: its topics, what became of their messages, and its thread."""
+"""One bag being written by a recorder: its topics, their statistics, and its thread."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ Key = tuple[str, str, str]
 
 
 class TopicStats(NamedTuple):
-    """The outcomes of the messages of one topic.
+    """What became of the messages of one topic.
 
     Attributes:
         recorded: How many are in the bag, or on their way to it.
-        lost_in_transport: How many were published and did not arrive, by their numbers.
-        lost_in_recorder: How many arrived and were not written.
+        lost_in_transport: How many were published but did not arrive, judging by sequence numbers.
+        lost_in_recorder: How many arrived but were not written.
     """
 
     recorded: int
@@ -36,19 +36,19 @@ class TopicStats(NamedTuple):
 
 
 class Recording:
-    """A bag that is being written, by a thread.
+    """A bag that is being written by a thread.
 
     Args:
         writer: The bag.
         cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
         cache_ns: How long messages are kept in snapshot mode, in nanoseconds; 0 for no limit.
-        snapshot: Whether messages are only kept until somebody asks for a snapshot.
-        on_failure: Called in the loop, once, when nothing can be written any more.
+        snapshot: Whether to only keep messages until a snapshot is requested.
+        on_failure: Called once, in the loop, when nothing can be written any more.
 
     Attributes:
-        numbers: The numbers of its topics, by name, type and hash.
-        subscriptions: Where the messages come from, by number; some topics have none.
-        thread: What writes.
+        numbers: The ids of its topics, by name, type and hash.
+        subscriptions: The sources of messages, by topic id; some topics have none.
+        thread: The thread that writes.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class Recording:
         )
 
     def number_of(self, info: TopicInfo, latched_depth: int) -> int:
-        """Return the number of a topic, which is added if it is new."""
+        """Return the id of a topic, adding it if it is new."""
         number = self.numbers.get(info.key)
         if number is None:
             number = self.numbers[info.key] = len(self._topics)
@@ -92,7 +92,7 @@ class Recording:
         return [info.type for info, _ in self._topics if info.name == name]
 
     def put(self, row: Row) -> None:
-        """Hand a message over to the thread; it is counted as lost if there is no room."""
+        """Pass a message to the thread; it is counted as lost if there is no room."""
         if self.thread.put(row):
             self._taken[row.topic] += 1
         else:
@@ -118,7 +118,7 @@ class Recording:
         """Run something in the writer thread, after all earlier work, and wait for it.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         loop = asyncio.get_running_loop()
         done: asyncio.Future[None] = loop.create_future()
@@ -138,16 +138,16 @@ class Recording:
         self.raise_failure()
 
     def raise_failure(self) -> None:
-        """Raise what keeps the thread from writing, if anything does.
+        """Raise the error that keeps the thread from writing, if there is one.
 
         Raises:
-            BagWriteError: the disk is full, or fails.
+            BagWriteError: the disk is full or fails.
         """
         if self.thread.failure is not None:
             raise self.thread.failure
 
     async def close(self) -> None:
-        """Write the rest, and close the bag; cancelling does not end that early."""
+        """Write the rest, and close the bag; cancellation does not cut this short."""
         await to_the_end(run_in_thread(self.thread.stop))
 
     def _note_losses(self) -> None:
@@ -159,17 +159,17 @@ class Recording:
 
 
 def summary_of(stats: Mapping[str, TopicStats], path: str, unrecorded: Collection[str]) -> str:
-    """Return in one line what was recorded, what was lost, and which topics were not recorded."""
+    """Summarize in one line what was recorded, lost, and not recorded at all."""
     recorded = sum(each.recorded for each in stats.values())
     lost = [
         f"{name}: {each.lost_in_transport} in transport, {each.lost_in_recorder} in recorder"
         for name, each in sorted(stats.items())
         if each.lost_in_transport or each.lost_in_recorder
     ]
-    lost += [f"{name}: all, nobody describes its type" for name in sorted(unrecorded)]
+    lost += [f"{name}: all, as no node describes its type" for name in sorted(unrecorded)]
     end = f"lost: {'; '.join(lost)}" if lost else "lost: nothing"
     return f"recorded {recorded} messages of {len(stats)} topics to {path}; {end}"
 
 
 def void(_: object) -> None:
-    """Return nothing, where that is wanted."""
+    """Return None, where a callback is required."""

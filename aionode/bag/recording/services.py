@@ -1,4 +1,4 @@
-"""rosbag2's services and topics of a recorder's node."""
+"""rosbag2's services and topics of a recorder node."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["RecorderServices", "answered", "offered"]
 
 NOT_RECORDING: Final = 1
-"""The return code of ``~/split_bagfile`` while no bag is open, as of every failure of others."""
+"""The return code of ``~/split_bagfile`` while no bag is open; other services use it too."""
 
 INVALID_TOPIC: Final = {"resume": 2, "split": 3}
 FAILED: Final = {"resume": 3, "split": 4}
@@ -49,33 +49,33 @@ class Recording(Protocol):
         """Record nothing until `resume`."""
 
     def resume(self, at: Time | None = None, *, mode: int = 0, topic: str = "") -> None:
-        """Record again."""
+        """Resume recording."""
 
     def start_discovery(self) -> None:
         """Record topics that appear."""
 
     def stop_discovery(self) -> None:
-        """Record no further topics."""
+        """Stop recording further topics."""
 
     async def split(self, at: Time | None = None, *, mode: int = 0, topic: str = "") -> None:
-        """Begin a new file."""
+        """Start a new file."""
 
     async def stop(self) -> None:
         """Close the bag."""
 
     async def record(self, path: str = "") -> None:
-        """Begin another bag."""
+        """Start another bag."""
 
     async def snapshot(self) -> None:
-        """Write what is kept."""
+        """Write the messages that are kept."""
 
 
 class RecorderServices:
-    """Serves ``~/pause`` and the others, and tells of splits and of losses.
+    """Serves ``~/pause`` and the other services, and publishes splits and losses.
 
     Args:
-        recorder: The recorder, whose node runs.
-        report_hz: How often losses are published at most, in Hz; 0 for never.
+        recorder: The recorder, whose node is running.
+        report_hz: Maximum rate at which losses are published, in Hz; 0 for never.
     """
 
     def __init__(self, recorder: Recording, report_hz: float) -> None:
@@ -111,7 +111,7 @@ class RecorderServices:
             node.create_timer(1 / report_hz, self._tell_losses)
 
     def tell_split(self, closed: str, opened: str) -> None:
-        """Publish that the recorder went on to its next file."""
+        """Publish that the recorder has moved on to its next file."""
         if self._splits is None or self._splits.destroyed:  # the last rows outlive the node
             return
         self._splits.publish(
@@ -123,7 +123,7 @@ class RecorderServices:
         )
 
     def _tell_losses(self) -> None:
-        """Publish what was lost since the last time, if anything."""
+        """Publish what was lost since the last report, if anything."""
         now = {
             name: (transport, recorder)
             for name, (_, transport, recorder) in self._recorder.stats.items()
@@ -157,7 +157,7 @@ class RecorderServices:
     def _resume(self, request: Any, response: Any) -> Any:
         at, mode, topic = when(request, "resume")
         if mode not in {0, 1, 2}:
-            return answered(response, 1, f"there is no resume_mode {mode}; use 0, 1 or 2")
+            return answered(response, 1, f"resume_mode {mode} is unknown; use 0, 1 or 2")
         try:
             self._recorder.resume(at, mode=mode, topic=topic)
         except AionodeError as error:
@@ -169,7 +169,7 @@ class RecorderServices:
         if not self._recorder.recording:
             return answered(response, NOT_RECORDING, "the recorder is stopped")
         if mode not in {0, 1, 2}:
-            return answered(response, 2, f"there is no split_mode {mode}; use 0, 1 or 2")
+            return answered(response, 2, f"split_mode {mode} is unknown; use 0, 1 or 2")
         try:
             await self._recorder.split(at, mode=mode, topic=topic)
         except OSError as error:
@@ -187,7 +187,7 @@ class RecorderServices:
 
     async def _stop(self, _: Any, response: Any) -> Any:
         if not self._recorder.recording:
-            return answered(response, 1, "the recorder is stopped already")
+            return answered(response, 1, "the recorder is already stopped")
         try:
             await self._recorder.stop()
         except AionodeError as error:
@@ -206,9 +206,9 @@ class RecorderServices:
 
 
 def offered(node: Node, makes: Sequence[Callable[[], Any]]) -> list[Any]:
-    """Return what these calls create; None for types that the ROS in use does not have.
+    """Return what the given calls create; None for types that the ROS in use does not have.
 
-    A recorder or player over an installed ROS 2 without rosbag2 works all the same.
+    This lets a recorder or player run over an installed ROS 2 without rosbag2.
     """
     made: list[Any] = []
     missing: TransportError | None = None
@@ -219,12 +219,12 @@ def offered(node: Node, makes: Sequence[Callable[[], Any]]) -> list[Any]:
             missing = missing or error
             made.append(None)
     if missing is not None:
-        node.get_logger().warning(f"some services and topics of rosbag2 are not here: {missing}")
+        node.get_logger().warning(f"some services and topics of rosbag2 are unavailable: {missing}")
     return made
 
 
 def when(request: Any, what: str) -> tuple[Time | None, int, str]:
-    """Return from when on a request is meant; before Lyrical, it has no fields."""
+    """Return the time at which a request takes effect; before Lyrical, it has no such fields."""
     stamp = getattr(request, f"{what}_time", None)
     if stamp is None:
         return None, 0, ""
@@ -234,14 +234,14 @@ def when(request: Any, what: str) -> tuple[Time | None, int, str]:
 
 
 def answered(response: Any, code: int, text: str = "") -> Any:
-    """Return a response with a code and a text, if its type has them: before Lyrical, few have."""
+    """Set the code and text of a response, if its type has them: before Lyrical, few do."""
     if hasattr(response, "return_code"):
         response.return_code, response.error_string = code, text
     return response
 
 
 def doing(act: Callable[[], None]) -> Callable[[Any, Any], Any]:
-    """Return the handler of a service that only does something."""
+    """Return the handler of a service that only calls a function."""
 
     def handler(_: Any, response: Any) -> Any:
         act()

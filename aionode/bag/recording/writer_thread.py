@@ -1,7 +1,7 @@
 """The thread that writes a recording, so that the event loop never waits for the disk.
 
 The loop appends rows to a deque, and the thread takes them every 20 ms: one wake-up for many
-messages. Each counter has one writer, so there is no lock.
+messages. Each counter has a single writer, so no lock is needed.
 """
 
 from __future__ import annotations
@@ -26,34 +26,34 @@ if TYPE_CHECKING:
 __all__ = ["Row", "WriterThread"]
 
 BATCH_S: Final = 0.02
-"""Time for which the thread sleeps between two looks for new rows, in seconds."""
+"""Interval at which the thread looks for new rows, in seconds."""
 
 SYNC_NS: Final = 250_000_000
-"""How old messages get before they are on the disk, in nanoseconds: a power cut takes no more than
-the last second, and writing takes time as well, on a busy machine most of it."""
+"""Maximum age of messages that are not on disk yet, in nanoseconds. A power cut must not lose
+more than the last second, and writing also takes time, most of it on a busy machine."""
 
 TURN: Final = 32
-"""Rows that are taken before other threads get their turn."""
+"""Rows to take before other threads get a turn."""
 
 TURN_BYTES: Final = 32 << 10
-"""A row counts as one more for each so many bytes: large ones take long."""
+"""A row counts as one more for each of this many bytes, as large ones take longer."""
 
 MOST_ROWS: Final = 1_000_000
-"""Rows that may wait, or are kept for a snapshot: small messages take more than their bytes."""
+"""Maximum rows that wait or are kept for a snapshot: small messages need more than their bytes."""
 
 LEAST_WAITING: Final = 16 << 20
-"""Bytes that may wait for the thread in snapshot mode, however few are kept."""
+"""Minimum bytes that may wait for the thread in snapshot mode, however few are kept."""
 
 
 class Row(NamedTuple):
     """One message on its way to the file.
 
     Attributes:
-        topic: The number of its topic, as the recorder counts them.
-        time_ns: When it was received, in nanoseconds since 1970.
-        publish_time_ns: When it was published.
-        sequence: Its number, given by its publisher.
-        size: How many bytes it has.
+        topic: The id of its topic, as assigned by the recorder.
+        time_ns: The receive time, in nanoseconds since 1970.
+        publish_time_ns: The publish time.
+        sequence: The publisher's sequence number.
+        size: Its size in bytes.
         raw: Its bytes, or a list of their parts.
     """
 
@@ -70,18 +70,19 @@ class WriterThread:
 
     Args:
         writer: The bag.
-        topics: The topics by number, each with the number of messages that further files begin
-            with; the recorder adds to it.
+        topics: The topics by id, each with the number of messages that further files start with;
+            the recorder adds to it.
         cache_bytes: How many bytes may wait for the disk; in snapshot mode, how many are kept.
         cache_ns: How long messages are kept in snapshot mode, in nanoseconds; 0 for no limit.
-        snapshot: Whether messages are only kept until somebody asks for a snapshot.
-        on_failure: Called in the thread, once, when nothing can be written any more.
-        before_close: Called in the thread before the bag is closed, and again when losses are
-            counted after that.
+        snapshot: Whether to only keep messages until a snapshot is requested.
+        on_failure: Called once, in the thread, when nothing can be written any more.
+        before_close: Called in the thread before the bag is closed, and again if losses are counted
+            after that.
 
     Attributes:
-        failure: Why nothing is written any more; None while all is well.
-        lost: How many rows of each topic were not written, because the disk was full or failed.
+        failure: Why nothing is written any more; None while everything works.
+        lost: Number of rows of each topic that were not written because the disk was full or
+            failed.
     """
 
     def __init__(
@@ -107,7 +108,7 @@ class WriterThread:
         self._rows: deque[Row | Callable[[], None]] = deque()
         self._put_bytes = 0
         self._taken_bytes = 0
-        self._numbers: dict[int, int] = {}  # of the topics in the bag
+        self._numbers: dict[int, int] = {}  # ids of the topics in the bag
         self._written: dict[int, int] = {}
         self._is_dirty = False
         self._synced_ns = perf_ns()
@@ -121,7 +122,7 @@ class WriterThread:
     # In the loop
 
     def put(self, row: Row) -> bool:
-        """Hand a row over, and return whether there was room for it."""
+        """Enqueue a row, and return whether there was room for it."""
         size = row.size
         waiting = len(self._rows)
         if waiting and (
@@ -146,7 +147,7 @@ class WriterThread:
     def _run(self) -> None:
         while not self._stopping.wait(BATCH_S):
             self._guarded(self._step)
-        while self._rows:  # an error leaves the rest, which is counted then
+        while self._rows:  # an error leaves the rest, which is then counted
             self._guarded(self._take_all)
         self._before_close()
         try:
@@ -164,7 +165,7 @@ class WriterThread:
             step()
         except BagWriteError as error:
             self._fail(error)
-        except OSError as error:  # of a file that is removed, or a sync that fails
+        except OSError as error:  # a removed file, or a sync that fails
             self._fail(write_error(self._writer.path, error))
 
     def _fail(self, error: BagWriteError) -> None:
@@ -173,14 +174,14 @@ class WriterThread:
             self._on_failure()
 
     def _step(self) -> None:
-        """Take what has come, and see that it is on the disk in time."""
+        """Write new rows, and sync them to disk in time."""
         if not self._is_dirty:
             self._synced_ns = perf_ns()
         self._take_all()
         self._sync_in_time()
 
     def _sync_in_time(self) -> None:
-        """Sync the file to disk, if a sync is due."""
+        """Sync the file to disk if a sync is due."""
         if self._is_dirty and perf_ns() - self._synced_ns >= SYNC_NS:
             self._is_dirty = False
             self._synced_ns = perf_ns()
@@ -192,8 +193,8 @@ class WriterThread:
         while rows:
             if taken >= TURN:
                 taken = 0
-                sleep(0)  # the event loop may wait for its turn
-                self._sync_in_time()  # where more comes all the time, nothing else does
+                sleep(0)  # the event loop may be waiting for its turn
+                self._sync_in_time()  # under constant load, nothing else does
             row = rows.popleft()
             if not isinstance(row, Row):
                 row()
@@ -225,7 +226,7 @@ class WriterThread:
         )
 
     def _count_lost(self) -> None:
-        """Count what a full disk has taken back, once the bag is closed."""
+        """Count the messages that a full disk made the writer remove, once the bag is closed."""
         in_bag = {topic.key: topic.message_count for topic in self._writer.topics}
         for number, written in self._written.items():
             missing = written - in_bag.get(self._topics[number][0].key, 0)
@@ -235,7 +236,7 @@ class WriterThread:
     # Snapshots
 
     def _keep(self, row: Row, kept: deque[Row]) -> None:
-        """Keep a row for a snapshot, and let go of the oldest."""
+        """Keep a row for a snapshot, dropping the oldest ones."""
         kept.append(row)
         self._kept_bytes += row.size
         while len(kept) > 1 and self._is_too_much(kept):
@@ -246,13 +247,13 @@ class WriterThread:
                 self._latched.setdefault(oldest.topic, deque(maxlen=depth)).append(oldest)
 
     def _is_too_much(self, kept: deque[Row]) -> bool:
-        """Return whether the oldest row has to go."""
+        """Return whether the oldest row has to be dropped."""
         if self._kept_bytes > self._cache_bytes or len(kept) > MOST_ROWS:
             return True
         return 0 < self._cache_ns < kept[-1].time_ns - kept[0].time_ns
 
     def write_snapshot(self) -> None:
-        """Write what is kept, after the latched messages before it; only by `call`."""
+        """Write the rows kept, preceded by earlier latched messages; only through `call`."""
         kept, self._kept = self._kept or deque(), deque()
         self._kept_bytes = 0
         first_ns = kept[0].time_ns if kept else 0
@@ -265,5 +266,5 @@ class WriterThread:
         self._writer.sync()
 
     def split(self, time_ns: int) -> None:
-        """Begin a new file; only by `call`."""
+        """Start a new file; only through `call`."""
         self._writer.split(time_ns)

@@ -1,1 +1,1 @@
-"""Recordings as tests: nodes run on them in stepped time, and runs are compared."""
+"""Recordings as tests: run nodes on them in stepped time, and compare the outputs."""

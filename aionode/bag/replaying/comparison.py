@@ -1,4 +1,4 @@
-"""How two recordings differ: the first differences by topic, time and field."""
+"""Compares two recordings: the first differences by topic, time and field."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 __all__ = ["Difference", "Source", "compare"]
 
 Source = Outputs | Bag | str | PathLike[str] | Iterable["Record"]
-"""One side of a comparison: outputs of a run, a bag or its path, or records."""
+"""One side of a comparison: the outputs of a run, a bag or its path, or records."""
 
 LIMIT: Final = 10
-"""Differences of each topic that are listed by default."""
+"""Default number of differences to list per topic."""
 
 SHOWN: Final = 60
-"""So many characters of a value are shown."""
+"""Maximum number of characters of a value to show."""
 
 
 class Difference(msgspec.Struct, frozen=True):
@@ -39,13 +39,13 @@ class Difference(msgspec.Struct, frozen=True):
 
     Attributes:
         topic: The topic.
-        time_ns: When the message was published in the first recording, or in the second if it is
-            only there; in nanoseconds since 1970.
+        time_ns: When the message was published, in nanoseconds since 1970: in the first recording,
+            or in the second if it is only there.
         field: The path of the field, such as ``linear.x`` or ``poses[3].position.y``; ``time`` or
-            ``type`` of the message as a whole, and ``message`` where one recording has none.
+        ``type`` for the whole message, and ``message`` if one recording does not have it.
         left: The value in the first recording.
-        right: The value in the second one.
-        offset_ns: How long after the start of the recordings that was.
+        right: The value in the second recording.
+        offset_ns: Time since the start of the recordings, in nanoseconds.
     """
 
     topic: str
@@ -71,17 +71,17 @@ def compare(
     time_tolerance_sec: float = 0.0,
     limit: int = LIMIT,
 ) -> list[Difference]:
-    """Return the first differences of two recordings in order of time; none if they are the same.
+    """Return the first differences of two recordings in time order; empty if they are equal.
 
-    The messages of each topic are compared one by one, in their order.
+    The messages of each topic are compared one by one, in order.
 
     Args:
-        a: What a run has published, a bag or its path, or records.
-        b: What it is compared with.
-        tolerance: By how much numbers may differ: for all, or by topic, or by topic and field, such
-            as ``{"/cmd_vel": 1e-6, "/odom pose.pose.position.x": 0.01}``. NaN equals NaN.
-        time_tolerance_sec: By how many seconds the times of two messages may differ.
-        limit: How many differences of each topic are listed.
+        a: The outputs of a run, a bag or its path, or records.
+        b: What to compare it with.
+        tolerance: Allowed difference of numbers: for all, by topic, or by topic and field, such as
+        ``{"/cmd_vel": 1e-6, "/odom pose.pose.position.x": 0.01}``. NaN equals NaN.
+        time_tolerance_sec: Allowed difference between the times of two messages, in seconds.
+        limit: Maximum number of differences to list per topic.
 
     Raises:
         BagError: a bag cannot be read (a ValueError).
@@ -98,12 +98,12 @@ def compare(
 
 
 class Tolerances:
-    """The difference that messages of one topic may have.
+    """The allowed differences for the messages of one topic.
 
     Args:
         topic: The topic.
-        tolerance: As for `compare`.
-        time_ns: By how many nanoseconds times may differ.
+        tolerance: See `compare`.
+        time_ns: Allowed difference of times, in nanoseconds.
     """
 
     def __init__(self, topic: str, tolerance: float | Mapping[str, float], time_ns: int) -> None:
@@ -113,7 +113,7 @@ class Tolerances:
         self._number = self._fields.get(topic, 0.0) if self._fields else tolerance
 
     def equal(self, field: str, left: Any, right: Any) -> bool:
-        """Whether two plain values are the same, or near enough."""
+        """Return whether two plain values are equal within the tolerance."""
         if left == right:
             return True
         numbers = (int, float)
@@ -177,13 +177,13 @@ def unequal(a: Record, b: Record, tolerances: Tolerances) -> Iterator[tuple[str,
 
 
 def leaves(a: Any, b: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
-    """Yield the path and the two values of each field of two messages in their plain form."""
+    """Yield the path and both values of each field of two messages in plain form."""
     if isinstance(a, dict) and isinstance(b, dict):
         for name in a:
             yield from leaves(a[name], b.get(name), f"{path}.{name}" if path else name)
     elif isinstance(a, list) and isinstance(b, list):
         if len(a) != len(b):
-            yield f"len({path})", str(len(a)), str(len(b))  # no numbers: no tolerance applies
+            yield f"len({path})", str(len(a)), str(len(b))  # strings, so that no tolerance applies
         for index, (x, y) in enumerate(zip(a, b, strict=False)):
             yield from leaves(x, y, f"{path}[{index}]")
     else:
@@ -191,6 +191,6 @@ def leaves(a: Any, b: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
 
 
 def shown(value: Any) -> str:
-    """Return a value for a report, not longer than a line takes."""
+    """Return a value for a report, shortened to fit a line."""
     text = value if isinstance(value, str) else repr(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}…"

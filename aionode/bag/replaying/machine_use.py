@@ -1,9 +1,9 @@
-"""Finds out that nodes use what differs in each run: the machine's clocks, and random numbers.
+"""Detects that nodes use what differs between runs: the machine's clocks, and random numbers.
 
-From 3.12 on, Python tells which functions are called: each place in the code that calls anything is
-looked at once, which costs next to nothing. A place that calls something else later is not seen.
-In 3.11 there is only `sys.setprofile`, which is called for every call, and breaks others: nothing
-is watched there.
+Since Python 3.12, `sys.monitoring` reports which functions are called: each call site is looked at
+once, which costs next to nothing. A call site that later calls something else goes unnoticed. In
+3.11 there is only `sys.setprofile`, which is invoked for every call and interferes with other
+tools, so nothing is watched there.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ NAMES: Final[dict[Any, str]] = {
     **{function: f"datetime.{function.__qualname__}" for function in CLOCKS[-4:]},
     **{function: f"random.{function.__name__}" for function in CHANCE[3:]},
 }
-"""The functions that give something else in each run, with their names."""
+"""The functions whose results differ between runs, with their names."""
 
 TOOL_NAME: Final = "aionode replay"
 
@@ -57,7 +57,7 @@ class MachineUseWarning(UserWarning):
 
 
 class MachineUse:
-    """Warns once for the machine's clocks, and once for random numbers, in a ``with`` block."""
+    """Warns once about the machine's clocks, and once about random numbers, in a ``with`` block."""
 
     def __init__(self) -> None:
         self._open = {CLOCKS: "time", CHANCE: "random"}
@@ -77,7 +77,7 @@ class MachineUse:
             monitoring = sys.monitoring
             free = [tool for tool in range(5, -1, -1) if monitoring.get_tool(tool) is None]
             if not free:
-                return  # debuggers and the like have all of them
+                return  # debuggers and the like occupy all tool ids
             self._tool = free[0]
             monitoring.use_tool_id(self._tool, TOOL_NAME)
             monitoring.register_callback(self._tool, monitoring.events.CALL, self._on_call)
@@ -102,10 +102,10 @@ class MachineUse:
         instead = (
             "use the node's clock, node.get_clock().now()"
             if kind is CLOCKS
-            else "use a random.Random with a seed of its own"
+            else "use a random.Random with its own seed"
         )
         warnings.warn_explicit(
-            f"{name}() is called during a replay, and gives something else in each run; {instead}",
+            f"{name}() is called during a replay, and its result differs between runs; {instead}",
             MachineUseWarning,
             file,
             line,
@@ -121,13 +121,13 @@ class MachineUse:
 
 
 def is_of_collector(code: CodeType) -> bool:
-    """Whether a function is called when garbage is collected, at any place of the nodes."""
+    """Return whether a function runs during garbage collection, at arbitrary points of nodes."""
     return any(getattr(callback, "__code__", None) is code for callback in gc.callbacks)
 
 
 @cache
 def is_users(file: str) -> bool:
-    """Whether a file belongs to the program: not to aionode, and not to Python's own library."""
+    """Return whether a file belongs to the program, not to aionode or Python's library."""
     if file.startswith(OWN):
         return f"{os.sep}examples{os.sep}" in file
     return not file.startswith(("<frozen", LIBRARY)) or "site-packages" in file

@@ -1,4 +1,4 @@
-"""The messages that nodes published while a recording ran through them."""
+"""The messages that nodes published while a recording was replayed to them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Outputs", "Tap"]
 
 LATCHED_DEPTH: Final = 1000
-"""Most messages taken of those that were latched before the run."""
+"""Maximum number of latched messages from before the run to take."""
 
 
 class Outputs:
@@ -56,11 +56,11 @@ class Outputs:
         return total.hexdigest()
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the messages as a bag, such as one to compare with later.
+        """Write the messages as a bag, for example to compare with later.
 
         Raises:
-            BagError: the folder exists already (a ValueError).
-            BagWriteError: the disk refuses to write (an OSError).
+            BagError: the folder already exists (a ValueError).
+            BagWriteError: the disk is full or fails (an OSError).
         """
         with BagWriter(path) as writer:
             for record in self.records:
@@ -68,16 +68,16 @@ class Outputs:
 
 
 class Tap:
-    """Takes what is published on some topics, within the call that publishes it.
+    """Collects what is published on some topics, within the call that publishes it.
 
-    Unlike a subscription with a callback it drops nothing, and wakes nothing.
+    Unlike a subscription with a callback, it drops nothing and wakes nothing.
 
     Args:
         node: The node that listens.
         topics: Their full names.
 
     Attributes:
-        outputs: What was taken.
+        outputs: What was collected.
     """
 
     def __init__(self, node: BareNode, topics: Iterable[str]) -> None:
@@ -97,7 +97,7 @@ class Tap:
             close()
 
     def check(self, subject: str) -> None:
-        """Refuse outputs without a topic that was asked for.
+        """Reject outputs if a requested topic was not published.
 
         Raises:
             BagError: no node publishes it (a ValueError).
@@ -114,7 +114,7 @@ class Tap:
             )
 
     def _note(self, publisher: EndpointInfo, present: bool) -> None:  # as `Graph.watch` calls it
-        """Listen to a topic from its first publisher on, whose latched messages come first."""
+        """Listen to a topic from its first publisher on, starting with its latched messages."""
         is_own = publisher.node == self._node.info
         if is_own or not present or publisher.name not in self._missing:
             return
@@ -132,7 +132,7 @@ class Tap:
 
 
 class TapReader:
-    """Takes the messages of one topic from a transport; see `aionode.transport.base.Reader`."""
+    """Collects the messages of one topic from a transport; see `aionode.transport.base.Reader`."""
 
     raw = True
     waiting = 0
@@ -156,18 +156,18 @@ class TapReader:
         self._records.append(Record(self._info, self._now_ns(), source_ns, sequence, bytes(msg)))
 
     def note_alive(self, gid: bytes) -> None:
-        """Nothing depends on it."""
+        """Ignore signs of life."""
 
     def reject(self, error: DecodeError) -> None:
-        """In one process nothing is decoded."""
+        """Do nothing: within a process, nothing is decoded."""
 
     def has_room(self) -> bool:
-        """It takes everything."""
+        """Return True: it accepts everything."""
         return True
 
     async def wait_for_room(self) -> None:
-        """It takes everything."""
+        """Return immediately: it accepts everything."""
 
     def when_room(self, callback: Callable[[], None]) -> None:
-        """Call `callback`, since there is room."""
+        """Call `callback` right away: there is always room."""
         callback()

@@ -1,8 +1,8 @@
-"""Runs nodes on a recording in stepped time: the same input gives the same bytes, each time.
+"""Runs nodes on a recording in stepped time: the same input gives the same bytes every time.
 
-Each message is published at its own time of a manual clock, after everything that is due before,
-and time goes on only once nothing can run. So the order of all callbacks is that of their times,
-however fast the machine is; `SteppedLoop` does the same for what nodes do with asyncio and threads.
+Each message is published at its time on a manual clock, after everything that is due earlier, and
+time advances only once nothing can run. So all callbacks run in the order of their times, however
+fast the machine is; `SteppedLoop` does the same for asyncio and threads.
 """
 
 from __future__ import annotations
@@ -44,10 +44,10 @@ if TYPE_CHECKING:
 __all__ = ["PIECE_VARIABLE", "Piece", "Replay", "replay"]
 
 PIECE_VARIABLE: Final = "AIONODE_REPLAY_PIECE"
-"""The piece of one bag that is replayed in place of the whole, in JSON; set by ``bag shrink``."""
+"""The piece of a bag to replay instead of all of it, in JSON; set by ``bag shrink``."""
 
 NODE_OWNED: Final = ("/rosout", "/parameter_events")
-"""Topics that every node publishes itself: a replay leaves them out."""
+"""Topics that every node publishes itself, and that a replay skips."""
 
 logger = get_logger("aionode.bag.replay")
 
@@ -69,12 +69,12 @@ class Piece(msgspec.Struct, kw_only=True):
 
 
 class Replay:
-    """A run of nodes on a recording; made by `replay`, and used with ``async with``.
+    """A run of nodes on a recording; created by `replay`, and used with ``async with``.
 
     Attributes:
         bag: The recording.
-        clock: The clock, which stands at the first message until `play`.
-        context: The context of the nodes, without network. It is the default context meanwhile.
+        clock: The clock, which shows the time of the first message until `play` is called. context:
+            The context of the nodes, without network. It is the default context meanwhile.
     """
 
     bag: Bag
@@ -90,7 +90,7 @@ class Replay:
         """Open the recording and the context.
 
         Raises:
-            BagError: the path is no bag, or a damaged one (a ValueError).
+            BagError: the path is not a bag, or the bag is damaged (a ValueError).
         """
         async with AsyncExitStack() as stack:
             self.bag = stack.enter_context(open_bag(self._path))
@@ -115,34 +115,33 @@ class Replay:
         """Destroy the nodes, and wait until they have ended.
 
         Raises:
-            ExceptionGroup: callbacks of nodes that `play` has started have failed.
+            ExceptionGroup: callbacks of nodes started by `play` failed.
         """
         try:
             await self._stack.__aexit__(exc_type, exc, traceback)
         except BaseExceptionGroup as group:
             if exc is None or group.exceptions != (exc,):
-                raise  # an error of the block itself comes out as it is
+                raise  # an error of the block itself is raised as it is
 
     async def play(
         self, record: Iterable[str] = (), *, topics: Iterable[str] | None = None
     ) -> Outputs:
         """Publish the recording, and return what the nodes published meanwhile.
 
-        Nodes of the context that do not run yet are started first. Time passes as in the recording,
-        and takes only as long as the callbacks do.
+        Nodes of the context that are not running yet are started first. Time passes as in the
+        recording, but takes only as long as the callbacks do.
 
         Args:
-            record: The topics whose messages are returned. They are not published from the
-                recording, unless `topics` has them.
-            topics: The topics that are published from the recording; by default all but those of
-                `record`, of actions and of services' events, ``/rosout`` and
-                ``/parameter_events``.
+            record: The topics whose messages to return. They are not published from the recording,
+                unless they are in `topics`.
+            topics: The topics to publish from the recording; by default all except those of
+                `record`, of actions and service events, ``/rosout`` and ``/parameter_events``.
 
         Raises:
-            BagError: no node publishes a topic of `record`, or the recording has no topic of
-                `topics` or is damaged (a ValueError).
-            asyncio.CancelledError: a callback of a node has failed; its error comes out of the
-                ``async with`` block.
+            BagError: no node publishes a topic of `record`, or the recording is damaged or does not
+                have a topic of `topics` (a ValueError).
+            asyncio.CancelledError: a callback of a node failed; its error is raised by the
+            ``async with`` block.
         """
         recorded = [absolute(name) for name in record]
         publish = self._publishers(self._chosen(recorded, topics))
@@ -166,7 +165,7 @@ class Replay:
         return tap.outputs
 
     def _chosen(self, recorded: list[str], topics: Iterable[str] | None) -> list[str]:
-        """Return the topics of the bag that are published."""
+        """Return the topics of the bag to publish."""
         if topics is not None:
             chosen = [absolute(name) for name in topics]
         else:
@@ -187,14 +186,14 @@ class Replay:
             try:
                 publisher = self._player.create_publisher(info.msg_type, name, offered(info))
             except (InterfaceNotFoundError, NameValidationException) as error:
-                logger.warning(escaped(f"{name} is left out: {error}", one_line=True))
+                logger.warning(escaped(f"{name} is skipped: {error}", one_line=True))
                 continue
             self._warn_of_second(name)
             published[name] = publishing(publisher, self.clock)
         return published
 
     def _warn_of_second(self, name: str) -> None:
-        """Warn if a node publishes what is recorded too; transforms come from many."""
+        """Warn if a node also publishes what is recorded, except for transforms."""
         others = [
             endpoint.node.fully_qualified_name
             for endpoint in self.context.graph.endpoints(EndpointKind.PUBLISHER, name=name)
@@ -202,8 +201,8 @@ class Replay:
         ]
         if others and name not in {"/tf", "/tf_static"}:
             logger.warning(
-                f"{name}: published by {', '.join(others)}, and from the recording as well; leave "
-                "the recorded messages out with record=[…] or topics=[…]"
+                f"{name}: published by {', '.join(others)} and from the recording; exclude "
+                "the recorded messages with record=[…] or topics=[…]"
             )
 
 
@@ -217,12 +216,12 @@ def replay(path: str | os.PathLike[str], *, seed: int = 0) -> Replay:
             outputs = await run.play(record=["/cmd_vel"])
         assert not bag.compare(outputs, "golden")
 
-    Timers, sleeps, timeouts, services, actions, simulated time and threads that are awaited follow
-    the time of the recording. The page "A recording as a test" says what cannot be the same.
+    Timers, sleeps, timeouts, services, actions, simulated time and awaited threads follow the time
+    of the recording. The page "A recording as a test" lists what cannot be reproduced.
 
     Args:
         path: The folder or file of a bag.
-        seed: The ids of goals and of everything else that nodes make are drawn with this seed.
+        seed: Seed for the ids of goals and everything else random that nodes create.
     """
     return Replay(path, seed=seed)
 
@@ -233,16 +232,16 @@ def absolute(topic: str) -> str:
 
 
 def is_input(topic: str) -> bool:
-    """Whether a topic of a recording is one that nodes listen to, and not their own machinery."""
+    """Return whether nodes listen to a recorded topic, rather than it being their own output."""
     return topic not in NODE_OWNED and not (
         "/_action/" in topic or topic.endswith("/_service_event")
     )
 
 
 def offered(info: TopicInfo) -> QoSProfile:
-    """Return the profile with which a recorded topic is published.
+    """Return the QoS profile for publishing a recorded topic.
 
-    It is that of the recorded publishers if all had the same, and else one that fits most readers.
+    It is that of the recorded publishers if all had the same, or else one that fits most readers.
     """
     profiles = info.qos
     if profiles and all(profile == profiles[0] for profile in profiles):
@@ -251,15 +250,15 @@ def offered(info: TopicInfo) -> QoSProfile:
 
 
 def publishing(publisher: BarePublisher, clock: ManualClock) -> Callable[[Record], None]:
-    """Return a function that publishes a record, if anything listens."""
+    """Return a function that publishes a record if anything listens."""
 
     def publish(record: Record) -> None:
         if not any(writer.active for writer in publisher._writers):
-            return  # nobody needs the decoded message
+            return  # no need to decode the message
         try:
             message = record.message
         except DecodeError as error:
-            logger.warning(f"{record.topic} at {record.time_ns} ns is left out: {error}")
+            logger.warning(f"{record.topic} at {record.time_ns} ns is skipped: {error}")
         else:
             publisher.publish(message, clock.system_ns())
 
@@ -267,10 +266,10 @@ def publishing(publisher: BarePublisher, clock: ManualClock) -> Callable[[Record
 
 
 def piece_of(path: str | os.PathLike[str]) -> Piece | None:
-    """Return the piece of this bag that the environment asks for; None for the whole.
+    """Return the piece of this bag that the environment selects; None for all of it.
 
     Raises:
-        BagError: the variable is not what ``bag shrink`` sets (a ValueError).
+        BagError: the variable is not one set by ``bag shrink`` (a ValueError).
     """
     text = os.environ.get(PIECE_VARIABLE)
     if not text:
@@ -279,13 +278,13 @@ def piece_of(path: str | os.PathLike[str]) -> Piece | None:
         piece = msgspec.json.decode(text, type=Piece)
     except msgspec.DecodeError as error:
         raise BagError(
-            PIECE_VARIABLE, str(error), "unset it; `aionode bag shrink` sets it"
+            PIECE_VARIABLE, str(error), "unset it; only `aionode bag shrink` sets it"
         ) from error
     return piece if piece.path == os.path.realpath(path) else None
 
 
 def whole(bag: Bag) -> Piece:
-    """Return all of a bag as a piece."""
+    """Return the whole bag as a piece."""
     return Piece(
         path=os.path.realpath(bag.path),
         start_ns=bag.start_ns,

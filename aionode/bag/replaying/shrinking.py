@@ -1,8 +1,8 @@
 """Finds the shortest piece of a bag with which a test still fails.
 
-The test runs as a command of its own, with one variable in its environment: `replay` then gives it
-the piece in place of the whole bag, and no file is written. Topics are left out first, since each
-makes all further runs shorter; then time is cut from both ends; then the topics are tried again.
+The test runs as a separate command with a variable in its environment, which makes `replay` use the
+piece instead of the whole bag; no file is written. First, topics are removed, since that shortens
+all further runs; then time is cut from both ends; then topics are tried again.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 __all__ = ["Piece", "fails", "shrink", "write"]
 
 SHORTEST_NS: Final = 10_000_000
-"""Time is not cut any finer than this, in nanoseconds."""
+"""The finest step by which time is cut, in nanoseconds."""
 
 NO_TESTS: Final = (2, 3, 4, 5)
-"""Exit statuses of pytest: interrupted, an error of its own, or no test run."""
+"""Exit statuses of pytest: interrupted, internal or usage error, or no test run."""
 
 
 async def shrink(
@@ -37,11 +37,11 @@ async def shrink(
     fails: Callable[[Piece], Awaitable[bool]],
     on_piece: Callable[[Piece], None] = lambda _: None,
 ) -> Piece:
-    """Return the shortest piece that was found for which `fails` is true.
+    """Return the shortest piece found for which `fails` is true.
 
     Args:
         path: The bag.
-        fails: Runs the test with a piece; whether the test fails.
+        fails: Runs the test with a piece, and returns whether it fails.
         on_piece: Called with each shorter piece that still fails.
 
     Raises:
@@ -62,11 +62,11 @@ async def shrink(
 
 
 class Search:
-    """The shortest piece so far, and the ways to find a shorter one.
+    """The shortest piece so far, and the strategies to find a shorter one.
 
     Args:
         fails: Whether the test fails with a piece.
-        on_piece: Is told of each shorter piece.
+        on_piece: Called with each shorter piece.
         piece: A piece with which the test fails.
 
     Attributes:
@@ -84,7 +84,7 @@ class Search:
         self._on_piece = on_piece
 
     async def leave_out_topics(self) -> None:
-        """Leave out as many topics as possible: groups of them first, then one by one (ddmin)."""
+        """Remove as many topics as possible: groups first, then one by one (ddmin)."""
         size = max(1, len(self.piece.topics) // 2)
         while len(self.piece.topics) > 1:
             topics = self.piece.topics
@@ -120,7 +120,7 @@ class Search:
                 step_ns //= 2
 
     async def _try(self, piece: Piece) -> bool:
-        """Take a piece if the test fails with it; return whether it does."""
+        """Adopt a piece if the test fails with it; return whether it does."""
         if not await self._fails(piece):
             return False
         self.piece = piece
@@ -131,12 +131,12 @@ class Search:
 async def fails(command: Sequence[str], piece: Piece, directory: str | None = None) -> bool:
     """Run a command with a piece in its environment; return whether it fails.
 
-    A run of pytest that was interrupted, or found no test, is no failure.
+    A pytest run that was interrupted, or found no tests, does not count as failing.
 
     Args:
         command: The command and its arguments.
         piece: The piece.
-        directory: Where it runs; by default where this process does.
+        directory: Its working directory; by default that of this process.
 
     Raises:
         FileNotFoundError: there is no such command.
@@ -159,11 +159,11 @@ async def fails(command: Sequence[str], piece: Piece, directory: str | None = No
 
 
 def write(piece: Piece, folder: str | PathLike[str]) -> int:
-    """Write a piece as a bag of its own; return how many messages it has.
+    """Write a piece as a bag of its own; return its number of messages.
 
     Raises:
-        BagError: the folder exists already (a ValueError).
-        BagWriteError: the disk refuses to write (an OSError).
+        BagError: the folder already exists (a ValueError).
+        BagWriteError: the disk is full or fails (an OSError).
     """
     with open_bag(piece.path) as bag, BagWriter(folder) as writer:
         start, end = Time(nanoseconds=piece.start_ns), Time(nanoseconds=piece.end_ns)
