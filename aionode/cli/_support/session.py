@@ -48,12 +48,12 @@ def make_node(
     *,
     use_sim_time: bool = False,
 ) -> Node:
-    """Return the node of a command: hidden, without a log, and with one service of its own.
+    """Return the node of a command: hidden, without a log, and with a single service.
 
-    Without a `context` it gets one of its own: the default context of the process has the
-    environment of its first use, and belongs to the program that runs the command. Its service
-    describes the types that it uses, as others may not know them: of a topic that nobody but
-    ``topic echo --interfaces`` uses, for example.
+    Without a `context` it creates one: the process's default context depends on the environment at
+    its first use, and belongs to the program that runs the command. The service describes the
+    types that it uses, which others may not know: those of a topic used only by ``topic echo
+    --interfaces``, for example.
     """
     # Imported when a command runs; its help does not need it.
     from aionode.engine.context import Context
@@ -88,9 +88,9 @@ def run_verb(
         json: Whether to print records.
         node_name: Name of the node; defaults to a hidden name.
         use_sim_time: Whether the node takes its time from ``/clock``.
-        endless: Whether Ctrl-C is the normal end, with status 0, and not an interruption (130).
-        busy: Whether many messages are expected, which makes the faster loop worth its import.
-        asks: Whether the verb needs a complete graph, so that discovery is awaited first.
+        endless: Whether Ctrl-C is the normal end (status 0) and not an interruption (130).
+        busy: Whether to expect many messages, which makes the faster event loop worth its import.
+        asks: Whether the verb needs a complete graph and so waits for discovery first.
         stop_s: Timeout for the exit after a signal, in seconds.
 
     Raises:
