@@ -9,9 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from aionode import Node
 from aionode._packages import Packages, program_module, workspace_of
 from aionode._packages._share import share_of
-from aionode._packages._standard import MODULES
+from aionode._packages._standard import MODULES, PLUGINS, standard_plugin
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
 SETUP = """\
@@ -424,3 +425,15 @@ def test_each_program_of_the_table_is_a_module_with_a_main(package: str, name: s
 
     assert module is not None
     assert callable(import_module(module).main)
+
+
+@pytest.mark.parametrize(
+    ("package", "name"), [(package, name) for package in PLUGINS for name in PLUGINS[package]]
+)
+def test_each_plugin_of_the_table_is_a_class_of_a_node(package: str, name: str) -> None:
+    """A launch file loads it into a container of the original."""
+    found = standard_plugin(package, name)
+
+    assert found is not None
+    module, _, kind = found[0].partition(":")
+    assert issubclass(getattr(import_module(module), kind), Node)

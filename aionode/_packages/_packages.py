@@ -15,7 +15,7 @@ from aionode._packages._executables import (
     runs_in_this_python,
 )
 from aionode._packages._share import share_of
-from aionode._packages._standard import remark_on, standard_executables
+from aionode._packages._standard import remark_on, standard_executables, standard_plugin
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
@@ -92,6 +92,19 @@ class Packages:
             raise self.not_found(name)
         installed = {} if prefix is None else installed_executables(prefix, name)
         return installed | ({} if source is None else executables_in(source, name))
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a package, in the workspace or installed."""
+        return name in self.sources() or any(
+            (folder / MARKER / name).is_file() for folder in prefixes()
+        )
+
+    def plugin(self, package: str, name: str) -> tuple[str, str] | None:
+        """Return the node class of aionode that stands in for a plugin in C++, and its node's name.
+
+        None if aionode has none, or if the package itself is there.
+        """
+        return None if self.has(package) else standard_plugin(package, name)
 
     def executable(self, package: str, name: str) -> Executable:
         """Return an executable of a package.

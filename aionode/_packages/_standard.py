@@ -6,7 +6,7 @@ from typing import Final
 
 from aionode._packages._executables import Executable
 
-__all__ = ["program_module", "remark_on", "standard_executables"]
+__all__ = ["program_module", "remark_on", "standard_executables", "standard_plugin"]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "joy": {"joy_node": "_joy.joy_node"},
@@ -33,6 +33,36 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "twist_mux": {"twist_mux": "_twist_mux"},
 }
 """The module of `aionode.programs` that is an executable, by package and name."""
+
+PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
+    "joy": {"joy::Joy": ("_joy.joy_node:JoyNode", "joy_node")},
+    "nav2_lifecycle_manager": {
+        "nav2_lifecycle_manager::LifecycleManager": (
+            "_lifecycle_manager:Manager",
+            "lifecycle_manager",
+        )
+    },
+    "robot_state_publisher": {
+        "robot_state_publisher::RobotStatePublisher": (
+            "_robot_state_publisher:RobotStatePublisher",
+            "robot_state_publisher",
+        )
+    },
+    "teleop_twist_joy": {
+        "teleop_twist_joy::TeleopTwistJoy": (
+            "_joy.teleop_node:TeleopTwistJoy",
+            "teleop_twist_joy_node",
+        )
+    },
+    "topic_tools": {
+        f"topic_tools::{name}Node": (f"_{name.lower()}:{name}", name.lower())
+        for name in ("Delay", "Demux", "Drop", "Mux", "Relay", "Throttle")
+    },
+}
+"""The node class of `aionode.programs` that is a plugin for containers, by package and name.
+
+With each is the name of its node, if it is given no other one.
+"""
 
 REMARKS: Final[dict[str, str]] = {
     **dict.fromkeys(
@@ -71,6 +101,11 @@ REMARKS: Final[dict[str, str]] = {
         ("controller_manager", "ros2_control", "moveit_ros_move_group", "moveit_servo"),
         "a program in C++ that loads plugins; a ROS 2 with rmw_zenoh can run it beside aionode",
     ),
+    **dict.fromkeys(
+        ("image_proc", "depth_image_proc", "stereo_image_proc"),
+        "a set of plugins in C++ that work on images; a node of your own does so with "
+        "aionode.image and OpenCV, and a ROS 2 with rmw_zenoh can run it beside aionode",
+    ),
     "rclcpp_components": (
         "the container for nodes in C++; node classes of aionode need none: "
         "ComposableNode(plugin='my_robot.nodes:Driver')"
@@ -88,6 +123,12 @@ def program_module(package: str, name: str) -> str | None:
     """Return the name of the module that is an executable of a package, if aionode has it."""
     module = MODULES.get(package, {}).get(name)
     return None if module is None else f"aionode.programs.{module}"
+
+
+def standard_plugin(package: str, plugin: str) -> tuple[str, str] | None:
+    """Return the node class that is a plugin of a package, as ``module:Class``, and its name."""
+    known = PLUGINS.get(package, {}).get(plugin)
+    return None if known is None else (f"aionode.programs.{known[0]}", known[1])
 
 
 def standard_executables(package: str) -> dict[str, Executable]:

@@ -93,3 +93,59 @@ def test_what_is_wrong_otherwise_stays_an_error(files: Files) -> None:
 
     with pytest.raises(LaunchFileError, match="has no 'shel'"):
         records(files, text)
+
+
+CONTAINER = """
+from launch import LaunchDescription
+from launch_ros.actions import ComposableNodeContainer, LoadComposableNodes
+from launch_ros.descriptions import ComposableNode
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        ComposableNodeContainer(
+            name="c", namespace="", package="rclcpp_components", executable="component_container",
+            composable_node_descriptions=[
+                ComposableNode(package="joy", plugin="joy::Joy"),
+                ComposableNode(package="image_proc", plugin="image_proc::RectifyNode", name="eye"),
+                ComposableNode(package="topic_tools", plugin="topic_tools::RelayNode", name="r",
+                               parameters=[{"input_topic": "chatter"}]),
+            ]),
+    ])
+"""
+
+
+def test_of_a_container_the_nodes_stay_that_aionode_has(files: Files) -> None:
+    """The others are named, with what they are."""
+    found = records(files, CONTAINER)
+
+    plugins = [each["plugin"] for each in found if "plugin" in each]
+    assert plugins == [
+        "aionode.programs._joy.joy_node:JoyNode",
+        "aionode.programs._relay:Relay",
+    ]
+    (log,) = (each["log"] for each in found if "log" in each)
+    assert log.startswith("package 'image_proc' is not there: it is a set of plugins in C++")
+    assert "left out: image_proc::RectifyNode (" in log
+
+
+def test_without_the_option_a_plugin_that_is_missing_is_an_error_that_says_what_it_is(
+    files: Files,
+) -> None:
+    """Not that there is no container, which it would not help to have."""
+    with pytest.raises(LaunchFileError, match=r"'image_proc': not found in .* it is a set of plug"):
+        _ = Plan(files.write("a.launch.py", CONTAINER)).steps
+
+
+def test_a_container_of_nodes_that_aionode_has_needs_no_process(files: Files) -> None:
+    """As one of classes of Python."""
+    text = CONTAINER.replace(
+        'ComposableNode(package="image_proc", plugin="image_proc::RectifyNode", name="eye"),', ""
+    )
+    found = list(Plan(files.write("a.launch.py", text)).records())
+
+    assert [each["plugin"] for each in found if "plugin" in each] == [
+        "aionode.programs._joy.joy_node:JoyNode",
+        "aionode.programs._relay:Relay",
+    ]
+    assert not any("argv" in each for each in found)

@@ -195,6 +195,29 @@ async def test_components_that_are_aionode_classes_run_as_tasks(robot: Robot) ->
     assert {("talker", "/"), ("ear", "/robot")} <= names
 
 
+async def test_plugins_that_aionode_has_run_as_tasks(robot: Robot) -> None:
+    """Those of ROS's packages that launch files load into a container, with their parameters."""
+    plan = robot.plan(
+        """
+        ComposableNodeContainer(name='c', namespace='', composable_node_descriptions=[
+            ComposableNode(package='topic_tools', plugin='topic_tools::RelayNode',
+                           parameters=[{'input_topic': 'chatter'}]),
+            ComposableNode(package='teleop_twist_joy', plugin='teleop_twist_joy::TeleopTwistJoy',
+                           remappings=[('cmd_vel', 'wheels')])]),
+        """
+    )
+    async with robot.system as system, asyncio.TaskGroup() as tasks:
+        running = tasks.create_task(run_plan(plan, system))
+        await until(lambda: len(system.status()) == 2)
+        await system.ready()
+        names = {name for name, _ in system.graph_node.get_node_names_and_namespaces()}
+        topics = {name for name, _ in system.graph_node.get_topic_names_and_types()}
+        running.cancel()
+
+    assert {"relay", "teleop_twist_joy_node"} <= names
+    assert "/wheels" in topics
+
+
 async def test_a_managed_node_may_be_activated_as_it_starts(robot: Robot) -> None:
     """With `autostart`, once it answers."""
     plan = robot.plan(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from aionode._packages import here
 from aionode.launch.plan import Component
 from launch.condition import Condition
 from launch.launch_context import LaunchContext
@@ -66,9 +67,14 @@ class ComposableNode:
         namespace = namespace_in(context, text_or_none(context, self._ComposableNode__namespace))
         everywhere = context.launch_configurations.get("global_params", ())
         given = [{key: value} if key else value for key, value in map(as_pair, everywhere)]
+        plugin = perform_substitutions(context, self._ComposableNode__plugin)
+        package = perform_substitutions(context, self.package)
+        standard = here().plugin(package, plugin)
+        if standard is not None:
+            plugin, name = standard[0], name or standard[1]
         return Component(
-            plugin=perform_substitutions(context, self._ComposableNode__plugin),
-            package=perform_substitutions(context, self.package),
+            plugin=plugin,
+            package=package,
             name=name,
             namespace=namespace,
             parameters=values_for_node(

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
+from aionode._packages import here, remark_on
+from aionode.errors import PackageNotFoundError
 from aionode.launch.plan import Component, LoadNodes
 from launch.action import Action
 from launch.launch_context import LaunchContext
@@ -47,11 +50,48 @@ class ComposableNodeContainer(Node):
         if components and all(component.is_aionode for component in components):
             self._ExecuteLocal__arguments_of_ros(context)  # which settles its name
         else:
-            super().execute(context)
+            try:
+                super().execute(context)
+            except PackageNotFoundError as error:
+                self._leave_out(context, components, error)
+                components = [each for each in components if each.is_aionode]
+                self._ExecuteLocal__arguments_of_ros(context)
         if components:
             context.steps.append(
                 LoadNodes(self.node_name, components, self._LaunchDescriptionEntity__where)
             )
+
+    def _leave_out(
+        self, context: LaunchContext, components: list[Component], error: PackageNotFoundError
+    ) -> None:
+        """Note the nodes that need the container, which is not there.
+
+        Raises:
+            PackageNotFoundError: Nothing may be left out. It is of the package of such a node if
+                that says what it is, else of the container's.
+        """
+        foreign = [each for each in components if not each.is_aionode]
+        known = [each.package for each in foreign if remark_on(each.package)]
+        if context.left_out is None and known:
+            raise here().not_found(known[0]) from None
+        if context.left_out is None or not foreign:
+            raise error
+        for each in foreign:
+            package = each.package if each.package in known else error.name
+            left_out = LeftOut(each.plugin, self._LaunchDescriptionEntity__where)
+            context.left_out.setdefault(package, []).append(left_out)
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A node that a container does not get."""
+
+    plugin: str
+    _LaunchDescriptionEntity__where: str
+
+    def describe(self) -> str:
+        """Return its name for users."""
+        return self.plugin
 
 
 class LoadComposableNodes(Action):
