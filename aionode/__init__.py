@@ -1,6 +1,6 @@
-"""aionode: nodes, topics, services and timers as ROS 2 has them, native to asyncio.
+"""aionode: ROS 2's nodes, topics, services and timers, native to asyncio.
 
-A node is a task, a topic a bounded queue, a service call something one awaits::
+A node is a set of tasks, a subscription a bounded queue, and a service call is awaited::
 
     import aionode
     from aionode.interfaces.std_msgs.msg import String
@@ -181,7 +181,7 @@ _EXPORTS = {
 
 
 def __getattr__(name: str) -> Any:
-    """Return a public name, or a module of the package, and keep it for the next time."""
+    """Return a public name or a module of the package, and cache it."""
     try:
         value = (
             getattr(import_module(_EXPORTS[name]), name) if name in _EXPORTS else submodule(name)
@@ -195,7 +195,7 @@ def __getattr__(name: str) -> Any:
 
 
 def submodule(name: str) -> Any:
-    """Return a module of the package: ``aionode.qos`` works without an import of its own."""
+    """Import a module of the package, so that ``aionode.qos`` works without its own import."""
     return import_module(f"{__name__}.{name}")
 
 

@@ -1,4 +1,4 @@
-"""The distribution of ROS 2 that the other nodes run, and its effect on the wire.
+"""The ROS 2 distribution that the other nodes run, and its effect on the wire.
 
 The fields of messages that differ between distributions are in `idl/_distribution_differences.py`.
 """
@@ -25,16 +25,17 @@ DEFAULT: Final = "jazzy"
 VARIABLE: Final = "ROS_DISTRO"
 
 NO_TYPE_HASH: Final = "TypeHashNotSupported"
-"""The text that nodes of ROS 2 Humble write in place of every type hash."""
+"""What ROS 2 Humble nodes send in place of every type hash."""
 
 HUMBLE_HERE: Final = f"a Humble robot is here: set {VARIABLE}=humble to talk to it"
 HUMBLE_ALONE: Final = f"this process speaks Humble, the others do not: unset {VARIABLE}"
 
 
 def choose_distribution(environ: Mapping[str, str], ros_distro: str | None) -> str:
-    """Return the distribution that the argument or else the environment names.
+    """Return the distribution named by the argument, or else by the environment.
 
-    An unknown name in the environment is a newer distribution, and treated as the default.
+    An unknown name in the environment is taken for a newer distribution, and treated like the
+    default.
 
     Raises:
         ConfigurationError: the argument is not a distribution.
@@ -48,7 +49,7 @@ def choose_distribution(environ: Mapping[str, str], ros_distro: str | None) -> s
 
 
 def distribution_mismatch(own_hash: str, other_hash: str) -> str | None:
-    """Return what to change if one of two type hashes is of Humble and the other is not.
+    """Return what to change if only one of two type hashes comes from Humble.
 
     Endpoints of Humble and of newer distributions never communicate over rmw_zenoh.
     """
@@ -60,9 +61,9 @@ def distribution_mismatch(own_hash: str, other_hash: str) -> str | None:
 
 
 def other_distribution(ros_distro: str, type_hashes: Iterable[str]) -> str | None:
-    """Return what to change if endpoints with these hashes do not hear a context of `ros_distro`.
+    """Return what to change if endpoints with these hashes cannot hear a context of `ros_distro`.
 
-    In a network with both, a context hears its own.
+    In a network with both, a context hears those of its own kind.
     """
     hashless = {hash_ == NO_TYPE_HASH for hash_ in type_hashes}
     if hashless == {ros_distro != "humble"}:

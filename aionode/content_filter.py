@@ -37,19 +37,19 @@ MAX_PARAMETERS: Final = 100
 """The number of parameters that the grammar has names for."""
 
 MAX_DIGITS: Final = 400
-"""Most characters of a number; Python refuses much longer ones with an error of its own."""
+"""The longest number, in characters; Python itself rejects much longer ones with its own error."""
 
 MAX_DEPTH: Final = 50
-"""How deep parentheses and NOT may be nested."""
+"""The deepest nesting of parentheses and NOT."""
 
 
 @dataclass
 class ContentFilterOptions:
-    """Selects the messages that a subscription gets, with rclpy's attribute names.
+    """Selects the messages that a subscription receives; the attributes have rclpy's names.
 
     Attributes:
         filter_expression: A condition over the fields of the message; empty for all messages.
-        expression_parameters: Literals for ``%0`` and the following, as text: ``"5"``, ``"'on'"``.
+        expression_parameters: Literals for ``%0``, ``%1`` and so on, as text: ``"5"``, ``"'on'"``.
     """
 
     filter_expression: str = ""
@@ -94,7 +94,7 @@ class Operand(NamedTuple):
     Attributes:
         kind: ``number``, ``text`` or ``truth``; only operands of one kind can be compared.
         get: Returns its value for a message.
-        text: How it was written.
+        text: Its text in the expression.
         is_field: Whether its value depends on the message.
     """
 
@@ -109,12 +109,12 @@ def compile_filter(
     filter_expression: str,
     expression_parameters: Sequence[str] = (),
 ) -> Callable[[Any], bool]:
-    """Return a predicate that is true for messages that pass the filter.
+    """Compile a filter to a predicate that is true for messages which pass.
 
     Args:
         msg_type: The class of the messages.
         filter_expression: The condition.
-        expression_parameters: The literals that ``%0`` and the following stand for.
+        expression_parameters: The literals that ``%0``, ``%1`` and so on stand for.
 
     Raises:
         ContentFilterError: the expression is malformed, names a field that the message does not
@@ -125,7 +125,7 @@ def compile_filter(
 
 
 def tokens_of(expression: str) -> list[Token]:
-    """Return the tokens of an expression, and the end.
+    """Split an expression into tokens, with an end token last.
 
     Raises:
         ContentFilterError: something is not a token of the grammar.
@@ -150,7 +150,7 @@ def tokens_of(expression: str) -> list[Token]:
 
 
 class Parser:
-    """Reads one expression, from left to right, one method for each rule of the grammar."""
+    """A recursive-descent parser of one expression, with a method for each rule of the grammar."""
 
     def __init__(self, msg_type: type[Message], expression: str, parameters: Sequence[str]) -> None:
         if len(parameters) > MAX_PARAMETERS:
@@ -179,7 +179,7 @@ class Parser:
         return token
 
     def _took(self, kind: str, text: str) -> bool:
-        """Take the next token if it is this one."""
+        """Consume the next token if it is this one."""
         if (self._token.kind, self._token.text) != (kind, text):
             return False
         self._next += 1
@@ -391,7 +391,7 @@ def literal(token: Token) -> Operand | None:
 
 
 def getter(names: list[str | int]) -> Callable[[Any], Any]:
-    """Return a function that reads a field of a message, through nested messages and elements.
+    """Return a function that reads a field of a message, following nested messages and indexes.
 
     It raises IndexError for an element that the message does not have.
     """
@@ -408,7 +408,7 @@ def getter(names: list[str | int]) -> Callable[[Any], Any]:
 
 
 def false_without_elements(condition: Callable[[Any], bool]) -> Callable[[Any], bool]:
-    """Return a predicate that is false for messages that lack the elements it names."""
+    """Wrap a predicate so that it is false for messages which lack the elements it names."""
 
     def holds(msg: Any) -> bool:
         try:
@@ -422,15 +422,15 @@ def false_without_elements(condition: Callable[[Any], bool]) -> Callable[[Any], 
 class LikePattern:
     """A pattern of LIKE, in which ``%`` stands for any text and ``_`` for one character.
 
-    A piece after a ``%`` is taken at its first place in the text, and never looked for again
-    further on: so the work for a text is bounded by its length for each piece.
+    A piece after a ``%`` is matched at its first occurrence, without backtracking, so the work is
+    bounded by the length of the text times the number of pieces.
     """
 
     def __init__(self, pattern: str) -> None:
         self._first, *self._rest = map(LikePiece, pattern.split("%"))
 
     def matches(self, text: str) -> bool:
-        """Return whether the whole text fits the pattern."""
+        """Return whether the whole text matches the pattern."""
         if not self._first.fits(text, 0):
             return False
         at = self._first.length
@@ -447,10 +447,10 @@ class LikePattern:
 
 
 class LikePiece:
-    """The part of a pattern between two ``%``: literals, and places for any character.
+    """The part of a pattern between two ``%``: literal characters and single-character wildcards.
 
     Attributes:
-        length: How many characters it stands for.
+        length: How many characters it matches.
     """
 
     def __init__(self, piece: str) -> None:
@@ -459,13 +459,13 @@ class LikePiece:
         self._longest = max(self._literals, key=lambda literal: len(literal[1]), default=(0, ""))
 
     def fits(self, text: str, at: int) -> bool:
-        """Return whether the piece stands at this place of a text."""
+        """Return whether the piece matches at this position of a text."""
         return at + self.length <= len(text) and all(
             text.startswith(literal, at + offset) for offset, literal in self._literals
         )
 
     def find(self, text: str, at: int) -> int:
-        """Return the first place of the piece at or after `at`; -1 if there is none."""
+        """Return the first position of the piece at or after `at`, or -1."""
         offset, literal = self._longest
         while at + self.length <= len(text):
             at = text.find(literal, at + offset) - offset

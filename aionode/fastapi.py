@@ -1,4 +1,4 @@
-"""For applications of FastAPI and Starlette: routes end with their browser, motion with a signal.
+"""FastAPI and Starlette: cancel routes when their browser leaves, stop motion at a signal.
 
 It needs ``pip install fastapi``, or Starlette alone::
 
@@ -45,24 +45,24 @@ if TYPE_CHECKING:
 __all__ = ["stopping_at_signals", "until_disconnected"]
 
 CLIENT_CLOSED_REQUEST: Final = 499
-"""The HTTP status of a request whose client has gone, as nginx logs it."""
+"""The status that nginx logs for a request whose client has closed the connection."""
 
 SIGQUIT: Final[int | None] = getattr(signal, "SIGQUIT", None)
 SIGNALS: Final[tuple[int, ...]] = (signal.SIGINT, signal.SIGTERM, *([SIGQUIT] if SIGQUIT else []))
-"""The signals that end web servers; gunicorn's workers get SIGQUIT when somebody presses Ctrl-C."""
+"""The signals that end web servers; gunicorn's workers get SIGQUIT on Ctrl-C."""
 
 LATER_SEC: Final = 1.0
-"""When the handlers are looked at again after the start of the application, in seconds."""
+"""How long after the start of the application the handlers are installed again, in seconds."""
 
 CLEANUP_SEC: Final = 0.15
-"""How long routes may clean up after a signal before the nodes end, in seconds."""
+"""How long routes may clean up after a signal before the nodes are destroyed, in seconds."""
 
 
 class Routes:
     """The blocks of `until_disconnected` that are open in this process.
 
     Attributes:
-        all_done: Set while there is none.
+        all_done: Set while no block is open.
         begun: Called when a block begins.
     """
 
@@ -74,7 +74,7 @@ class Routes:
         self.all_done.set()
 
     def add(self, scope: asyncio.Timeout) -> None:
-        """Note a block that begins."""
+        """Record the start of a block."""
         if self.begun is not None:
             self.begun()
         self._scopes.add(scope)
@@ -87,11 +87,11 @@ class Routes:
             self.all_done.set()
 
     def is_ending(self) -> bool:
-        """Return whether a signal has ended them, and ends those that begin now."""
+        """Return whether a signal has cancelled them, so that new blocks are cancelled too."""
         return self._is_ending
 
     def reset(self) -> None:
-        """Resume the blocks of another application in this process."""
+        """Allow blocks again, for another application in this process."""
         self.begun = None
         self._is_ending = False
 
@@ -110,12 +110,12 @@ async def stopping_at_signals(*nodes: Node | Supervisor[Any]) -> AsyncIterator[N
     """End motion and open routes at the first signal that ends the server, before the server does.
 
     A web server tells the application of a signal only when all its connections have closed, which
-    an open route or a stream of events may put off for ever. Within this block, for the lifespan of
-    the application, the first signal does at once what the end of the lifespan would do later: the
-    stop of each open lease is sent, also while a callback blocks the event loop; each block of
-    `until_disconnected` is cancelled, and with it the goals and calls that it awaits, and its route
-    answers with status 503; then `nodes` are destroyed, which ends the streams of their
-    subscriptions. The server's own handler is called as well, and stays what it was.
+    an open route or a stream of events may delay for ever. Within this block, which spans the
+    lifespan of the application, the first signal does at once what the end of the lifespan would do
+    later: the stop of each open lease is sent, also while a callback blocks the event loop; each
+    block of `until_disconnected` is cancelled, and with it the goals and calls that it awaits, and
+    its route answers with status 503; then `nodes` are destroyed, which ends the streams of their
+    subscriptions. The server's own handler is called as well, and stays installed.
 
     In a thread other than the main one, where no signals arrive, as in Starlette's `TestClient`, it
     does nothing.
@@ -155,10 +155,10 @@ async def stopping_at_signals(*nodes: Node | Supervisor[Any]) -> AsyncIterator[N
 
 
 class Listener:
-    """Sends the stops of leases at the signals that end a server, and tells the loop of them.
+    """Handles the signals that end a server: sends the stops of leases, and notifies the loop.
 
-    The handlers that were there are called as well. Those of an event loop need no call: it hears
-    of each signal that has any handler by a descriptor.
+    The previous handlers are called as well. An event loop's own handlers need no call: the loop
+    learns of every signal that has a handler through its wakeup descriptor.
 
     Args:
         loop: The event loop of the application.
@@ -171,7 +171,7 @@ class Listener:
         self._before: dict[int, Any] = {}
 
     def install(self) -> None:
-        """Handle the signals from now on, also those whose handler somebody has set meanwhile."""
+        """Handle the signals from now on, replacing handlers that were set meanwhile."""
         for number in SIGNALS:
             current: Any = signal.getsignal(number)
             is_left_alone = number == SIGQUIT and current is signal.SIG_DFL
@@ -180,7 +180,7 @@ class Listener:
                 signal.signal(number, self)
 
     def remove(self) -> None:
-        """Set the handlers again that were there, unless somebody has set others."""
+        """Restore the previous handlers, unless others have been set meanwhile."""
         for number, handler in self._before.items():
             current: object = signal.getsignal(number)
             if current is self:
@@ -188,7 +188,7 @@ class Listener:
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         """Handle a signal."""
-        if not is_sending(frame):  # else the loop does, which is not blocked then
+        if not is_sending(frame):  # otherwise the loop does, and is not blocked
             send_stops(0.0)
         self._loop.call_soon_threadsafe(self._note)
         handler: object = self._before[number]
@@ -207,8 +207,8 @@ class Listener:
 async def until_disconnected(request: Request) -> AsyncIterator[None]:
     """Cancel the block when the client of `request` disconnects.
 
-    A web server goes on with a route whose browser has left. Within the block, the wait of the
-    route is cancelled instead, as by `asyncio.timeout`: a call is forgotten on both sides, and a
+    A web server keeps running a route whose browser has left. Within the block, what the route
+    awaits is cancelled instead, as by `asyncio.timeout`: a call is abandoned on both sides, and a
     goal is canceled.
 
     The body of the request is read first and kept for ``request.body()``, unless the route has
@@ -221,12 +221,12 @@ async def until_disconnected(request: Request) -> AsyncIterator[None]:
 
     Raises:
         HTTPException: the client has disconnected; its status is 499. Nobody gets the response, and
-            nothing is logged. Or the application ends (see `stopping_at_signals`): the status is
-            503, with which clients know that they may ask again.
+            nothing is logged. Or the application is shutting down (see `stopping_at_signals`); the
+            status is 503, which tells clients that they may retry.
     """
     ending = HTTPException(503, "the server is shutting down", {"Retry-After": "1"})
     gone = HTTPException(CLIENT_CLOSED_REQUEST, "the client has disconnected")
-    # The server tells of the disconnection in the place of the next part of the body.
+    # The server reports the disconnection in place of the next part of the body.
     try:
         await request.body()
     except ClientDisconnect:
@@ -258,7 +258,7 @@ async def disconnected(request: Request) -> None:
 async def watching(
     sign: Callable[[], Awaitable[object]], scope: asyncio.Timeout
 ) -> AsyncIterator[None]:
-    """Cancel `scope` when `sign` returns."""
+    """Cancel `scope` when the coroutine `sign` returns."""
 
     async def watch() -> None:
         await sign()

@@ -1,9 +1,10 @@
 """The nodes and endpoints that a context knows of, and queries about them.
 
 `Graph` is a store that the context and its transports write to. It does no I/O: a transport adds
-what it discovers, the context adds its own, and each change wakes the tasks that wait for one.
-The graph watcher of a transport, `engine/transport/zenoh/discovery/graph_watcher.py`, adds the
-nodes of other processes, and removes those of a process that ends or dies.
+what it discovers, the context adds its own nodes and endpoints, and each change wakes the tasks
+that wait for one. The graph watcher of a transport,
+`engine/transport/zenoh/discovery/graph_watcher.py`, adds the nodes of other processes, and removes
+those of a process that ends or dies.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ class EndpointKind(enum.Enum):
 
     @property
     def opposite(self) -> EndpointKind:
-        """The kind that an endpoint of this kind communicates with."""
+        """The kind of endpoint that this kind communicates with."""
         return OPPOSITES[self]
 
 
@@ -66,7 +67,7 @@ OPPOSITES = {
 
 @dataclass(frozen=True, slots=True)
 class NodeInfo:
-    """One node as the graph knows it.
+    """One node in the graph.
 
     Attributes:
         participant: Id of the context that runs the node, in hexadecimal.
@@ -74,8 +75,8 @@ class NodeInfo:
         name: Its name without namespace.
         namespace: Its namespace, beginning with a slash.
         enclave: Its security enclave.
-        over_rcl: Whether rcl has found it, over a middleware such as DDS. That connects endpoints
-            only if their QoS fits, and may not tell the hashes of types.
+        over_rcl: Whether it was discovered by rcl, over a middleware such as DDS, which connects
+            endpoints only if their QoS is compatible, and may not report type hashes.
         bridged: Whether it is on DDS, behind a `zenoh-bridge-ros2dds`; then `participant` is the
             Zenoh id of that bridge.
     """
@@ -90,7 +91,7 @@ class NodeInfo:
 
     @property
     def fully_qualified_name(self) -> str:
-        """Namespace and name in one."""
+        """The namespace and name combined."""
         return names.fully_qualified_name(self.namespace, self.name)
 
 
@@ -117,7 +118,7 @@ class Mismatch(NamedTuple):
     Attributes:
         aspect: What differs: the name of the type, its definition, the distribution of ROS 2, or
             the QoS.
-        reason: Both values, in words.
+        reason: Both values, as text.
         policy: The last incompatible policy, if the QoS differs.
     """
 
@@ -128,9 +129,9 @@ class Mismatch(NamedTuple):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EndpointInfo:
-    """One publisher, subscription, server or client as the graph knows it.
+    """One publisher, subscription, server or client in the graph.
 
-    Two are equal if their `gid` is, as that identifies an endpoint.
+    Two are equal if their `gid` is equal, since that identifies an endpoint.
 
     Attributes:
         kind: What it does.
@@ -138,12 +139,12 @@ class EndpointInfo:
         endpoint_id: Number of the endpoint, unique in its context.
         name: Full name of its topic or service.
         type_name: ROS name of its type, such as ``std_msgs/msg/String``.
-        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` in ROS 2 Humble, and
-            empty if unknown, as those of services over DDS.
+        type_hash: RIHS01 hash of the type, as text; ``TypeHashNotSupported`` from ROS 2 Humble, and
+            empty if unknown, as for services over DDS.
         qos: Its QoS.
         gid: 16 bytes that identify it.
-        backends: What an endpoint of another process says since ROS 2 Lyrical of the memory in
-            which it passes sequences of bytes, such as ``backends:cpu:``; empty without.
+        backends: The memory in which an endpoint of another process passes byte sequences, such as
+            ``backends:cpu:``, as announced since ROS 2 Lyrical; otherwise empty.
     """
 
     kind: EndpointKind
@@ -167,8 +168,8 @@ class EndpointInfo:
 
         A difference in QoS matters within one context, and between contexts over DDS; rmw_zenoh
         delivers between contexts whatever the QoS is. A bridge adapts to both sides, but DDS
-        subscriptions that request what was published before may refuse a volatile publisher. A hash
-        that is not told, as of the services behind a bridge, differs from none.
+        subscriptions that request earlier messages may refuse a volatile publisher. An unknown
+        hash, such as that of a service behind a bridge, counts as equal to any.
         """
         different = self._compare_types(other)
         if different is not None or self.kind not in TOPIC_KINDS:
@@ -196,7 +197,7 @@ class EndpointInfo:
         return None
 
     def _has_other_hash(self, other: EndpointInfo) -> bool:
-        """Whether both tell the hash of their type, and they differ; DDS is without hashes."""
+        """Whether both announce a type hash, and the two differ; over DDS there are none."""
         hashes = {self.type_hash, other.type_hash}
         if self.node.bridged or other.node.bridged:
             hashes -= {NO_TYPE_HASH}
@@ -205,17 +206,17 @@ class EndpointInfo:
     def mismatch(self, other: EndpointInfo) -> str | None:
         """Return why this endpoint and its opposite `other` do not communicate; None if they do.
 
-        Between contexts only the types count over rmw_zenoh, which delivers whatever the QoS is;
-        `needs_qos` has the exceptions.
+        Between contexts over rmw_zenoh only the types matter, since it delivers whatever the QoS
+        is; `needs_qos` lists the exceptions.
         """
         mismatch = self.compare(other) if self.needs_qos(other) else self._compare_types(other)
         return None if mismatch is None else mismatch.reason
 
     def needs_qos(self, other: EndpointInfo) -> bool:
-        """Return whether the QoS of both has to fit.
+        """Return whether the two have to be compatible in QoS.
 
-        Within one context, and over DDS. Since ROS 2 Lyrical, volatile publishers of sequences of
-        bytes send to keys that transient local subscriptions do not listen to.
+        They do within one context, and over DDS. Since ROS 2 Lyrical, volatile publishers of byte
+        sequences also send on keys that transient local subscriptions do not listen to.
         """
         if self.kind in TOPIC_KINDS:
             is_publisher = self.kind is EndpointKind.PUBLISHER
@@ -241,10 +242,10 @@ class Graph:
         participant: Id of the context whose graph this is.
 
     Attributes:
-        changes: Incremented by each change: an answer is valid while this stays the same.
-        router_lost_ns: When the connection to a router was lost last, by `perf_ns`: what went
-            about then may only be out of reach.
-        unreported: Which mismatches of an endpoint of this context are not logged, since its
+        changes: Incremented by each change; an answer is valid while this stays the same.
+        router_lost_ns: When the connection to a router was last lost, by `perf_ns`; whatever
+            disappeared about then may only be unreachable.
+        unreported: Which mismatches of an endpoint of this context are not logged because its
             program gets them as events: ``"qos"``, ``"type"`` and ``"definition"``.
     """
 
@@ -256,9 +257,9 @@ class Graph:
         self._endpoints: dict[EndpointInfo, None] = {}
         self._by_name: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
         self._by_node: dict[NodeInfo, dict[EndpointInfo, None]] = defaultdict(dict)
-        # Those of this context: to look for them among all would be quadratic.
+        # Those of this context; searching among all of them would be quadratic.
         self._own: dict[tuple[EndpointKind, str], dict[EndpointInfo, None]] = defaultdict(dict)
-        # Of `changed`, by the name they wait for, None for any; until the next such change.
+        # Futures of `changed` by the name they wait for (None: any), until its next change.
         self._waiters: dict[str | None, dict[asyncio.Future[None], None]] = {}
         self._nodes_by_name: dict[str, dict[NodeInfo, None]] = defaultdict(dict)
         self._listeners: list[Callable[[EndpointInfo], None]] = []
@@ -273,7 +274,7 @@ class Graph:
     # Changes
 
     def add_node(self, node: NodeInfo) -> None:
-        """Add `node`; adding it again has no effect."""
+        """Add a node; adding it again has no effect."""
         if node not in self._nodes:
             self._nodes[node] = None
             self._nodes_by_name[node.fully_qualified_name][node] = None
@@ -317,9 +318,9 @@ class Graph:
         self._wake(endpoint.name)
 
     def identify(self, endpoint: EndpointInfo, gid: bytes) -> None:
-        """Give an endpoint the gid that the middleware has chosen.
+        """Set the gid of an endpoint to the one that the middleware has chosen.
 
-        Watchers are told that it goes and returns; for listeners it is the same one.
+        Watchers see it leave and return; for listeners it stays the same endpoint.
         """
         is_known = endpoint in self._endpoints
         if is_known:
@@ -346,7 +347,8 @@ class Graph:
     def remove_participant(self, participant: str) -> None:
         """Remove all nodes and endpoints of the context `participant`.
 
-        Only the end of this context calls this; graph watchers remove what a dead process has left.
+        Called only when this context ends; graph watchers remove the nodes and endpoints of dead
+        processes.
         """
         for endpoint in [e for e in self._endpoints if e.node.participant == participant]:
             self.remove_endpoint(endpoint)
@@ -362,9 +364,10 @@ class Graph:
         self._node_listeners.append(listener)
 
     def watch(self, kind: EndpointKind, name: str, watcher: Watcher) -> Callable[[], None]:
-        """Call `watcher` with each endpoint of `kind` and `name` that is known, appears or goes.
+        """Call `watcher` for each endpoint of `kind` and `name` that is present, appears or leaves.
 
-        Its second argument says whether the endpoint is present. Returns a function that ends this.
+        Its second argument says whether the endpoint is present. Returns a function that removes
+        the watcher.
         """
         watchers = self._watchers.setdefault((kind, name), [])
         watchers.append(watcher)
@@ -388,13 +391,13 @@ class Graph:
     def changed(self, *full_names: str) -> asyncio.Future[None]:
         """Return a future that is done at the next change: a node or endpoint added or removed.
 
-        Await it, or keep it to cancel the wait from elsewhere; cancelling is safe. The graph is the
-        context's: the end of a node is a change of the graph, and not the end of the wait. The
-        future raises EntityDestroyedError once the context was shut down and has closed.
+        Await it, or keep it to cancel the wait from elsewhere; cancelling is safe. The graph
+        belongs to the context, so the end of a node is a change and does not end the wait. The
+        future raises EntityDestroyedError once the context has been shut down and closed.
 
         Args:
-            full_names: Full names of topics, services or nodes: then only changes of nodes and
-                endpoints with one of these names end the wait. In a large system, that costs much
+            full_names: Full names of topics, services or nodes: if given, only changes of nodes and
+                endpoints with one of these names end the wait. In a large system this costs much
                 less than looking again at every change.
         """
         waiter: asyncio.Future[None] = asyncio.get_running_loop().create_future()
@@ -416,16 +419,16 @@ class Graph:
         return waiter
 
     async def until(self, condition: Callable[[], bool], *full_names: str) -> None:
-        """Wait until `condition()` is true; it is called again at each change, as by `changed`.
+        """Wait until `condition()` is true; it is called at each change, as by `changed`.
 
         Raises:
-            EntityDestroyedError: the context was shut down, and has closed.
+            EntityDestroyedError: the context has been shut down and closed.
         """
         while not condition():
             await self.changed(*full_names)
 
     def close(self) -> None:
-        """End all waits: nothing changes any more. Called by the context after its shutdown."""
+        """End all waits, as nothing changes any more; called by the context after its shutdown."""
         self._closed = True
         for waiters in list(self._waiters.values()):
             for waiter in list(waiters):
@@ -451,7 +454,7 @@ class Graph:
     def endpoints(
         self, *kinds: EndpointKind, name: str | None = None, node: NodeInfo | None = None
     ) -> list[EndpointInfo]:
-        """Return the endpoints of these kinds (by default all), this name, and this node."""
+        """Return the endpoints of these kinds (default: all) with this name and node."""
         kinds = kinds or tuple(EndpointKind)
         candidates: Iterable[EndpointInfo]
         if name is not None:
@@ -480,7 +483,7 @@ class Graph:
     def names_and_types(
         self, *kinds: EndpointKind, node: NodeInfo | None = None
     ) -> list[tuple[str, list[str]]]:
-        """Return the names of endpoints of these kinds, each with its types, sorted."""
+        """Return the sorted names of endpoints of these kinds, each with its types."""
         types: dict[str, set[str]] = defaultdict(set)
         for endpoint in self.endpoints(*kinds, node=node):
             types[endpoint.name].add(endpoint.type_name)
@@ -539,10 +542,10 @@ def is_infrastructure(endpoint: EndpointInfo) -> bool:
 
 
 def end(waiter: asyncio.Future[None]) -> None:
-    """End a wait for a change with an error: the context is destroyed."""
+    """End a wait with an error, as the context is destroyed."""
     if not waiter.done():
         waiter.set_exception(EntityDestroyedError("context"))
-        waiter.exception()  # retrieved, as nobody may await it any more
+        waiter.exception()  # mark it retrieved: perhaps nobody awaits it any more
 
 
 def _take_out(index: dict[K, dict[V, None]], key: K, member: V) -> None:

@@ -1,9 +1,9 @@
 """Convert Image and CompressedImage messages to numpy arrays and PIL images, and back.
 
-What cv_bridge calls ``imgmsg_to_cv2`` is `to_numpy` here, and ``cv2_to_imgmsg`` is `from_numpy`;
-the arrays are those that OpenCV works with, the encodings those of cv_bridge. An array is a view of
-the message's own bytes where possible, so it is read-only if they are, as those of a received
-message are; copy it to change it. `to_pil`, `from_pil`, `compress` and `decompress` need Pillow.
+`to_numpy` is cv_bridge's ``imgmsg_to_cv2``, and `from_numpy` its ``cv2_to_imgmsg``; the arrays have
+OpenCV's layout, and the encodings are those of cv_bridge. Where possible an array is a view of the
+message's own bytes, and read-only if they are, as in a received message; copy it to change it.
+`to_pil`, `from_pil`, `compress` and `decompress` need Pillow.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ __all__ = [
 ]
 
 DEPTH_HEAD: Final = struct.Struct("<iff")
-"""What compressedDepth has before its picture: a format, and how metres became numbers."""
+"""The header that compressedDepth puts before its picture: a format and the depth quantization."""
 
 COLORS = {"mono": "m", "rgb": "rgb", "bgr": "bgr", "rgba": "rgba", "bgra": "bgra"}
-"""The channels of encodings with colours, one letter each."""
+"""The channels of colour encodings, one letter each."""
 
 YUV = {"yuv422", "yuv422_yuy2", "uyvy", "yuyv"}
-"""Encodings with two bytes for each pixel; two pixels share their colour."""
+"""Encodings with two bytes per pixel, in which pairs of pixels share their colour."""
 
 OPENCV_TYPES = {
     "8U": "uint8",
@@ -58,7 +58,7 @@ PIL_ENCODINGS = {"L": "mono8", "RGB": "rgb8", "RGBA": "rgba8", "I;16": "mono16",
 
 
 def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
-    """Return the type of a channel, and the number of channels of a pixel.
+    """Return the dtype of a channel and the number of channels of a pixel.
 
     The known encodings are ``mono``, ``rgb``, ``bgr``, ``rgba`` and ``bgra`` with 8 and 16 bits,
     OpenCV's types such as ``8UC3`` and ``32FC1``, the Bayer patterns such as ``bayer_rggb8``,
@@ -83,7 +83,7 @@ def encoding_of(encoding: str) -> tuple[np.dtype[Any], int]:
 
 
 def colors_of(encoding: str) -> str:
-    """Return the letters of the channels, such as ``bgr``; empty if they are not colours."""
+    """Return the letters of the colour channels, such as ``bgr``; empty if there are none."""
     match = re.fullmatch(r"(mono|rgba?|bgra?)(8|16)", encoding)
     return COLORS[match[1]] if match else ""
 
@@ -92,15 +92,15 @@ def colors_of(encoding: str) -> str:
 
 
 def to_numpy(image: Image, desired_encoding: str = "passthrough") -> npt.NDArray[Any]:
-    """Return the pixels: rows, columns, and a third dimension where a pixel has several channels.
+    """Return the pixels as an array of rows, columns and, with several channels, channels.
 
-    The pixels are copied only to convert between grey and colour, or to an encoding with an alpha
-    channel. Padding of rows and other orders of colours need no copy.
+    The pixels are copied only to convert between grey and colour, or to add an alpha channel. Row
+    padding and a different order of colours need no copy.
 
     Args:
         image: The message.
-        desired_encoding: The order of colours, such as ``bgr8`` for OpenCV or ``rgb8``;
-            ``passthrough`` keeps that of the message. The number of bits cannot be changed.
+        desired_encoding: The order of colours, such as ``bgr8`` (OpenCV) or ``rgb8``;
+            ``passthrough`` keeps that of the message. The bit depth cannot be changed.
 
     Raises:
         TypeError: `image` is not an Image.
@@ -119,7 +119,7 @@ def to_numpy(image: Image, desired_encoding: str = "passthrough") -> npt.NDArray
 
 
 def pixels_of(image: Image) -> npt.NDArray[Any]:
-    """Return the pixels as they are, as a view of the bytes of the message."""
+    """Return the pixels unconverted, as a view of the message's bytes."""
     dtype, channels = encoding_of(image.encoding)
     dtype = dtype.newbyteorder(">" if image.is_bigendian else "<")
     shape = (image.height, image.width, channels)
@@ -146,7 +146,7 @@ def pixels_of(image: Image) -> npt.NDArray[Any]:
 
 
 def converted(pixels: npt.NDArray[Any], encoding: str, desired: str) -> npt.NDArray[Any]:
-    """Return pixels in another order of colours."""
+    """Convert pixels to another order of colours."""
     have, want = colors_of(encoding), colors_of(desired)
     dtype, channels = encoding_of(desired)
     if encoding_of(encoding) == (dtype, channels) and not (have and want):
@@ -173,7 +173,7 @@ def converted(pixels: npt.NDArray[Any], encoding: str, desired: str) -> npt.NDAr
 
 
 def with_alpha(colors: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return colours with a fourth channel that is opaque."""
+    """Add an opaque alpha channel."""
     opaque = np.full((*colors.shape[:2], 1), np.iinfo(dtype).max, dtype)
     return np.concatenate([colors, opaque], axis=2)
 
@@ -181,17 +181,17 @@ def with_alpha(colors: npt.NDArray[Any], dtype: np.dtype[Any]) -> npt.NDArray[An
 def from_numpy(
     pixels: npt.NDArray[Any], encoding: str = "passthrough", header: Header | None = None
 ) -> Image:
-    """Return an image of `pixels`: rows, columns, and channels where there are several.
+    """Make an image from an array of rows, columns and, where there are several, channels.
 
-    A contiguous array is not copied but referenced by the message, so do not change it until the
+    A contiguous array is not copied but referenced by the message, so do not change it before the
     message is published, which takes a snapshot.
 
     Args:
-        pixels: The array, of the encoding's type.
-        encoding: What a pixel is: ``bgr8`` for an image of OpenCV, ``rgb8``, ``mono8``, ``32FC1``;
-            ``passthrough`` takes OpenCV's type, such as ``8UC3``, which does not say what the
+        pixels: The array, with the encoding's dtype.
+        encoding: The pixel format: ``bgr8`` for an OpenCV image, ``rgb8``, ``mono8``, ``32FC1``;
+            ``passthrough`` uses OpenCV's type, such as ``8UC3``, which does not say what the
             channels are.
-        header: When it was exposed, and the frame of the camera.
+        header: The time of exposure and the frame of the camera.
 
     Raises:
         TypeError: `pixels` is not an array.
@@ -234,7 +234,7 @@ def from_numpy(
 
 
 def pillow() -> ModuleType:
-    """Return PIL.Image, or say how to get it."""
+    """Import PIL.Image; the error says how to install it."""
     try:
         import PIL.Image
     except ModuleNotFoundError as error:
@@ -271,7 +271,7 @@ def to_pil(image: Image) -> PILImage:
 
 
 def from_pil(picture: PILImage, header: Header | None = None) -> Image:
-    """Return a message of a PIL image; one with a palette or of two colours is converted.
+    """Make a message from a PIL image; palette and two-colour images are converted.
 
     Raises:
         ValueError: the image has a mode other than ``L``, ``RGB``, ``RGBA``, ``I;16``, ``F``,
@@ -289,12 +289,11 @@ def from_pil(picture: PILImage, header: Header | None = None) -> Image:
 
 
 def compress(image: Image, format: str = "jpeg", **options: Any) -> CompressedImage:  # noqa: A002  # the field's name
-    """Return an image in a file format, with its header.
+    """Compress an image to a file format; the header is kept.
 
     Args:
         image: The image.
-        format: ``jpeg``, which is lossy, ``png``, which is lossless, or another one that Pillow
-            writes.
+        format: ``jpeg`` (lossy), ``png`` (lossless), or another that Pillow can write.
         options: Pillow's options for this format, such as ``quality=90``.
 
     Raises:
@@ -314,10 +313,10 @@ def compress(image: Image, format: str = "jpeg", **options: Any) -> CompressedIm
 
 
 def decompress(image: CompressedImage) -> Image:
-    """Return a compressed image as mono8, rgb8, rgba8 or mono16, with its header.
+    """Decompress an image to mono8, rgb8, rgba8 or mono16; the header is kept.
 
-    Depth of image_transport's ``compressedDepth`` is 16UC1 or 32FC1, as it was; where it was not
-    known, it is 0 or NaN.
+    A depth image of image_transport's ``compressedDepth`` becomes 16UC1 or 32FC1, as it was;
+    unknown depths are 0 or NaN.
 
     Raises:
         TypeError: `image` is not a CompressedImage.
@@ -343,10 +342,10 @@ def decompress(image: CompressedImage) -> Image:
 
 
 def depth_of(picture: Image, head: tuple[int, float, float], format: str) -> Image:  # noqa: A002  # the field's name
-    """Return the depth of a picture by compressedDepth: of 16 bits, or of the inverse of metres.
+    """Return the depths of a compressedDepth picture: 16 bits, or decoded from inverse metres.
 
     Raises:
-        MessageError: the picture has no 16 bits.
+        MessageError: the picture does not have 16 bits.
     """
     if picture.encoding != "mono16":
         raise MessageError(

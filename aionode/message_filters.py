@@ -1,4 +1,4 @@
-"""Synchronizing messages of several topics that have the same, or nearly the same, stamp.
+"""Synchronize messages of several topics that have the same or nearly the same stamp.
 
 The names and rules are those of ROS 2's Python package `message_filters`: a `Subscriber` starts a
 chain, a `Cache` stores messages, and a synchronizer calls back with one message of each input. ::
@@ -8,12 +8,12 @@ chain, a `Cache` stores messages, and a synchronizer calls back with one message
     pairs = ApproximateTimeSynchronizer([left, right], queue_size=10, slop=0.05)
     pairs.registerCallback(on_pair)
 
-`synchronize` does the same for ``async for``, over subscriptions without callbacks::
+`synchronize` does the same in an ``async for``, over subscriptions without callbacks::
 
     async for left, right in synchronize(left_subscription, right_subscription, slop=0.05):
         ...
 
-Memory is bounded: each input keeps `queue_size` messages, and unmatched messages beyond that are
+Memory is bounded: each input keeps `queue_size` messages; unmatched messages beyond that are
 dropped and counted.
 """
 
@@ -100,7 +100,7 @@ class ApproximateMatcher(Matcher):
     Args:
         inputs: The number of inputs.
         queue_size: As for `Matcher`.
-        slop_sec: The slop, in seconds; with 0, which ROS 2 pairs nothing with, stamps have to be
+        slop_sec: The slop, in seconds; with 0, which matches nothing in ROS 2, stamps have to be
             equal.
 
     Raises:
@@ -126,9 +126,10 @@ class ApproximateMatcher(Matcher):
         return [] if combination is None else [combination]
 
     def _combinations(self, candidates: list[list[int]], chosen: list[int]) -> Iterator[list[int]]:
-        """Yield one stamp of each input, closest to the arrival first, where all are near enough.
+        """Yield sets of close enough stamps, one of each input, those closest to the arrival first.
 
-        A start that is too far apart is given up at once, so that many inputs stay affordable.
+        A partial set that is too far apart is abandoned at once, so that many inputs stay
+        affordable.
         """
         if len(chosen) == len(candidates):
             yield chosen
@@ -140,7 +141,7 @@ class ApproximateMatcher(Matcher):
 
 
 class Stamps:
-    """Finds the stamp of each message; logs once if a message has none.
+    """Returns the stamp of a message; logs once if a message has none.
 
     Args:
         allow_headerless: Whether a message without a header gets the current time.
@@ -159,7 +160,7 @@ class Stamps:
             return self._without(msg)
         try:
             return self._from_msg(stamp)
-        except ValueError:  # any node can send it, and must not end this one
+        except ValueError:  # any node can send this; it must not end ours
             logger.warning(
                 f"{type(msg).__name__} has a stamp before the year 1970, sec={stamp.sec}, and is "
                 "ignored; so are further ones. `aionode topic info -v` names the publishers",
@@ -168,7 +169,7 @@ class Stamps:
             return None
 
     def _without(self, msg: Any) -> Any:
-        """Return what stands for the stamp of a message that has none."""
+        """Return the substitute for a missing stamp, or None."""
         if self._allow_headerless:
             return self._now()
         logger.warning(
@@ -201,23 +202,23 @@ class SimpleFilter:
         return number
 
     def _SimpleFilter__inner_callbacks(self) -> list[Callable[..., object]]:
-        """Return what was registered; the log names these functions instead of a filter's."""
+        """Return the registered callbacks, which the log names in place of the filter's own."""
         return [callback for callback, _ in self.callbacks.values()]
 
     def signalMessage(self, *msg: Any) -> None:  # ROS 2's name
-        """Call everything that was registered."""
+        """Call all registered callbacks."""
         for callback, args in list(self.callbacks.values()):
             callback(*msg, *args)
 
 
 class Subscriber(SimpleFilter):
-    """Starts a chain: a subscription whose messages go to the filters that are connected to it.
+    """Starts a chain: a subscription that passes its messages to the connected filters.
 
     Args:
         node: The node that subscribes.
         msg_type: A message class.
         topic: Name of the topic.
-        options: What `Node.create_subscription` takes besides.
+        options: Further arguments of `Node.create_subscription`.
 
     Attributes:
         sub: The subscription.
@@ -232,20 +233,20 @@ class Subscriber(SimpleFilter):
 
     def __getattr__(self, name: str) -> Any:
         """Return an attribute of the subscription, as in ROS 2: ``subscriber.topic_name``."""
-        if name == "sub":  # it could not be created
+        if name == "sub":  # the subscription could not be created
             raise AttributeError(name)
         return getattr(self.sub, name)
 
     def getTopic(self) -> str:  # ROS 2's name
-        """Return the name of the topic, as it was given."""
+        """Return the name of the topic as given."""
         return self.topic
 
 
 class Cache(SimpleFilter):
-    """Stores the newest messages of another filter, and passes them on.
+    """Stores the latest messages of another filter, and passes them on.
 
     Args:
-        f: The filter to remember.
+        f: The filter whose messages are stored.
         cache_size: How many messages are kept.
         allow_headerless: Whether a message without a header is kept with its time of arrival.
     """
@@ -311,10 +312,10 @@ class Cache(SimpleFilter):
 
 
 class Chain(SimpleFilter):
-    """Several filters in a row as one filter: each gets the output of the one before it.
+    """Several filters in a row as one: each gets the output of the previous one.
 
-    What comes in is given to the first, and what the last one gives is the output. A filter in a
-    chain has the methods `add` and `connectInput`, as `Cache` has. A chain without filters passes
+    Input goes to the first filter, and the output of the last one is that of the chain. A filter in
+    a chain has the methods `add` and `connectInput`, like `Cache`. A chain without filters passes
     everything on.
     """
 
@@ -361,7 +362,7 @@ class Chain(SimpleFilter):
 
 
 class Synchronizer(SimpleFilter):
-    """Calls back with one message of each input that belong together, as a matcher says."""
+    """Calls back with one message of each input, as put together by a matcher."""
 
     def __init__(self, fs: Sequence[SimpleFilter], matcher: Matcher, stamps: Stamps) -> None:
         super().__init__()
@@ -370,7 +371,7 @@ class Synchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Sequence[SimpleFilter]) -> None:  # ROS 2's name
-        """Take one message of each of these filters; there are as many as before."""
+        """Take the inputs from these filters; their number stays the same."""
         self.input_connections = [f.registerCallback(self.add, index) for index, f in enumerate(fs)]
 
     def add(self, msg: Any, index: int) -> None:
@@ -394,7 +395,7 @@ class TimeSynchronizer(Synchronizer):
 
     @property
     def dropped(self) -> int:
-        """The number of messages that were dropped before the others arrived."""
+        """The number of messages that were dropped before their counterparts arrived."""
         return self._Synchronizer__matcher.dropped
 
 
@@ -442,7 +443,7 @@ class Synchronized:
 
     @property
     def dropped(self) -> int:
-        """The number of messages that were dropped before the others arrived."""
+        """The number of messages that were dropped before their counterparts arrived."""
         return self._matcher.dropped
 
     def __aiter__(self) -> AsyncIterator[tuple[Any, ...]]:

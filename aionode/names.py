@@ -1,4 +1,4 @@
-"""The rules for names: which are valid, what they expand to, and how remapping changes them.
+"""Rules for names: validation, expansion and remapping.
 
 A name goes through four steps, which `resolve` does in this order::
 
@@ -7,7 +7,7 @@ A name goes through four steps, which `resolve` does in this order::
     remap     the first rule that matches  /scan
     validate  the result                   /scan           (the stricter rules of rmw)
 
-The texts of the errors are those of rcl and rmw, which users may know, or find on the web.
+The error messages are those of rcl and rmw, which users may know or can look up.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ CHARACTERS = (
 BRACES = "topic name must not have unmatched (unbalanced) curly braces '{}'"
 
 Problem = tuple[str, int]
-"""The rule that is broken, and the index."""
+"""The broken rule, and the index of the offending character."""
 
 
 # Validation
@@ -134,7 +134,7 @@ def expect_text(name: object, what: str) -> None:
 
 
 def topic_name_problem(name: str) -> Problem | None:
-    """Return which rule of rcl a name breaks before its expansion, or None."""
+    """Return the rule of rcl that an unexpanded name breaks, or None."""
     if not name:
         return "topic name must not be empty string", 0
     if is_digit(name[0]):
@@ -145,8 +145,8 @@ def topic_name_problem(name: str) -> Problem | None:
 
 
 def character_problem(name: str) -> Problem | None:
-    """Return the first character that is not allowed at its place."""
-    opened = -1  # index of the brace that is open
+    """Return the problem of the first character that is not allowed where it is, or None."""
+    opened = -1  # index of the open brace
     for i, char in enumerate(name):
         if char == "~":
             if i > 0:
@@ -162,7 +162,7 @@ def character_problem(name: str) -> Problem | None:
 
 
 def problem_inside(char: str, *, first: bool) -> str | None:
-    """Return what is wrong with a character between braces."""
+    """Return the problem of a character between braces, or None."""
     if char == "}":
         return None
     if first and is_digit(char):
@@ -173,17 +173,17 @@ def problem_inside(char: str, *, first: bool) -> str | None:
 
 
 def problem_outside(char: str) -> str | None:
-    """Return what is wrong with a character that is not between braces."""
+    """Return the problem of a character outside braces, or None."""
     if char == "}":
         return BRACES
     return None if is_word(char) or char in "/{" else CHARACTERS
 
 
 def token_problem(name: str) -> Problem | None:
-    """Return the first token that starts with a character that no token may start with."""
+    """Return the problem of the first token with an invalid first character, or None."""
     if name[0] == "~" and len(name) > 1 and name[1] != "/":
-        # rcl does not look at a last character: "~a" passes there and "~ab" does not. The rule is
-        # the same for both.
+        # rcl does not look at the last character, so it accepts "~a" but not "~ab". Here both are
+        # refused.
         return (
             "topic name must not have a tilde '~' that is not followed by a forward slash '/'",
             1,
@@ -196,7 +196,7 @@ def token_problem(name: str) -> Problem | None:
 def full_name_problem(
     name: str, what: str = "topic name", max_length: int = TOPIC_MAX_LENGTH
 ) -> Problem | None:
-    """Return which rule of rmw an absolute name breaks, or None; `what` is the texts' subject."""
+    """Return the rule of rmw that an absolute name breaks, or None; `what` is its subject."""
     if not name:
         return f"{what} must not be empty", 0
     if name[0] != "/":
@@ -221,7 +221,7 @@ def full_name_problem(
 
 
 def node_name_problem(name: str) -> Problem | None:
-    """Return which rule of rmw a node name breaks, or None."""
+    """Return the rule of rmw that a node name breaks, or None."""
     if not name:
         return "node name must not be empty", 0
     if match := re.search("[^A-Za-z0-9_]", name):
@@ -240,13 +240,13 @@ def node_name_problem(name: str) -> Problem | None:
 def name_error(
     name: str, problem: Problem, *, is_service: bool
 ) -> InvalidTopicNameException | InvalidServiceNameException:
-    """Return the error that says what is wrong with a topic or service name."""
+    """Return the error for an invalid topic or service name."""
     error = InvalidServiceNameException if is_service else InvalidTopicNameException
     return error(name, *problem)
 
 
 def is_digit(char: str) -> bool:
-    """Return whether `char` is an ASCII digit; str.isdigit() takes those of all scripts."""
+    """Return whether `char` is an ASCII digit; str.isdigit() accepts those of all scripts."""
     return "0" <= char <= "9"
 
 
@@ -262,7 +262,7 @@ def expand(name: str, node_name: str, namespace: str, *, is_service: bool = Fals
     """Return the absolute form of `name` as used by a node.
 
     ``~`` becomes the node's full name; ``{node}``, ``{ns}`` and ``{namespace}`` are filled in; a
-    name that is still relative is put under the node's namespace. The result may still be
+    name that is still relative is prefixed with the node's namespace. The result may still be
     invalid: check it with `validate_full_topic_name`.
 
     Raises:
@@ -288,7 +288,7 @@ def expand(name: str, node_name: str, namespace: str, *, is_service: bool = Fals
 
 
 def absolute(name: str, node_name: str, namespace: str) -> str:
-    """Return `name` under the node (``~``), under its namespace (relative) or as it is (``/``)."""
+    """Resolve `name` against the node (``~``) or its namespace (relative); keep absolute names."""
     if name.startswith("~"):
         return fully_qualified_name(namespace, node_name) + name[1:]
     if name.startswith("/"):
@@ -307,16 +307,16 @@ def logger_name(namespace: str, node_name: str) -> str:
 
 
 def split_node_name(full_name: str) -> tuple[str, str]:
-    """Return namespace and name of a node: the inverse of `fully_qualified_name`."""
+    """Return the namespace and name of a node; the inverse of `fully_qualified_name`."""
     namespace, _, node_name = full_name.rpartition("/")
     return namespace or "/", node_name
 
 
 def normalize_namespace(namespace: str | None) -> str:
-    """Return `namespace` as nodes store it: absolute, and ``/`` if there is none.
+    """Return `namespace` in normal form: absolute, and ``/`` if empty.
 
     Raises:
-        InvalidNamespaceException: It is invalid even so.
+        InvalidNamespaceException: The result is invalid.
     """
     if namespace is None or namespace == "":
         return "/"
@@ -327,36 +327,36 @@ def normalize_namespace(namespace: str | None) -> str:
 
 
 def is_plain(*names: str) -> bool:
-    """Return whether names that another process gives have characters of names and tokens only.
+    """Return whether names sent by another process consist of the characters of ROS names.
 
-    What has others is no name of ROS, and could hold escape sequences for the terminal of whoever
-    lists it.
+    Anything else is not a ROS name, and could carry escape sequences for the terminal that lists
+    it.
     """
     return all(PLAIN.fullmatch(name) for name in names)
 
 
 def is_full_name(name: str) -> bool:
-    """Return whether an absolute name, which another process gives, could be one of ROS.
+    """Return whether an absolute name sent by another process is a possible ROS name.
 
-    Its nodes announce no others, and tools use names as paths, as in ``/../../etc``.
+    ROS nodes announce no others, and tools use names as paths, as in ``/../../etc``.
     """
     return full_name_problem(name) is None
 
 
 def is_full_node_name(name: str, namespace: str, enclave: str = "/") -> bool:
-    """Return whether the name of a node, which another process gives, could be one of ROS."""
+    """Return whether a node name sent by another process is a possible ROS name."""
     return node_name_problem(name) is None and all(
         path == "/" or is_full_name(path) for path in (namespace, enclave)
     )
 
 
 def is_type_name(name: str) -> bool:
-    """Return whether a name, which another process gives, could be that of a type of ROS."""
+    """Return whether a type name sent by another process is a possible ROS name."""
     return TYPE_NAME.fullmatch(name) is not None
 
 
 def is_hidden(name: str) -> bool:
-    """Return whether tools leave `name` out unless asked: one of its tokens starts with ``_``."""
+    """Return whether tools hide `name` by default: one of its tokens starts with ``_``."""
     return name.startswith("_") or "/_" in name
 
 
@@ -410,7 +410,7 @@ class RemapRule:
     Attributes:
         kind: What the rule changes.
         match: The names that it applies to; empty for a node's name or namespace.
-        replacement: What they become.
+        replacement: The new name.
         node: Name of the only node that it applies to, or None for all.
     """
 
@@ -421,7 +421,7 @@ class RemapRule:
 
     @classmethod
     def parse(cls, text: str) -> RemapRule:
-        """Return the rule that `text` describes.
+        """Parse a remap rule.
 
         Raises:
             InvalidRemapRuleError: It is not a rule; the error says what is wrong with it.
@@ -457,7 +457,7 @@ class RemapRule:
         return self.kind is kind
 
     def new_name(self, name: str, node_name: str, namespace: str) -> str | None:
-        """Return what the absolute `name` becomes, or None if the rule does not match it."""
+        """Return the new name of an absolute `name`, or None if the rule does not match."""
         match = match_pattern(self.match, node_name, namespace).fullmatch(name)
         if match is None:
             return None
@@ -471,7 +471,7 @@ class RemapRule:
 
 @lru_cache(maxsize=1024)
 def match_pattern(match: str, node_name: str, namespace: str) -> re.Pattern[str]:
-    """Return a regular expression for the names that a rule's left side matches in one node."""
+    """Compile a rule's left side, for one node, to a regular expression."""
     if match.startswith("**"):
         start, rest = "((?:/[^/]+)*)", match[2:]
     elif match.startswith("*"):
@@ -502,7 +502,7 @@ def check_sides(text: str, match: str, new: str) -> None:
         problem = f"'{match}' cannot be matched; {names}, and a whole token may be '*' or '**'"
         raise InvalidRemapRuleError(text, problem)
     if not re.fullmatch(REPLACEMENT, new):
-        problem = f"'{new}' is no name; {names}, and a whole token may be '\\1' to '\\9'"
+        problem = f"'{new}' is not a name; {names}, and a whole token may be '\\1' to '\\9'"
         raise InvalidRemapRuleError(text, problem)
     wildcards = sum(token in {"*", "**"} for token in match.split("/"))
     highest = max((int(digit) for digit in re.findall(r"\\([1-9])", new)), default=0)
@@ -519,7 +519,7 @@ def remap(
     *,
     is_service: bool = False,
 ) -> str:
-    """Return what the first matching rule makes of the absolute `name`, or `name` itself.
+    """Apply the first matching rule to an absolute name; without one, return it unchanged.
 
     Only one rule applies: with ``/a:=/b /b:=/c``, ``/a`` becomes ``/b``. Give the node's own rules
     before those of the process.
@@ -534,16 +534,16 @@ def remap(
 
 
 def remap_node_name(rules: Iterable[RemapRule], node_name: str) -> str:
-    """Return the name that the first ``__node`` rule gives to the node, or its own.
+    """Return the node's name after the first ``__node`` rule, if any.
 
-    A rule's node scope is compared with the name as written in the code. All later rules are
-    compared with the new name.
+    This rule's node scope is compared with the name as written in the code, that of all later rules
+    with the new name.
     """
     return first_replacement(rules, RemapKind.NODE_NAME, node_name) or node_name
 
 
 def remap_namespace(rules: Iterable[RemapRule], node_name: str, namespace: str) -> str:
-    """Return the namespace that the first ``__ns`` rule gives to the node, or its own."""
+    """Return the node's namespace after the first ``__ns`` rule, if any."""
     return first_replacement(rules, RemapKind.NAMESPACE, node_name) or namespace
 
 
@@ -563,10 +563,10 @@ def resolve(
     *,
     is_service: bool = False,
 ) -> str:
-    """Return the absolute name under which a node's topic or service is known.
+    """Resolve the name of a topic or service of a node to its absolute name.
 
     Raises:
-        InvalidTopicNameException: `name`, or what it expands to, is invalid.
+        InvalidTopicNameException: `name` or its expansion is invalid.
         InvalidServiceNameException: The same for a service.
     """
     expanded = expand(name, node_name, namespace, is_service=is_service)

@@ -1,4 +1,4 @@
-"""Reading and setting the parameters of another node."""
+"""Read and set the parameters of another node."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ class AsyncParameterClient:
     async def get_parameters(self, names: Sequence[str]) -> list[Parameter]:
         """Return parameters, in the order of `names`.
 
-        The list is empty if any of them is undeclared: the service gives no other answer.
+        The list is empty if any of them is undeclared, which is all that the service says.
         """
         response = await self._get.call(GetParameters.Request(names=list(names)))
         return [
@@ -114,12 +114,12 @@ class AsyncParameterClient:
         ]
 
     async def get_parameter_types(self, names: Sequence[str]) -> list[ParameterType]:
-        """Return types, in the order of `names`; none if any of them is undeclared."""
+        """Return types, in the order of `names`; an empty list if any of them is undeclared."""
         response = await self._types.call(GetParameterTypes.Request(names=list(names)))
         return [ParameterType(kind) for kind in bytes(response.types)]
 
     async def describe_parameters(self, names: Sequence[str]) -> list[ParameterDescriptor]:
-        """Return descriptors, in the order of `names`; none if any of them is undeclared."""
+        """Return descriptors, in the order of `names`; an empty list if any is undeclared."""
         response = await self._describe.call(DescribeParameters.Request(names=list(names)))
         descriptors: list[ParameterDescriptor] = response.descriptors
         return descriptors
@@ -149,11 +149,11 @@ class AsyncParameterClient:
     async def load_parameter_file(
         self, path: str | Path, *, use_wildcard: bool = False
     ) -> list[SetParametersResult]:
-        """Set the parameters that a file has for the node, one by one.
+        """Set, one by one, the parameters that a file contains for the node.
 
         Args:
             path: A YAML file with ``ros__parameters``.
-            use_wildcard: Whether to include its section ``/**``, for all nodes.
+            use_wildcard: Whether to include its section ``/**``, which applies to all nodes.
 
         Raises:
             ParameterFileError: the file cannot be read, or has no parameters for the node.
@@ -164,6 +164,6 @@ class AsyncParameterClient:
         return results
 
     def destroy(self) -> None:
-        """Destroy the six clients; pending calls end as `Client.call` says."""
+        """Destroy the six clients; pending calls fail as described for `Client.call`."""
         for client in self._clients:
             client.destroy()

@@ -1,7 +1,7 @@
 """Convert PointCloud2 messages to numpy arrays and back, with the names of sensor_msgs_py.
 
-An array is a view of the message's own bytes where possible, so it is read-only if they are, as
-those of a received message are; copy it to change it.
+Where possible an array is a view of the message's own bytes, and read-only if they are, as in a
+received message; copy it to change it.
 """
 
 from __future__ import annotations
@@ -53,16 +53,16 @@ SUBJECT = "sensor_msgs/msg/PointCloud2"
 def dtype_from_fields(
     fields: Iterable[PointField], point_step: int | None = None, *, is_bigendian: bool = False
 ) -> np.dtype[Any]:
-    """Return the numpy type of one point.
+    """Return the numpy dtype of one point.
 
-    A field of several numbers becomes an array, and one without a name is called ``unnamed_field_``
-    and its index.
+    A field of several numbers becomes an array; one without a name is called ``unnamed_field_``
+    followed by its index.
 
     Args:
-        fields: What a point consists of.
+        fields: The fields of a point.
         point_step: The bytes from one point to the next; by default up to the end of the last
             field.
-        is_bigendian: Whether numbers have the most significant byte first.
+        is_bigendian: Whether numbers are big-endian.
 
     Raises:
         MessageError: two fields have one name, a field has an unknown type, or a point exceeds
@@ -98,7 +98,7 @@ def dtype_from_fields(
 
 
 def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
-    """Return the fields of points of a structured type, at its offsets.
+    """Return the fields that describe a structured dtype, at its offsets.
 
     Raises:
         TypeError: `dtype` is not structured, or contains anything but integers of 8 to 32 bits,
@@ -107,7 +107,7 @@ def fields_from_dtype(dtype: npt.DTypeLike) -> list[PointField]:
     dtype = np.dtype(dtype)
     if dtype.names is None:
         raise TypeError(
-            f"{dtype}: no structured type; give one such as [('x', 'f4'), ('y', 'f4'), ('z', 'f4')]"
+            f"{dtype}: not structured; use a dtype such as [('x', 'f4'), ('y', 'f4'), ('z', 'f4')]"
         )
     fields = []
     for name in dtype.names:
@@ -133,15 +133,15 @@ def read_points(
 ) -> npt.NDArray[Any]:
     """Return the points as a structured array: ``points["x"]``.
 
-    The points are copied only for `skip_nans`, for `uvs`, and to join rows with padding;
+    The points are copied only for `skip_nans` and `uvs`, and to join rows with padding;
     ``reshape_organized_cloud=True`` keeps them as rows.
 
     Args:
         cloud: The message.
         field_names: Which fields to return; by default all.
-        skip_nans: Whether to leave out points with a field that is NaN; a cloud marked as dense is
-            not searched.
-        uvs: Which points to return: their indexes, or pairs of column and row.
+        skip_nans: Whether to leave out points with a NaN field; a cloud marked as dense is not
+            searched.
+        uvs: Which points to return, as indexes or as pairs of column and row.
         reshape_organized_cloud: Whether a cloud of several rows becomes an array of two dimensions.
 
     Raises:
@@ -180,7 +180,7 @@ def rows_of(cloud: PointCloud2) -> npt.NDArray[Any]:
     if not (cloud.height and cloud.width):
         return np.empty(shape, dtype)
     row = cloud.width * cloud.point_step
-    # Many drivers leave out the step of a single row, and nothing depends on it.
+    # Many drivers do not set the step of a single row, and nothing depends on it.
     step = row if cloud.height == 1 else cloud.row_step
     if step < row:
         raise MessageError(
@@ -198,7 +198,7 @@ def rows_of(cloud: PointCloud2) -> npt.NDArray[Any]:
 
 
 def numbers_of(uvs: Iterable[Any], width: int) -> npt.NDArray[Any]:
-    """Return the indexes of points that are given as indexes, or as columns and rows."""
+    """Return the indexes of points given as indexes or as pairs of column and row."""
     chosen = np.asarray(uvs if isinstance(uvs, np.ndarray) else list(uvs))
     if chosen.ndim == 2 and chosen.shape[1] == 2:
         return np.asarray(chosen[:, 1] * width + chosen[:, 0])
@@ -225,7 +225,7 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> npt.NDArray[Any]:
-    """Return points whose fields have one type as a plain array, one column for each field.
+    """Return points whose fields share a type as a plain array with one column per field.
 
     The points are not copied if the fields are adjacent. See `read_points` for the arguments.
 
@@ -270,15 +270,15 @@ def create_cloud(
     points: Any,
     step: int | None = None,
 ) -> PointCloud2:
-    """Return a cloud of `points`.
+    """Make a cloud from `points`.
 
-    A structured array that already has the layout is not copied but referenced by the message, so
-    do not change it until the message is published, which takes a snapshot. An array that is
-    marked read-only is never copied within the process.
+    A structured array that already has the right layout is not copied but referenced by the
+    message, so do not change it before the message is published, which takes a snapshot. An array
+    that is marked read-only is never copied within the process.
 
     Args:
-        header: When the points were measured, and their frame.
-        fields: What a point consists of; None for the fields of a structured array.
+        header: The time of the measurement and the frame of the points.
+        fields: The fields of a point; None for those of a structured array.
         points: A structured array; an array whose last dimension is the fields; or tuples. With
             one more dimension they are the rows of an organized cloud.
         step: The bytes from one point to the next; by default up to the end of the last field.
@@ -318,7 +318,7 @@ def create_cloud(
 
 
 def arranged(points: Any, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
-    """Return points as an array of `dtype`: the same array if it is one already."""
+    """Convert points to an array of `dtype`; an array that already is one is returned as is."""
     names = dtype.names or ()
     if isinstance(points, np.ndarray) and points.dtype.names is not None:
         if points.dtype == dtype:
@@ -339,14 +339,14 @@ def arranged(points: Any, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
         return np.zeros(array.shape[:-1] if array.ndim > 1 else 0, dtype)
     if array.ndim < 2 or array.shape[-1] != columns:
         raise ValueError(
-            f"create_cloud: points of shape {array.shape}; the last dimension has to be "
+            f"create_cloud: points of shape {array.shape}; the last dimension must be "
             f"{columns}, one for each number of {', '.join(names)}"
         )
     return np.asarray(unstructured_to_structured(array, dtype))
 
 
 def create_cloud_xyz32(header: Header, points: Any, step: int | None = None) -> PointCloud2:
-    """Return a cloud of points with x, y and z as float32.
+    """Make a cloud of points with x, y and z as float32.
 
     A float32 array with three columns is not copied. See `create_cloud`.
     """

@@ -1,7 +1,7 @@
-"""Fixtures for tests of nodes; pytest finds them as soon as aionode is installed.
+"""Fixtures for tests of nodes; pytest finds them once aionode is installed.
 
-Two of them are async, and need pytest-asyncio, in either of its modes, or the plugin of anyio,
-which runs tests marked with ``@pytest.mark.anyio``. pytest starts without either.
+Two of them are async and need pytest-asyncio, in either mode, or anyio's plugin, which runs tests
+marked with ``@pytest.mark.anyio``. Without either, pytest starts all the same.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ UPDATE = "--update-golden-bags"
 
 @pytest.fixture
 def manual_clock() -> ManualClock:
-    """A clock that stands still until the test advances it; `aionode_context` follows it."""
+    """A clock that only the test advances; `aionode_context` follows it."""
     from aionode.testing import ManualClock  # imported by tests that use it only
 
     return ManualClock()
@@ -45,7 +45,7 @@ def manual_clock() -> ManualClock:
 
 @pytest.fixture
 def aionode_context(request: pytest.FixtureRequest) -> Context:
-    """An open context without network; its time is `manual_clock` if the test uses that fixture.
+    """An open context without network; it follows `manual_clock` if the test uses that fixture.
 
     During the test it is the default context, so nodes created without one join it too.
     """
@@ -58,19 +58,19 @@ def node_factory(request: pytest.FixtureRequest) -> Callable[..., Node]:
     """Create nodes in `aionode_context` that run until the test ends.
 
     ``node_factory("talker")`` creates a plain node and takes the arguments of `Node`;
-    ``node_factory(Talker)`` creates one of your own class, with the arguments that follow. A
-    callback that failed makes the test fail at its end.
+    ``node_factory(Talker)`` creates an instance of your class, with the arguments that follow. If a
+    callback fails, the test fails at its end.
     """
     make: Callable[..., Node] = async_fixture(request, "factory")
     return make
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option that writes the recordings of `golden_bag` anew."""
+    """Add the option that rewrites the recordings of `golden_bag`."""
     parser.addoption(
         UPDATE,
         action="store_true",
-        help="aionode: take what nodes publish now as what golden_bag expects",
+        help="aionode: record what nodes publish now as what golden_bag expects",
     )
 
 
@@ -78,10 +78,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def replay_bag(request: pytest.FixtureRequest) -> Callable[..., Replay]:
     """A function that runs nodes on a recording, as `aionode.bag.replay` does.
 
-    Use it as ``async with replay_bag("run") as run``, and ``await run.play(record=[…])`` in it:
-    `play` takes the topics.
+    Use it as ``async with replay_bag("run") as run``, and inside it ``await run.play(record=[…])``.
 
-    A relative path begins at the folder of the test's file.
+    A relative path starts at the folder of the test file.
     """
     from aionode.bag import replay  # the extra `bag` may be missing
 
@@ -93,12 +92,11 @@ def replay_bag(request: pytest.FixtureRequest) -> Callable[..., Replay]:
 
 @pytest.fixture
 def golden_bag(request: pytest.FixtureRequest) -> Callable[..., None]:
-    """A function that compares outputs with those of the time when the test was written.
+    """A function that compares outputs with those recorded when the test was written.
 
-    ``golden_bag(outputs)`` makes the test fail with the first differences to a recording: that in
-    the folder ``golden`` beside the test's file, with the name of the test. ``pytest
-    --update-golden-bags`` writes it. Options are those of `aionode.bag.compare`, and `name` for
-    another recording.
+    ``golden_bag(outputs)`` fails the test with the first differences from the recording with the
+    test's name in the folder ``golden`` beside the test file. ``pytest --update-golden-bags``
+    writes it. Options are those of `aionode.bag.compare`, and `name` for another recording.
     """
     from aionode.bag import compare  # as above
 

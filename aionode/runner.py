@@ -1,6 +1,6 @@
-"""The main program in one line: an event loop, signal handling, and an exit status.
+"""The main program in one call: an event loop, signal handling and an exit status.
 
-`_signals.py` handles the first and the second Ctrl-C.
+`_process/signals.py` handles the first and the second Ctrl-C.
 """
 
 from __future__ import annotations
@@ -32,10 +32,10 @@ Runnable = Node | Callable[[], Node] | Callable[[], Coroutine[Any, Any, None]]
 LoopFactory = Callable[[], asyncio.AbstractEventLoop]
 
 STARTED_SEC = 1.0
-"""After so long a program has imported and made most of what it keeps."""
+"""By then a program has imported and created most of what it keeps."""
 
 FROZEN_BY_PYTHON = 1000
-"""Python 3.12 itself has frozen 375 objects when a program begins; a program freezes thousands."""
+"""Python 3.12 itself freezes 375 objects at the start; a program freezes thousands."""
 
 
 def run(
@@ -50,32 +50,32 @@ def run(
     status 0. A callback in a thread (``offload=True``) cannot be cancelled; the log names it, and
     the program does not end before it has returned.
 
-    Signals within 1 s of the first count as the first, of whichever kind they are: a parent, such
-    as GNU ``timeout`` or ``ros2 launch``, forwards a signal that the process group has got already.
-    A later one ends the process within 0.2 s, with the shell's status for it: 130 after Ctrl-C, 143
-    after SIGTERM, 129 after SIGHUP. Even then the stop of each open lease and what was published
-    before are sent, also while a callback blocks the event loop; only a function in C that does not
-    return to Python delays that.
+    Further signals of any kind within 1 s of the first are ignored: a parent such as GNU
+    ``timeout`` or ``ros2 launch`` forwards a signal that the process group has already received. A
+    later one ends the process within 0.2 s, with the shell's status for it: 130 after Ctrl-C, 143
+    after SIGTERM, 129 after SIGHUP. Even then the stop of each open lease and everything published
+    before are sent, even while a callback blocks the event loop; only a C function that does not
+    return to Python delays this.
 
-    SIGHUP tells that the terminal is lost, such as that of an ssh session. It is taken only if it
-    would end the process: not if it is ignored, as under ``nohup``, or has a handler of the
-    program's own. From the first signal on, what is printed to a terminal or pipe that nobody can
-    read any more is dropped instead of raising OSError. The handlers that were there before are
-    restored at the end. SIGTSTP (Ctrl-Z) is handled only while a lease is open, also without this
-    function: the stop goes out, and 0.2 s later the process is suspended.
+    SIGHUP means that the terminal is gone, such as that of an ssh session. It is handled only if it
+    would end the process: not if it is ignored, as under ``nohup``, or if the program has its own
+    handler. From the first signal on, output to a terminal or pipe that nobody can read any more is
+    dropped instead of raising OSError. The previous handlers are restored at the end. SIGTSTP
+    (Ctrl-Z) is handled only while a lease is open, also without this function: the stop is sent,
+    and 0.2 s later the process is suspended.
 
     A second after the start it calls `freeze_objects`, unless the program has called ``gc.freeze``
-    or ``gc.disable``, and undoes that when it returns; what the program freezes meanwhile stays so.
-    The messages of other loggers are shown until it returns, unless the program has configured
+    or ``gc.disable``, and undoes that when it returns; what the program freezes itself stays
+    frozen. Messages of other loggers are shown until it returns, unless the program has configured
     `logging` itself.
 
     Args:
-        nodes: Nodes, or functions that return one, such as a class, which are called in the
-            running loop. A coroutine function is run alongside them.
+        nodes: Nodes, or callables that return one, such as a class, which are called in the running
+            loop. A coroutine function is run alongside them.
         args: The command line without the program name; ``sys.argv[1:]`` if None. Arguments between
             ``--ros-args`` and ``--`` apply to all nodes created until the function returns.
-        loop_factory: Creates the event loop; by default the one that ``AIONODE_LOOP`` names,
-            ``asyncio`` or ``uvloop``, and without it uvloop's if it is installed, else asyncio's.
+        loop_factory: Creates the event loop; by default the one named by ``AIONODE_LOOP``,
+            ``asyncio`` or ``uvloop``; without that variable, uvloop's if installed, else asyncio's.
 
     Raises:
         SystemExit: with status 1 after an error, which was printed on stderr: for one of aionode's
@@ -143,7 +143,7 @@ def set_up(args: Sequence[str]) -> Arguments:
 def refuse_created_before(
     nodes: Sequence[Runnable], arguments: Arguments, args: Sequence[str]
 ) -> None:
-    """Raise if arguments that apply to nodes come too late for one that was already created.
+    """Raise if arguments that apply to nodes come too late for an already created node.
 
     Raises:
         InvalidROSArgsError: there is such a node; the text says what to pass instead.
@@ -163,13 +163,13 @@ def refuse_created_before(
 
 
 def maker_of(node: Node) -> str:
-    """Return code that creates such a node."""
+    """Return code that would create this node."""
     kind = type(node)
     return "lambda: Node(...)" if kind is Node else kind.__name__
 
 
 def best_loop_factory() -> LoopFactory | None:
-    """Return what creates the event loop; None stands for asyncio's own.
+    """Return the factory of the event loop; None means asyncio's own.
 
     Raises:
         ConfigurationError: ``AIONODE_LOOP`` names none, or one that is not installed (a
@@ -192,7 +192,7 @@ def best_loop_factory() -> LoopFactory | None:
 
 
 class Stop:
-    """Called by the first signal: cancels the main task, now or as soon as it starts.
+    """Cancels the main task at the first signal, or as soon as it starts.
 
     Attributes:
         wanted: Whether the signal has arrived.
@@ -204,14 +204,14 @@ class Stop:
         self._task: asyncio.Task[Any] | None = None
 
     def begin(self) -> None:
-        """Take the current task as the one to cancel."""
+        """Make the current task the one to cancel."""
         self._loop = asyncio.get_running_loop()
         self._task = asyncio.current_task()
         if self.wanted:
             self._cancel()
 
     def __call__(self) -> None:
-        """Cancel the task; called by a signal handler, at any moment."""
+        """Cancel the task; a signal handler may call this at any moment."""
         self.wanted = True
         if self._loop is not None:
             with contextlib.suppress(RuntimeError):  # the loop is closed: everything has ended
@@ -245,20 +245,20 @@ def _coroutine_of(node: Runnable) -> Coroutine[Any, Any, None]:
 
 
 async def _run_node(node: Node) -> None:
-    """Run a node without a line in the log if it fails: `run` prints more."""
+    """Run a node without logging its failure, of which `run` prints more."""
     await node.run()
 
 
 def freeze_objects() -> None:
-    """Collect garbage now, and leave every object that exists now out of later collections.
+    """Collect garbage now, and exclude every existing object from later collections.
 
-    A full collection looks at every object of the process, and the event loop stands still
-    meanwhile: 30 ms for a node that has nothing of its own, more for each library and node.
-    Afterwards it looks only at what was made since. `run` calls this a second after the start; in
-    a program of your own, call it once the nodes run. It takes as long as one full collection.
+    A full collection looks at every object of the process while the event loop stands still: 30 ms
+    for an empty node, more with each library and node. Afterwards it looks only at objects created
+    since. `run` calls this a second after the start; in a program of your own, call it once the
+    nodes run. It takes as long as one full collection.
 
-    Objects that were frozen are still freed as soon as nothing refers to them. Only those that
-    refer to each other in a circle stay in memory, until ``gc.unfreeze()``.
+    Objects that were frozen are still freed as soon as nothing refers to them. Only reference
+    cycles stay in memory, until ``gc.unfreeze()``.
     """
     gc.collect()
     gc.freeze()
@@ -267,17 +267,17 @@ def freeze_objects() -> None:
 class Freeze:
     """Calls `freeze_objects` within a block, and undoes that at its end.
 
-    The process may go on afterwards. What the program itself has frozen stays so.
+    The process may continue afterwards. What the program itself has frozen stays frozen.
     """
 
     def __init__(self) -> None:
-        self._count = 0  # how many objects were frozen when this had frozen them
+        self._count = 0  # number of frozen objects after ours were frozen
 
     def __enter__(self) -> Self:
         return self
 
     def __call__(self) -> None:
-        """Freeze all objects, unless the program has frozen some or collects no garbage."""
+        """Freeze all objects, unless the program has frozen some or has disabled collection."""
         if gc.isenabled() and gc.get_freeze_count() < FROZEN_BY_PYTHON:
             freeze_objects()
             self._count = gc.get_freeze_count()
@@ -303,7 +303,7 @@ def failure_text(error: BaseException) -> str:
 
 
 def circumstances(error: AionodeError) -> list[str]:
-    """Return where `error` came from: the entity, the node, and the line of the user's program."""
+    """Return the origin of `error`: the entity, the node and the line of the user's program."""
     lines = list(getattr(error, "__notes__", ()))
     place = None
     for frame, line in traceback.walk_tb(error.__traceback__):

@@ -1,7 +1,7 @@
-"""Restarting a node when it fails, and reporting its health.
+"""Restart a node when it fails, and report its health.
 
-The terms are those of systemd: `restart` is its ``Restart=``. A node fails through an exception in
-one of its callbacks; the next node is a new one, created by the same function.
+The terms are systemd's: `restart` is its ``Restart=``. A node fails through an exception in one of
+its callbacks; its replacement is created by the same function.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ class Health:
 
     Attributes:
         ok: Whether the node is running: HTTP status 200, otherwise 503.
-        state: ``"starting"`` for the first time, ``"running"``, ``"restarting"`` (it failed, and
+        state: ``"starting"`` (for the first time), ``"running"``, ``"restarting"`` (it failed, and
             the next one starts soon) or ``"ended"``.
         node: Full name of the node; empty before the first was created.
         restarts: How often it was restarted.
         uptime_sec: How long it has been running, in seconds; 0 while it is not.
-        error: Why the last one failed, in one line; empty if none has.
+        error: Why the last node failed, in one line; empty if none has.
     """
 
     ok: bool
@@ -54,7 +54,7 @@ class Health:
 
 
 class Supervisor(Generic[NodeT]):
-    """Keeps a node running: creates a new one when it fails.
+    """Keeps a node running by creating a new one when it fails.
 
     Use it as the main program, or for the lifetime of a web application::
 
@@ -68,12 +68,12 @@ class Supervisor(Generic[NodeT]):
     The delay before a restart is `min_delay_sec`, and doubles with each failure in a row up to
     `max_delay_sec`; a node that has run for `max_delay_sec` resets it. Each failure is logged with
     its traceback. A failure of the very first start, before the node runs, is raised and not
-    retried: it is a mistake in the program, or in its arguments.
+    retried, as it is a mistake in the program or its arguments.
 
     Args:
         make_node: Creates the node, such as its class; called in the running loop for each start.
         restart: ``"on-failure"``: when a callback raised; ``"always"``: also when the node was
-            destroyed; ``"no"``: never, for `health` alone.
+            destroyed; ``"no"``: never, only to report `health`.
         min_delay_sec: The first delay, in seconds.
         max_delay_sec: The longest delay, in seconds.
         clock: The time base of the delays, such as a `ManualClock`; the machine's by default.
@@ -149,7 +149,7 @@ class Supervisor(Generic[NodeT]):
         await self.__tasks.__aexit__(None, None, None)
 
     async def run(self) -> None:
-        """Run the node until it has ended for good; with ``restart="always"`` until cancelled.
+        """Run the node until no restart follows; with ``restart="always"``, until cancelled.
 
         Raises:
             Exception: the node could not be started for the first time, or it failed and
@@ -165,7 +165,7 @@ class Supervisor(Generic[NodeT]):
 
     @property
     def node(self) -> NodeT:
-        """The node running now. Read it each time, as it is another one after a restart.
+        """The node that is running now; read it each time, as it changes with a restart.
 
         Raises:
             NodeNotRunningError: none is running, as it failed or was destroyed (a RuntimeError).
@@ -182,7 +182,7 @@ class Supervisor(Generic[NodeT]):
         return f"it failed ({self.__error})" if self.__error else "it was destroyed"
 
     def health(self) -> Health:
-        """Return the health of the node now."""
+        """Return the current health of the node."""
         running = self.__state == "running"
         return Health(
             ok=running,
@@ -210,7 +210,7 @@ class Supervisor(Generic[NodeT]):
             self.__state = "ended"
 
     async def __run_one(self, started: asyncio.Future[None]) -> NodeEnd:
-        """Run one node until it ends; an exception is returned as its end."""
+        """Run one node until it ends; an exception is returned as the reason."""
         try:
             node = self.__make_node()
             self.__name = node.get_fully_qualified_name()
@@ -229,13 +229,13 @@ class Supervisor(Generic[NodeT]):
         return NodeEnd("destroyed")
 
     def __wants_another(self, end: NodeEnd) -> bool:
-        # A cancellation during the end of a node that failed is hidden by the node's exceptions.
+        # A cancellation during the shutdown of a failed node is hidden by the node's exceptions.
         if self.__work is not None and self.__work.cancelling():
             return False
         return wants_another(self.__restart, failed=end.reason == "failed")
 
     async def __pause(self, end: NodeEnd) -> None:
-        """Wait before the next start, longer after each failure in a row."""
+        """Wait before the next start, longer with each failure in a row."""
         was_running, self.__state = self.__state == "running", "restarting"
         ran_ns = self.__clock.now_ns() - self.__since_ns if was_running else 0
         delay_sec = self.__backoff.delay_after(ran_ns / S_TO_NS)

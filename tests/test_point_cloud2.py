@@ -235,7 +235,7 @@ def test_mistakes_say_what_fits() -> None:
         read_points(broken(), skip_nans=True, reshape_organized_cloud=True)
     with pytest.raises(TypeError, match="needs a structured array"):
         create_cloud(HEADER, None, XYZ)
-    with pytest.raises(ValueError, match=r"shape \(4, 2\).*has to be 3"):
+    with pytest.raises(ValueError, match=r"shape \(4, 2\).*must be 3"):
         create_cloud_xyz32(HEADER, XYZ[:, :2])
     with pytest.raises(ValueError, match="the points have no 'x'; they have ring"):
         create_cloud(HEADER, [field("x", 0)], np.zeros(1, LIDAR)[["ring"]])
