@@ -1,4 +1,4 @@
-"""`Node`, which a program creates or derives from."""
+"""The class `Node`, which programs instantiate or subclass."""
 
 from aionode.node._node import Node, direct_subscription
 

@@ -1,7 +1,7 @@
-"""The built-in services of a node: its log, parameters and types.
+"""A node's built-in topics and services: log, parameters and types.
 
-Each is made of the node's public methods, as a program would make it, apart from the hand-over of
-log messages to the node's event loop.
+Each is built on the node's public methods, as a program would do it, except for handing log
+messages over to the node's event loop.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def publish_log(node: NodeMethods, profile: QoSProfile | int) -> Callable[[], No
     publisher = node.create_publisher(Log, "/rosout", profile)
 
     def publish(event: LogEvent) -> None:
-        # Logging must not fail because a reader of the log is full.
+        # Logging must not fail because the queue of a log reader is full.
         if not publisher.destroyed:
             with contextlib.suppress(QueueFullError):
                 publisher.publish(log_message(event, node.get_clock().now()))
@@ -57,7 +57,7 @@ def publish_log(node: NodeMethods, profile: QoSProfile | int) -> Callable[[], No
 
 
 def serve_logger_levels(node: NodeMethods) -> None:
-    """Serve the reading and setting of log levels in this process."""
+    """Let other nodes get and set the log levels of this process."""
     answers = LevelAnswers()
     node.create_service(GetLoggerLevels, "~/get_logger_levels", answers.get_levels)
     node.create_service(SetLoggerLevels, "~/set_logger_levels", answers.set_levels)
@@ -67,7 +67,7 @@ def serve_logger_levels(node: NodeMethods) -> None:
 
 
 def publish_parameter_events(node: NodeMethods) -> Callable[[ParameterEvent], None]:
-    """Return a function that publishes parameter changes on ``/parameter_events``."""
+    """Create a function that publishes parameter changes on ``/parameter_events``."""
     publisher = node.create_publisher(
         ParameterEvent, "/parameter_events", qos.qos_profile_parameter_events
     )
@@ -81,7 +81,7 @@ def publish_parameter_events(node: NodeMethods) -> Callable[[ParameterEvent], No
 
 
 def serve_parameters(node: NodeMethods, store: ParameterStore) -> None:
-    """Serve the reading and setting of the node's parameters."""
+    """Let other nodes get and set the node's parameters."""
     for service in parameter_services(store):
         node.create_service(
             service.srv_type,
@@ -95,7 +95,7 @@ def serve_parameters(node: NodeMethods, store: ParameterStore) -> None:
 
 
 def serve_type_descriptions(node: NodeMethods) -> None:
-    """Serve the descriptions of the types that the node uses."""
+    """Let other nodes get the descriptions of the types that the node uses."""
     if node.context.ros_distro == "humble":
         return  # Humble has neither the service nor its type
     name = "start_type_description_service"
@@ -108,7 +108,7 @@ def serve_type_descriptions(node: NodeMethods) -> None:
     def describe(
         request: GetTypeDescription.Request, response: GetTypeDescription.Response
     ) -> GetTypeDescription.Response:
-        from aionode.engine.type_descriptions import describe_type, type_of  # rarely asked for
+        from aionode.engine.type_descriptions import describe_type, type_of  # rarely needed
 
         entities = (*node.publishers, *node.subscriptions, *node.services, *node.clients)
         answer: GetTypeDescription.Response = describe_type(

@@ -1,12 +1,12 @@
-"""`Node`, which a program creates or derives from.
+"""The class `Node`, which programs instantiate or subclass.
 
-Where its parts decide:
+Where its parts live:
 
 - publishers, subscriptions, services, clients, timers, actions: each class is in `endpoints/`
-- the lifetime, and all that a node owns: `NodeCore` in `endpoints/core/node_core.py`; the end in
-  stages: `endpoints/core/shutdown.py`
-- parameters: a change is refused in `parameter/_store.py`
-- questions about the graph: `engine/graph_queries.py`
+- lifetime and owned entities: `NodeCore` in `endpoints/core/node_core.py`; the staged shutdown:
+  `endpoints/core/shutdown.py`
+- parameters, and the checks of their changes: `parameter/_store.py`
+- graph queries: `engine/graph_queries.py`
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ ConstructorT = TypeVar("ConstructorT", bound="Callable[..., None]")
 
 
 def in_context_thread(constructor: ConstructorT) -> ConstructorT:
-    """Run the constructor of `Node` in the thread of its context's loop, if that is open."""
+    """Run the constructor of `Node` in the thread of its context's loop, if the context is open."""
 
     @wraps(constructor)
     def construct(self: Node, *args: Any, **options: Any) -> None:
@@ -94,10 +94,10 @@ def in_context_thread(constructor: ConstructorT) -> ConstructorT:
 
 
 def destroying_on_error(constructor: ConstructorT) -> ConstructorT:
-    """Return a constructor that destroys the node if it raises.
+    """Wrap a constructor so that it destroys the node if it raises.
 
-    Otherwise a node that the program never got would stay in its context, and the next one that a
-    supervisor makes would join it there.
+    Otherwise a node that the program never received would stay in its context, next to the one that
+    a supervisor creates in its place.
     """
 
     @wraps(constructor)
@@ -106,11 +106,11 @@ def destroying_on_error(constructor: ConstructorT) -> ConstructorT:
         try:
             constructor(self, *args, **options)
         except BaseException:
-            if is_named(self):  # else its name was rejected: there is nothing to destroy
+            if is_named(self):  # otherwise its name was rejected, and there is nothing to destroy
                 self.destroy_node()
             raise
         finally:
-            if type(self).__init__ is construct:  # else the one of a subclass goes on
+            if type(self).__init__ is construct:  # otherwise a subclass's constructor continues
                 OWNER.set(owner)
 
     return construct  # type: ignore[return-value]  # it has the same signature
@@ -122,31 +122,31 @@ class Node(ParameterMethods, GraphQueries):
     A node and its entities can be created at any time, with or without a running event loop, and in
     any thread: outside the thread of the context's event loop the call blocks until the loop has
     created them. Their callbacks are called while the node runs: inside ``async with node:``, or
-    during ``await node.run()``. A node runs once; after `destroy_node` every use raises
+    during ``await node.run()``. A node runs once; after `destroy_node`, any use raises
     EntityDestroyedError.
 
     An exception in the callback of a subscription or timer ends the node, unless the entity's
     `on_error` says otherwise: all its callbacks are cancelled, and the exception comes out of
     ``async with`` or `run` in an ExceptionGroup, as from an `asyncio.TaskGroup`. Services and
-    action servers report it to the caller, log it, and carry on. An exception from the body of
-    ``async with`` itself propagates unchanged.
+    action servers report the exception to the caller, log it, and carry on. An exception from the
+    body of ``async with`` itself propagates unchanged.
 
     Args:
         node_name: Letters, digits and underscores, not beginning with a digit.
         namespace: Prefix of the node's relative names; the root by default.
         context: The context to join; `Context.default()` by default.
-        cli_args: Arguments for this node alone, as on a command line.
-        use_global_arguments: Whether the arguments given to `aionode.run` apply to it too.
+        cli_args: Arguments for this node only, as on a command line.
+        use_global_arguments: Whether the arguments given to `aionode.run` apply to this node too.
         enable_rosout: Whether its log is also published on ``/rosout``.
-        rosout_qos_profile: QoS of that publisher.
+        rosout_qos_profile: QoS of the ``/rosout`` publisher.
         start_parameter_services: Whether other nodes can read and set its parameters.
         parameter_overrides: Values that take precedence over those given to `declare_parameter`.
         allow_undeclared_parameters: Whether parameters can be set without being declared.
         automatically_declare_parameters_from_overrides: Whether to declare a parameter for each
             override.
         enable_logger_service: Whether other nodes can read and set its log levels.
-        callback_budget_ms: How long, in milliseconds, a callback may block the event loop before
-            that is reported.
+        callback_budget_ms: How long, in milliseconds, a callback may block the event loop before it
+            is reported.
 
     Raises:
         InvalidNodeNameException: `node_name` is invalid (a ValueError).
@@ -210,7 +210,7 @@ class Node(ParameterMethods, GraphQueries):
         core.constructed = True
 
     def __init_subclass__(cls, **options: Any) -> None:
-        """Remove a node whose constructor raises from its context."""
+        """Have the constructor of each subclass remove the node from its context if it raises."""
         super().__init_subclass__(**options)
         if "__init__" in vars(cls):
             cls.__init__ = destroying_on_error(cls.__init__)  # type: ignore[method-assign]
@@ -223,7 +223,7 @@ class Node(ParameterMethods, GraphQueries):
     # Lifetime
 
     async def __aenter__(self) -> Self:
-        """Start the node: open its context and begin to call callbacks.
+        """Start the node: open its context and start calling callbacks.
 
         Raises:
             RuntimeError: the node is already running, or was destroyed.
@@ -251,8 +251,8 @@ class Node(ParameterMethods, GraphQueries):
     async def run(self) -> None:
         """Run until `destroy_node` is called, which any callback may do.
 
-        Cancelling destroys the node. In a task of its own, ``asyncio.create_task(node.run())``, it
-        also logs one ERROR if the node fails, as nobody may await that task.
+        Cancelling destroys the node. When run in its own task, ``asyncio.create_task(node.run())``,
+        it also logs one ERROR if the node fails, since nobody may ever await that task.
 
         Raises:
             ExceptionGroup: the exceptions of callbacks.
@@ -278,11 +278,11 @@ class Node(ParameterMethods, GraphQueries):
 
         A node has ended when its callbacks have ended and it has released its context: after
         ``async with`` or `run`, or at once if it was destroyed without ever running. Any number of
-        tasks may wait, and later calls return the same result at once. The node's own exception is
-        returned, never raised. Cancelling has no effect on the node.
+        tasks may wait, and later calls return the same result immediately. The node's own exception
+        is returned, never raised. Cancelling has no effect on the node.
 
         Raises:
-            RuntimeError: it is awaited by the task that runs the node, which would wait for itself.
+            RuntimeError: the task that runs the node awaits it, and would wait for itself.
         """
         return await core_of(self).record.wait()
 
@@ -293,7 +293,7 @@ class Node(ParameterMethods, GraphQueries):
 
     @property
     def is_running(self) -> bool:
-        """Whether the node calls callbacks: `run` or ``async with`` has begun and not ended."""
+        """Whether the node calls callbacks: `run` or ``async with`` is in progress."""
         return core_of(self).running
 
     def destroy_node(self) -> None:
@@ -302,12 +302,12 @@ class Node(ParameterMethods, GraphQueries):
         Subscriptions, services, timers and action servers are destroyed at once, and their
         callbacks cancelled. Publishers, clients and the clock keep working until these callbacks
         have ended, so that a callback can stop a robot in ``finally``; then they are destroyed too,
-        and the node leaves the graph. For a node that is not running, all of this has happened when
-        the call returns.
+        and the node leaves the graph. If the node is not running, all of this is done when the call
+        returns.
 
-        `run` and ``async with`` wait for it, up to 5 s for callbacks and 1 s for action servers to
-        confirm the cancelling of goals, and send what was published. The log names callbacks that
-        take long.
+        `run` and ``async with`` wait for it: up to 5 s for callbacks, 1 s for action servers to
+        confirm that goals are canceled, and until published messages are sent. The log names
+        callbacks that take long.
 
         It may be called in any thread. Outside the thread of the node's event loop it returns
         before the loop has done the work.
@@ -419,14 +419,15 @@ class Node(ParameterMethods, GraphQueries):
         event_callbacks: PublisherEventCallbacks | None = None,
         qos_overriding_options: QoSOverridingOptions | None = None,
     ) -> Publisher[MsgT]:
-        """Return a publisher of `msg_type`.
+        """Create a publisher of `msg_type`.
 
         Args:
             msg_type: A message class.
             topic: Name of the topic; relative names are prefixed with the node's namespace.
             qos_profile: A profile, or a depth: the number of messages to keep.
-            event_callbacks: Called with its events; without them, see `Publisher.events`.
-            qos_overriding_options: Which policies parameters may override.
+            event_callbacks: Called with the publisher's events; otherwise read them from
+                `Publisher.events`.
+            qos_overriding_options: The policies that parameters may override.
 
         Raises:
             TypeError: `msg_type` is not a message class, or another argument has the wrong type.
@@ -509,13 +510,13 @@ class Node(ParameterMethods, GraphQueries):
         silence_sec: float = SILENCE_SEC,
         clock: Clock | None = None,
     ) -> Subscription[Any]:
-        """Return a subscription to `topic`.
+        """Create a subscription to `topic`.
 
         Args:
             msg_type: A message class.
             topic: Name of the topic; relative names are prefixed with the node's namespace.
-            callback: Called with each message, or with message and `MessageInfo`; sync or async.
-                Without one, iterate over the subscription with ``async for``.
+            callback: Called with each message, or with the message and its `MessageInfo`; sync or
+                async. Without one, iterate over the subscription with ``async for``.
             qos_profile: A profile, or a depth: the number of unread messages to keep.
             concurrent: How many calls of an async callback may run at once: one if False, any
                 number if True, or a number.
@@ -524,23 +525,24 @@ class Node(ParameterMethods, GraphQueries):
                 ``"log"`` logs and counts it, a function is called with (exception,
                 CallbackContext).
             offload: Whether to run a sync callback in a thread.
-            event_callbacks: Called with its events; without them, see `Subscription.events`.
-            qos_overriding_options: Which policies parameters may override.
-            content_filter_options: Which messages to deliver; see `set_content_filter`.
+            event_callbacks: Called with the subscription's events; otherwise read them from
+                `Subscription.events`.
+            qos_overriding_options: The policies that parameters may override.
+            content_filter_options: Selects the messages to deliver; see `set_content_filter`.
             on_silence: Called without arguments when the topic falls silent after a message: none
-                has arrived for `silence_sec`, or nobody is left who has published. Sync or async;
-                its exceptions are those of the callback. Before that, what is queued is dropped,
-                and calls of the callback that have not ended are cancelled, or waited for in a
-                thread. It is called again only after a message that is published later; earlier
+                has arrived for `silence_sec`, or all who published are gone. Sync or async; its
+                exceptions are handled like those of the callback. Beforehand, queued messages are
+                dropped, and running calls of the callback are cancelled, or waited for if in a
+                thread. It is called again only after a message that was published later; earlier
                 ones are dropped, however late they arrive.
-            silence_sec: The longest silence, in seconds. The time while the host is suspended
-                counts as well.
-            clock: What the silence is measured with; the steady clock by default. With simulated
-                time, a clock that nobody has set for `silence_sec` of the steady clock is silent.
+            silence_sec: The longest silence, in seconds. Time while the host is suspended counts as
+                well.
+            clock: The clock that measures the silence; the steady clock by default. A simulated
+                clock counts as silent if nobody has set it for `silence_sec` of the steady clock.
 
         Raises:
             TypeError: an argument has the wrong type, a callback takes other arguments, or
-                `on_silence` is given without a callback, or its settings without it.
+                `on_silence` is given without a callback, or its settings without `on_silence`.
             ValueError: `concurrent`, `on_error`, `qos_profile` or `silence_sec` is invalid.
             ContentFilterError: the filter is malformed, or does not fit the type (a ValueError).
             InvalidTopicNameException: `topic` is invalid (a ValueError).
@@ -588,13 +590,13 @@ class Node(ParameterMethods, GraphQueries):
         on_error: OnError = "log",
         offload: bool = False,
     ) -> Service[RequestT, ResponseT]:
-        """Return a service server of `srv_name`.
+        """Create a server of the service `srv_name`.
 
         Args:
             srv_type: A service class.
             srv_name: Name of the service; relative names are prefixed with the node's namespace.
             callback: Called with (request, response), or with (request); returns the response; sync
-                or async. The client gets an exception it raises as a `ServiceError`.
+                or async. An exception that it raises reaches the client as a `ServiceError`.
             qos_profile: A profile, or a depth.
             concurrent: How many requests an async callback may answer at once: one if False, any
                 number if True, or a number.
@@ -636,7 +638,7 @@ class Node(ParameterMethods, GraphQueries):
         *,
         qos_profile: QoSProfile | int = qos.qos_profile_services_default,
     ) -> Client[RequestT, ResponseT]:
-        """Return a client of `srv_name`; await its `call`.
+        """Create a client of `srv_name`; await its `call`.
 
         Args:
             srv_type: A service class.
@@ -675,7 +677,7 @@ class Node(ParameterMethods, GraphQueries):
         on_error: OnError = "raise",
         offload: bool = False,
     ) -> Timer:
-        """Return a timer that calls `callback` every `timer_period_sec` seconds.
+        """Create a timer that calls `callback` every `timer_period_sec` seconds.
 
         The first call is one period from now. A late call does not delay later ones, missed calls
         are skipped, and calls never overlap.
@@ -684,8 +686,8 @@ class Node(ParameterMethods, GraphQueries):
             timer_period_sec: The period in seconds; 0 calls as often as the event loop allows.
             callback: Called without arguments, or with a `TimerInfo`; sync or async.
             clock: The clock to follow; the node's clock by default. A callback group, rclpy's third
-                argument, is accepted here with a warning, and has no effect.
-            autostart: Whether it starts at once; otherwise `reset` starts it.
+                argument, is accepted here with a warning and has no effect.
+            autostart: Whether to start at once; otherwise `reset` starts it.
             on_error: What happens on an exception in the callback: ``"raise"`` ends the node,
                 ``"log"`` logs and counts it, a function is called with (exception,
                 CallbackContext).
@@ -708,7 +710,7 @@ class Node(ParameterMethods, GraphQueries):
 
     @in_loop_thread
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Return a rate, for ``await rate.sleep()`` or ``async for _ in rate``.
+        """Create a rate, for ``await rate.sleep()`` or ``async for _ in rate``.
 
         Args:
             frequency: Ticks per second.
@@ -769,7 +771,7 @@ class Node(ParameterMethods, GraphQueries):
         on_client_lost: Literal["cancel", "continue"] | None = None,
         client_lost_sec: float = 3.0,
     ) -> ActionServer[GoalT, ResultT, FeedbackT]:
-        """Return a server that executes goals; see `aionode.ActionServer` for all arguments."""
+        """Create an action server; see `aionode.ActionServer` for all arguments."""
         from aionode.action import ActionServer  # nodes without actions start faster
 
         return ActionServer(
@@ -792,30 +794,30 @@ class Node(ParameterMethods, GraphQueries):
     def create_action_client(
         self, action_type: ActionClass[GoalT, ResultT, FeedbackT], action_name: str
     ) -> ActionClient[GoalT, ResultT, FeedbackT]:
-        """Return a client that sends goals; see `aionode.ActionClient`."""
+        """Create an action client; see `aionode.ActionClient`."""
         from aionode.action import ActionClient  # nodes without actions start faster
 
         return ActionClient(self, action_type, action_name)
 
     async def find_type(self, name: str, *, endpoints: Sequence[EndpointInfo] | None = None) -> Any:
-        """Return the message, service or action class of a type that is known by its name.
+        """Return the message, service or action class of a type, given its name.
 
-        That is the class of this program or of aionode. If neither has it, or the nodes that use
-        the type have another definition of it, the class is made from the description that one of
-        these nodes sends: five nodes are asked at most, each for at most 2 s. Such a class is
-        accepted only if it has the type hash that the graph shows. Cancelling is safe. The result
-        is `Any` to type checkers::
+        That is the program's or aionode's own class. If neither has it, or the nodes that use the
+        type define it differently, the class is made from the description sent by one of these
+        nodes: at most five are asked, each for at most 2 s. Such a class is accepted only if its
+        type hash is the one in the graph. Cancelling is safe. The result is `Any` to type
+        checkers::
 
             message = await node.find_type("my_robot_msgs/msg/Words")
             node.create_subscription(message, "/words", print)
 
         Args:
             name: Its ROS name.
-            endpoints: Ask only the nodes of these endpoints; by default of all that use the type.
+            endpoints: Ask only the nodes of these endpoints; by default, of all that use the type.
 
         Raises:
-            InterfaceNotFoundError: the type is not known here, and no node describes it within the
-                limits of a description; the text says what was wrong (a LookupError).
+            InterfaceNotFoundError: the type is unknown here, and no node describes it within the
+                limits of a description; the text says what went wrong (a LookupError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
         """
         from aionode.node._type_lookup import find_type  # most programs know their types
@@ -843,10 +845,10 @@ class Node(ParameterMethods, GraphQueries):
             True if the node exists, False if `timeout` has passed.
 
         Raises:
-            EntityDestroyedError: this node has ended, before or during the wait (a RuntimeError);
-                its ``__cause__`` is the error that this node failed with, if it did.
-            CancelledError: this node has ended, and one of its own tasks waits: a callback, or the
-                body of ``async with node``.
+            EntityDestroyedError: this node ended before or during the wait (a RuntimeError); its
+                ``__cause__`` is the error that the node failed with, if any.
+            CancelledError: this node ended while one of its own tasks was waiting: a callback, or
+                the body of ``async with node``.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
         own = self.get_fully_qualified_name()
@@ -885,7 +887,7 @@ class Node(ParameterMethods, GraphQueries):
     # Actions
 
     def get_action_names_and_types(self) -> NamesAndTypes:
-        """Return every action, with its types."""
+        """Return all actions, with their types."""
         return actions_among(self.get_topic_names_and_types())
 
     def get_action_server_names_and_types_by_node(
@@ -909,14 +911,14 @@ class Node(ParameterMethods, GraphQueries):
         return actions_among(self.get_subscriber_names_and_types_by_node(node_name, node_namespace))
 
 
-# What the methods of `Node` are made of
+# Helpers of the methods above
 
 
 def tell_failure(core: NodeCore, error: Exception) -> None:
-    """Log why a node failed, if a task runs nothing but `run`.
+    """Log why a node failed, if its task runs nothing but `run`.
 
-    Such a task may be awaited late or never, and asyncio tells of its exception only when it is
-    collected.
+    Such a task may be awaited late or never, and asyncio reports its exception only when the task
+    is garbage-collected.
     """
     task = asyncio.current_task()
     coroutine = None if task is None else task.get_coro()
@@ -935,9 +937,9 @@ def endpoint_setup(
     qos_profile: QoSProfile | int,
     overriding: QoSOverridingOptions | None = None,
 ) -> EndpointSetup:
-    """Return what a new endpoint of a node is made with; `NodeCore.add` puts it into the graph."""
+    """Return the arguments for a new endpoint of a node; `NodeCore.add` puts it into the graph."""
     core = core_of(node)
-    if core.constructed:  # the built-in services are rarely called, and start without it
+    if core.constructed:  # the built-in services are rarely called and do not need it to start
         load_arrays(ros_type)
     full_name = core.resolve(name, is_service=kind in SERVICE_KINDS)
     profile = qos.as_profile(qos_profile)
@@ -961,18 +963,18 @@ def endpoint_setup(
 def direct_subscription(
     node: Node, msg_type: type[Any], topic: str, take: Take, qos_profile: QoSProfile
 ) -> Subscription[bytes]:
-    """Return a subscription that hands CDR bytes to `take` within the event that brings them.
+    """Create a subscription that passes CDR bytes to `take` in the loop event that brings them.
 
-    Messages come from now on, whether the node runs or not: those that transient local publishers
-    have kept may come before this returns.
+    Messages arrive from now on, whether the node is running or not: those kept by transient local
+    publishers may arrive before this returns.
 
     Args:
         node: The node that subscribes.
         msg_type: A message class.
         topic: Name of the topic.
-        take: Called with the bytes, or a list of their parts if they are many, the number, and the
-            times of publishing and arrival; see `Take`. It never waits and never raises: it may be
-            called within the `publish` of a node.
+        take: Called with the bytes (a list of parts if there are many), the sequence number, and
+            the times of publishing and arrival; see `Take`. It must not block or raise, as it may
+            be called inside the `publish` of a node.
         qos_profile: A profile.
 
     Raises:
@@ -996,7 +998,7 @@ def direct_subscription(
 
 
 def add_subscription(core: NodeCore, subscription: Subscription[T]) -> Subscription[T]:
-    """Announce a subscription to the transports, and have its node own it."""
+    """Announce a subscription to the transports, and add it to its node."""
     subscription._add_registrations(
         core.context._register(
             lambda transport: transport.create_reader(
@@ -1017,7 +1019,7 @@ def add_with_events(core: NodeCore, endpoint: TopicT) -> TopicT:
 
 
 def clock_for_timer(core: NodeCore, given: object) -> Clock:
-    """Return the clock that a timer follows, from the third argument of `create_timer`."""
+    """Return the clock of a timer, given the third argument of `create_timer`."""
     if isinstance(given, Clock):
         return given
     if given is None:
@@ -1040,16 +1042,16 @@ def clock_for_timer(core: NodeCore, given: object) -> Clock:
 
 
 def topic_endpoints(node: Node, kind: EndpointKind, topic_name: str) -> list[TopicEndpointInfo]:
-    """Return the endpoints of a kind that a topic has, by a name as this node knows it."""
+    """Return the endpoints of a kind on a topic, whose name is resolved as in this node."""
     name = node.resolve_topic_name(topic_name)
     return [topic_endpoint_info(found) for found in node.graph.endpoints(kind, name=name)]
 
 
 def load_arrays(ros_type: Any) -> None:
-    """Import numpy if a type has fields that are arrays, so that no callback waits for the import.
+    """Import numpy if a type has array fields, so that no callback has to wait for the import.
 
-    The built-in services have such fields too, but are rarely called: a node that uses no others
-    starts without it.
+    The built-in services have such fields too but are rarely called, so a node with no other such
+    types starts without it.
     """
     halves = (ros_type,) if issubclass(ros_type, Message) else (ros_type.Request, ros_type.Response)
     if any(holds_arrays(half) for half in halves):

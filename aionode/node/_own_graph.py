@@ -1,4 +1,4 @@
-"""The graph as one node sees it: names are its own."""
+"""Graph queries of one node, with names resolved as in that node."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["OwnGraph"]
 
 
 class OwnGraph:
-    """Answers from the graph of a node's context, in the thread that asks."""
+    """Answers queries from the graph of a node's context, in the caller's thread."""
 
     def __init__(self, core: NodeCore) -> None:
         self._core = core
@@ -25,16 +25,16 @@ class OwnGraph:
         self.nodes = self._graph.nodes
 
     def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
-        """Return the names that endpoints of these kinds have, with their types."""
+        """Return the names of all endpoints of these kinds, with their types."""
         return self._graph.names_and_types(*kinds)
 
     def names_and_types_of(
         self, kind: EndpointKind, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        """Return the names that the endpoints of a kind have in a node, with their types."""
+        """Return the names of a node's endpoints of a kind, with their types."""
         full_name = names.fully_qualified_name(node_namespace, node_name)
         return names_and_types_of(self._graph, kind, full_name)
 
     def count(self, kind: EndpointKind, name: str) -> int:
-        """Return how many endpoints of a kind have a name."""
+        """Count the endpoints of a kind with this name."""
         return self._graph.count(kind, self._core.resolve(name, is_service=kind in SERVICE_KINDS))

@@ -1,4 +1,4 @@
-"""Simulated time: what a node's clock follows while `use_sim_time` is true."""
+"""Simulated time, which a node's clock follows while `use_sim_time` is true."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ CLOCK_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class WatchedClock(Entity):
-    """Has the log say it if no time comes while the node runs."""
+    """Logs a warning if no time arrives while the node is running."""
 
     def __init__(self, watch: ClockWatch) -> None:
         super().__init__("watch of /clock", EndStage.LAST)
@@ -73,7 +73,7 @@ class TimeSource:
             self._subscription = self._node.create_subscription(
                 ClockMsg, "/clock", self._on_tick, CLOCK_QOS
             )
-            # The subscription outlives the callbacks: their cleanup may sleep.
+            # The subscription outlives the callbacks, whose cleanup may sleep.
             core_of(self._node).shutdown.postpone(self._subscription, EndStage.GOALS)
             context = self._node.context
             watch = ClockWatch(

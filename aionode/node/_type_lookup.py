@@ -1,7 +1,8 @@
-"""The class of a type that is known by its name: of this program, or as the nodes describe it.
+"""Find the class of a type by its name: the program's own, or one described by other nodes.
 
 A node with ``~/get_type_description`` describes its types. A class made from a description is
-accepted if it has the type hash that the graph shows; behind a bridge, it may show none.
+accepted only if its type hash is the one in the graph, which may have none for endpoints behind a
+bridge.
 """
 
 from __future__ import annotations
@@ -27,10 +28,10 @@ ANSWER_S: Final = 2.0
 """Timeout for one description, in seconds of real time; a node answers within milliseconds."""
 
 MOST_ASKED: Final = 5
-"""Most nodes that are asked for one type: the waits for silent ones must not add up."""
+"""How many nodes are asked about one type at most, as waits for silent ones add up."""
 
 ACTION_PARTS: Final = ("SendGoal", "GetResult", "FeedbackMessage")
-"""The types by which an action is known in the graph, as suffixes of its name."""
+"""The types that an action has in the graph, as suffixes of its name."""
 
 
 async def find_type(node: NodeMethods, name: str, endpoints: Sequence[EndpointInfo] | None) -> Any:
@@ -56,7 +57,7 @@ async def find_type(node: NodeMethods, name: str, endpoints: Sequence[EndpointIn
 
 
 def users_of(graph: Graph, name: str) -> list[EndpointInfo]:
-    """Return the endpoints that use a type, or the parts of an action of this name."""
+    """Return the endpoints that use a type, or the parts of an action, of this name."""
     names = {name, *(f"{name}_{part}" for part in ACTION_PARTS)}
     return [endpoint for endpoint in graph.endpoints() if endpoint.type_name in names]
 
@@ -64,7 +65,7 @@ def users_of(graph: Graph, name: str) -> list[EndpointInfo]:
 def problem_of(
     known: Any, users: Iterable[EndpointInfo], hashes: set[str], problems: list[str]
 ) -> str:
-    """Return why no class was found."""
+    """Return the reason why no class was found."""
     what = "it is not known here"
     if known is not None:
         what = (
@@ -80,13 +81,13 @@ def problem_of(
 async def described(
     node: NodeMethods, name: str, users: list[EndpointInfo], problems: list[str]
 ) -> Any | None:
-    """Return the class that one of the nodes describes; None if none does.
+    """Return the class described by one of the nodes; None if none describes it.
 
     Args:
         node: The node that asks.
         name: The type.
         users: Endpoints of that type, or of the parts of that action.
-        problems: Takes the reasons why a description was not accepted.
+        problems: The reasons why descriptions were not accepted are appended here.
     """
     by_node: dict[str, dict[str, EndpointInfo]] = {}
     for user in users:
@@ -103,10 +104,10 @@ async def described(
 
 
 async def described_by(node: NodeMethods, name: str, users: dict[str, EndpointInfo]) -> Any | None:
-    """Return the class that one node describes, which has endpoints of these types.
+    """Return the class described by one node that has endpoints of these types.
 
     Raises:
-        TypeDescriptionError: what it describes is invalid, or is not what the graph shows.
+        TypeDescriptionError: the description is invalid, or does not match the graph.
     """
     if name in users:
         description = await description_of(node, users[name])
@@ -126,7 +127,7 @@ async def described_by(node: NodeMethods, name: str, users: dict[str, EndpointIn
 
 
 def with_hash(message_type: Any, user: EndpointInfo) -> Any:
-    """Return a class if it has the type hash of an endpoint.
+    """Return a class after checking that it has the type hash of an endpoint.
 
     Raises:
         TypeDescriptionError: it has another one.
@@ -142,7 +143,7 @@ def with_hash(message_type: Any, user: EndpointInfo) -> Any:
 
 async def description_of(node: NodeMethods, user: EndpointInfo) -> Any | None:
     """Return the description of an endpoint's type; None if its node does not describe it."""
-    # Imported on demand: most programs know their types.
+    # Imported on demand, as most programs know their types.
     from aionode.interfaces.type_description_interfaces.srv import GetTypeDescription
 
     service = f"{user.node.fully_qualified_name}/get_type_description"
