@@ -1,4 +1,4 @@
-"""Parameters: values, descriptors, the store of a node, and parameters as a class."""
+"""Parameters: values, descriptors, a node's store, and declaration from a class."""
 
 from aionode.parameter._callbacks import (
     OnSetCallback,

@@ -1,4 +1,4 @@
-"""The callbacks of a node for changes of its parameters."""
+"""The parameter callbacks of a node."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ PostSetCallback = Callable[[list[Parameter]], None]
 
 
 class ParameterCallbacks:
-    """The callbacks of a node for parameter changes; the newest of each kind runs first.
+    """A node's callbacks for parameter changes; the newest of each kind runs first.
 
     Attributes:
-        messages: Has the message classes, by name; on-set callbacks return a `SetParametersResult`.
+        messages: The message classes by name; on-set callbacks return its `SetParametersResult`.
     """
 
     messages: Any = rcl_msg
@@ -32,7 +32,7 @@ class ParameterCallbacks:
         self._post: list[PostSetCallback] = []
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call `callback` before a change is checked; it returns the parameters to set instead.
+        """Add a callback that runs before a change is checked, and returns the parameters to set.
 
         Raises:
             TypeError: it is not callable.
@@ -40,7 +40,7 @@ class ParameterCallbacks:
         self._pre.insert(0, expect_callable(callback))
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call `callback` to check a change; the first that rejects it decides.
+        """Add a callback that checks changes; the first one that rejects a change decides.
 
         Raises:
             TypeError: it is not callable.
@@ -48,7 +48,7 @@ class ParameterCallbacks:
         self._on.insert(0, expect_callable(callback))
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call `callback` after a change.
+        """Add a callback that runs after each change.
 
         Raises:
             TypeError: it is not callable.
@@ -86,10 +86,10 @@ class ParameterCallbacks:
         return None
 
     def _checked_result(self, callback: OnSetCallback, result: Any) -> SetParametersResult:
-        """Return what an on-set callback has returned.
+        """Return the result of an on-set callback, checked.
 
         Raises:
-            TypeError: it is no `SetParametersResult`.
+            TypeError: it is not a `SetParametersResult`.
         """
         wanted = self.messages.SetParametersResult
         expect(result, wanted, f"what the on-set callback {callback!r} returns")
@@ -98,7 +98,7 @@ class ParameterCallbacks:
 
 
 def expect_callable(callback: Any) -> Any:
-    """Return `callback`.
+    """Return `callback` if it is callable.
 
     Raises:
         TypeError: it is not callable.

@@ -1,4 +1,4 @@
-"""Whether a parameter fits its descriptor; if not, why, in rclpy's words."""
+"""Checks of parameters against their descriptors, with rclpy's messages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from aionode.parameter._value import Parameter, ParameterType
 
 __all__ = ["descriptor_violation", "type_violation"]
 
-REL_TOL = 1e-6  # how close to a step or to an end of its range a float must be
+REL_TOL = 1e-6  # tolerance for a float at a step or an end of its range
 
 
 def descriptor_violation(parameter: Parameter, descriptor: ParameterDescriptor) -> str | None:
@@ -49,7 +49,7 @@ def integer_violation(parameter: Parameter, limits: IntegerRange) -> str | None:
     low, high = sorted((limits.from_value, limits.to_value))
     value: int = parameter.value
     if value in {low, high}:
-        return None  # both ends count, even where no step leads to the upper one
+        return None  # both ends are valid, even if no step leads to the upper one
     if not low < value < high:
         return f"Parameter {parameter.name} out of range. Min: {low}, Max: {high}, value: {value}"
     if limits.step and (value - low) % limits.step:

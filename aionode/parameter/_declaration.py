@@ -1,4 +1,4 @@
-"""Reading the declaration of a parameter: its name, first value, and descriptor."""
+"""Parse the declaration of a parameter: its name, initial value and descriptor."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ __all__ = [
 
 
 def validate_parameter_name(name: str) -> bool:
-    """Return True if `name` is a valid parameter name, that is not empty.
+    """Return True if `name` is a valid parameter name, which means not empty.
 
     Raises:
         InvalidParameterException: The name is empty.
@@ -29,10 +29,10 @@ def validate_parameter_name(name: str) -> bool:
 
 
 def split_entry(entry: tuple[Any, ...], index: int) -> tuple[str, Any, Any]:
-    """Return the name, value and descriptor, or None, of one entry of `declare_parameters`.
+    """Split an entry of `declare_parameters` into name, value and descriptor (or None).
 
     Raises:
-        TypeError: it has another form, or its name is no text.
+        TypeError: it has another form, or its name is not a string.
     """
     if not 1 <= len(entry) <= 3:
         message = (
@@ -60,14 +60,14 @@ def first_value(
     parameter_class: type[Parameter] = Parameter,
     messages: Any = rcl_msg,
 ) -> Parameter:
-    """Return the parameter as declared, and set the type in its descriptor.
+    """Return the initial parameter, and set the type in its descriptor.
 
     Args:
         name: Its name.
-        value: Its value, as itself or as a message, or its type.
+        value: Its value, plain or as a message, or its type.
         descriptor: Its descriptor.
         parameter_class: The class of the result.
-        messages: Has the class of a message with a value, by name.
+        messages: The classes of messages with a value, by name.
 
     Raises:
         ValueError: The type cannot be determined.

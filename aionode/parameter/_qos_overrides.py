@@ -1,7 +1,7 @@
-"""QoS overrides: QoS policies that parameters can change when a node is started.
+"""QoS overrides: policies that parameters can change when a node starts.
 
 The parameter ``qos_overrides./chatter.publisher.depth`` sets the depth of a publisher on
-``/chatter``, if the node was written to allow it: with `QoSOverridingOptions`.
+``/chatter``, if the node allows it with `QoSOverridingOptions`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ POLICIES = {
 
 @dataclass(frozen=True)
 class QoSOverridingOptions:
-    """The policies of an endpoint that parameters can override.
+    """Selects the policies of an endpoint that parameters can override.
 
     Attributes:
         policy_kinds: The policies.
@@ -58,13 +58,13 @@ class QoSOverridingOptions:
         callback: Callable[[QoSProfile], SetParametersResult] | None = None,
         entity_id: str | None = None,
     ) -> QoSOverridingOptions:
-        """Return options for history, depth and reliability."""
+        """Create options for history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback, entity_id)
 
 
 class Declarer(Protocol):
-    """A node, or anything that declares parameters as a node does."""
+    """A node, or anything else that declares parameters like one."""
 
     def declare_parameter(
         self, name: str, value: Any, descriptor: ParameterDescriptor
@@ -82,12 +82,12 @@ def declare_qos_overrides(
     profile: QoSProfile,
     options: QoSOverridingOptions,
 ) -> QoSProfile:
-    """Declare the parameters of an endpoint, read-only, and return the profile they result in.
+    """Declare the read-only parameters of an endpoint, and return the resulting profile.
 
     Args:
         node: The node.
         topic: Full name of the topic.
-        entity: What the endpoint is.
+        entity: The kind of endpoint.
         profile: The profile without overrides; not modified.
         options: Which policies can be overridden.
 
@@ -99,7 +99,7 @@ def declare_qos_overrides(
     changes: dict[str, object] = {}
     for kind in options.policy_kinds:
         if kind is QoSPolicyKind.LIFESPAN and entity == "subscription":
-            continue  # only the publisher determines how long a message lives
+            continue  # only the publisher determines the lifespan of a message
         policy = kind.name.lower()
         descriptor = ParameterDescriptor(
             description=f"{policy} for {entity} `{topic}` with id `{options.entity_id}`",
@@ -109,7 +109,7 @@ def declare_qos_overrides(
         try:
             parameter = node.declare_parameter(name, as_parameter(profile, policy), descriptor)
         except ParameterAlreadyDeclaredException:
-            parameter = node.get_parameter(name)  # by an endpoint before
+            parameter = node.get_parameter(name)  # declared for an earlier endpoint
         changes[policy] = as_policy(parameter, kind)
     subject = f"{entity} of {topic}"
     try:
@@ -124,7 +124,7 @@ def declare_qos_overrides(
 
 
 def as_parameter(profile: QoSProfile, policy: str) -> str | int | bool:
-    """Return a policy of a profile as a parameter's value: a word, a number, nanoseconds."""
+    """Return a policy of a profile as a parameter value: a word, a number or nanoseconds."""
     value = getattr(profile, policy)
     if isinstance(value, Duration):
         return value.nanoseconds
@@ -133,7 +133,7 @@ def as_parameter(profile: QoSProfile, policy: str) -> str | int | bool:
 
 
 def as_policy(parameter: Parameter, kind: QoSPolicyKind) -> object:
-    """Return a parameter's value as a policy.
+    """Convert a parameter value to a policy.
 
     Raises:
         InvalidQosOverridesError: No policy has this name.

@@ -25,26 +25,26 @@ MOST_NAMES: Final = 10_000
 """Maximum names or values in one request; `ros2 param dump` asks for all of a node."""
 
 MOST_SET: Final = 2_000
-"""Maximum parameters that one request sets: each is checked, and told to others."""
+"""Maximum parameters set by one request: each is checked, and published as an event."""
 
 MOST_REPEATED: Final = 1_000
-"""Maximum names in a request that repeats some; else an answer has as many as the node at most."""
+"""Maximum names in a request that repeats some; otherwise the node's own number is the limit."""
 
 LARGEST_ANSWER: Final = 2**24
 """Maximum bytes of the values in one answer: a request may repeat a name many times."""
 
 MOST_HELD: Final = 2**26
-"""Maximum bytes of all values of a node after others have set some."""
+"""Maximum bytes of all values of a node once other nodes have set some."""
 
 PARAMETER_BYTES: Final = 500
 """Approximate memory of a parameter besides its value."""
 
 
 class ParameterService(NamedTuple):
-    """One service: make it with ``node.create_service(srv_type, f"~/{name}", callback)``.
+    """One service, to be created by ``node.create_service(srv_type, f"~/{name}", callback)``.
 
     Attributes:
-        name: Its name below the node.
+        name: Its name relative to the node.
         srv_type: Its type.
         callback: Answers a request.
     """
@@ -55,7 +55,7 @@ class ParameterService(NamedTuple):
 
 
 class Parameters(Protocol):
-    """The source of the services: a `ParameterStore`, or a node with its methods."""
+    """What the services read and set: a `ParameterStore`, or a node with its methods."""
 
     def describe_parameters(self, names: Any) -> list[Any]: ...
     def get_parameters(self, names: Any) -> list[Any]: ...
@@ -77,9 +77,10 @@ def parameter_services(
     Args:
         parameters: The parameters.
         parameter_class: Their class.
-        services: Has the service classes, by name.
+        services: The service classes, by name.
         result_class: The class of SetParametersResult.
-        refusals: The errors that change nothing, whose texts the caller gets as reasons.
+        refusals: The errors that leave everything unchanged, whose texts the caller gets as
+            reasons.
     """
     answers = Answers(parameters, parameter_class, result_class, refusals)
     return [
@@ -97,10 +98,10 @@ def parameter_services(
 class Answers:
     """The callbacks of the services.
 
-    If one of several names is undeclared, reading answers with an empty list: there is no other
-    way in these services to say so.
+    If one of several names is undeclared, reads answer with an empty list: these services have no
+    other way to say so.
 
-    Each of them raises `RequestRefusedError` for a request or an answer beyond the limits above.
+    Each raises `RequestRefusedError` for a request or an answer that exceeds the limits above.
     """
 
     def __init__(
@@ -184,10 +185,10 @@ class Answers:
         return response
 
     def _refuse_hoard(self, messages: list[ParameterMsg]) -> None:
-        """Refuse values beyond what a node keeps; those that are there count as well.
+        """Refuse values that, with the existing ones, exceed what a node keeps.
 
         Raises:
-            RequestRefusedError: they are too large, or too many.
+            RequestRefusedError: they are too large or too many.
         """
         new_bytes = sum(len(message.name) + size_of_message(message.value) for message in messages)
         held = self.parameters.get_parameters_by_prefix("")
@@ -216,10 +217,10 @@ class Answers:
 
 
 def each_once(names: Sequence[str], read: Callable[[Any], list[Any]]) -> dict[str, Any]:
-    """Return what is read for some names, which may repeat if they are few.
+    """Read each name once and return all results; only short requests may repeat names.
 
     Raises:
-        RequestRefusedError: many are named, and some of them again.
+        RequestRefusedError: many are requested, some of them repeatedly.
     """
     unique = list(dict.fromkeys(names))
     if len(unique) < len(names) and len(names) > MOST_REPEATED:
@@ -256,13 +257,13 @@ def refuse_many(items: Sequence[object], most: int = MOST_NAMES) -> None:
 
 
 def descriptor_size(descriptor: Any) -> int:
-    """Return about how many bytes a descriptor takes in an answer."""
+    """Estimate how many bytes a descriptor takes in an answer."""
     texts = descriptor.name, descriptor.description, descriptor.additional_constraints
     return PARAMETER_BYTES + sum(map(len, texts))
 
 
 def size_of_message(value: ParameterValue) -> int:
-    """Return about how many bytes the value in a request takes."""
+    """Estimate how many bytes the value in a request takes."""
     arrays = (
         value.string_value,
         value.byte_array_value,
@@ -275,7 +276,7 @@ def size_of_message(value: ParameterValue) -> int:
 
 
 def size_of(value: object) -> int:
-    """Return about how many bytes the value of a parameter takes in an answer."""
+    """Estimate how many bytes the value of a parameter takes in an answer."""
     if isinstance(value, str | bytes):
         return len(value)
     if isinstance(value, Sized):

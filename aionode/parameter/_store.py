@@ -1,4 +1,4 @@
-"""The parameters of one node: declared, checked and changed. Does no I/O.
+"""The parameters of one node: declaration, checks and changes. Does no I/O.
 
 A change passes through these steps; if one of them rejects it, nothing is changed::
 
@@ -60,21 +60,20 @@ EMPTY_LIST = (
 class ParameterStore(ParameterCallbacks):
     """The parameters of one node.
 
-    An API with classes of its own derives from it, and sets `parameter_class` and `messages`.
+    An API with its own classes derives from it and sets `parameter_class` and `messages`.
 
     Args:
         node_name: Full name of the node, for its events.
         overrides: Values that take precedence over those given when declaring.
         allow_undeclared: Whether parameters can be set without being declared.
-        publish: Called with the event of each change, whose stamp is not set, before the post
-            callbacks.
+        publish: Called with the event of each change, without a stamp, before the post callbacks.
 
     Attributes:
         overrides: The overrides, by name.
         asked: Names of the overrides whose parameters have been declared.
         publish: As given; may be replaced.
         parameter_class: The class of the parameters.
-        messages: Has the message classes, by name.
+        messages: The message classes, by name.
     """
 
     parameter_class: type[Parameter] = Parameter
@@ -93,14 +92,14 @@ class ParameterStore(ParameterCallbacks):
         self.asked: set[str] = set()
         self.allow_undeclared = allow_undeclared
         self.publish = publish
-        # Both by name, with the same keys: the declared parameters, and those set without being
-        # declared where that is allowed.
+        # Both by name and with the same keys: the declared parameters, and those that were set
+        # undeclared where that is allowed.
         self._parameters: dict[str, Parameter] = {}
         self._descriptors: dict[str, ParameterDescriptor] = {}
 
     @staticmethod
     def type_text(kind: ParameterType) -> str:
-        """Return a type as texts show it."""
+        """Return the name of a type in messages."""
         return f"Type.{kind.name}"
 
     def names(self) -> list[str]:
@@ -116,7 +115,7 @@ class ParameterStore(ParameterCallbacks):
         descriptor: ParameterDescriptor | None = None,
         ignore_override: bool = False,
     ) -> Parameter:
-        """Declare a parameter and return it; an override of its name gives the value.
+        """Declare a parameter and return it; an override takes precedence over `value`.
 
         Args:
             name: Its name.
@@ -194,10 +193,10 @@ class ParameterStore(ParameterCallbacks):
         return parameter, descriptor
 
     def _own_descriptor(self, given: Any, index: int) -> ParameterDescriptor:
-        """Return a copy of the descriptor at `index` of a declaration, an empty one for None.
+        """Return a copy of the descriptor at `index` of a declaration; an empty one for None.
 
         Raises:
-            TypeError: it is no descriptor.
+            TypeError: it is not a descriptor.
         """
         wanted = self.messages.ParameterDescriptor
         descriptor: ParameterDescriptor
@@ -245,12 +244,12 @@ class ParameterStore(ParameterCallbacks):
         return name in self._parameters
 
     def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter; for an undeclared one, if that is allowed, one that is not set.
+        """Return a parameter; an unset one if it is undeclared and that is allowed.
 
         Raises:
             ParameterNotDeclaredException: It is undeclared, and undeclared parameters are not
                 allowed.
-            ParameterUninitializedException: It was declared without a value and never set.
+            ParameterUninitializedException: It was declared without a value and has never been set.
         """
         parameter = self._parameters.get(name)
         if parameter is None:
@@ -270,7 +269,7 @@ class ParameterStore(ParameterCallbacks):
         return [self.get_parameter(name) for name in expect_names(names)]
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """Return a parameter, or the alternative if it is undeclared or not set."""
+        """Return a parameter, or the alternative if it is undeclared or has no value."""
         parameter = self._parameters.get(name)
         if parameter is not None and parameter.type_ != ParameterType.NOT_SET:
             return parameter
@@ -298,7 +297,7 @@ class ParameterStore(ParameterCallbacks):
         return [self.get_parameter_type(name) for name in expect_names(names)]
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters of a group, keyed by the rest of their names."""
+        """Return the parameters of a group, keyed by their names without the prefix."""
         start = f"{prefix}{PARAMETER_SEPARATOR_STRING}" if prefix else ""
         return {
             name[len(start) :]: parameter
@@ -307,7 +306,7 @@ class ParameterStore(ParameterCallbacks):
         }
 
     def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
-        """Return the names of parameters, and the groups they are in.
+        """Return the names of parameters and of their groups.
 
         Args:
             prefixes: The names and groups to list; all if it is empty.
@@ -372,17 +371,17 @@ class ParameterStore(ParameterCallbacks):
         return success
 
     def _failure(self, reason: str) -> SetParametersResult:
-        """Return the result of a change that is rejected."""
+        """Return the result for a rejected change."""
         result: SetParametersResult = self.messages.SetParametersResult(reason=reason)
         return result
 
     def _prepared(
         self, parameters: list[Parameter], descriptors: Mapping[str, ParameterDescriptor]
     ) -> list[Parameter]:
-        """Return parameters as they are checked and stored.
+        """Return parameters in the form in which they are checked and stored.
 
         If a name occurs several times, as with several pre callbacks, the last value counts. An
-        empty list gets the type that was declared.
+        empty list gets the declared type.
         """
         last = {parameter.name: parameter for parameter in parameters}
         return [
@@ -502,14 +501,14 @@ class ParameterStore(ParameterCallbacks):
 
 
 def as_overrides(overrides: Iterable[Parameter] | Mapping[str, object]) -> dict[str, Parameter]:
-    """Return overrides by name, from parameters or a mapping of names to values."""
+    """Return overrides by name, given parameters or a mapping of names to values."""
     if isinstance(overrides, Mapping):
         return {name: Parameter(name, value=value) for name, value in overrides.items()}
     return {parameter.name: parameter for parameter in overrides}
 
 
 def expect_names(names: Iterable[str]) -> list[str]:
-    """Return names as a list.
+    """Return names as a list, checked.
 
     Raises:
         TypeError: One is not a str.
@@ -524,7 +523,8 @@ def expect_names(names: Iterable[str]) -> list[str]:
 def is_listed(name: str, prefixes: frozenset[str], depth: int) -> bool:
     """Return whether `list_parameters` includes a name.
 
-    The groups of the name are looked up among the prefixes, of which another node may send many.
+    The name's groups are looked up among the prefixes, and not the reverse, as another node may
+    send many prefixes.
     """
     if not prefixes:
         return is_shallow(name, depth)

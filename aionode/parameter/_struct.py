@@ -1,4 +1,4 @@
-"""Parameters as a class: fields with types, defaults and limits, kept current.
+"""Parameters declared by a class: fields with types, defaults and limits, kept up to date.
 
 ::
 
@@ -39,7 +39,7 @@ FLOAT_MAX = sys.float_info.max
 
 
 class ParameterOwner(Protocol):
-    """A node, or another object that declares parameters as a node does."""
+    """A node, or another object that declares parameters like one."""
 
     def declare_parameter(
         self, name: str, value: Any, descriptor: ParameterDescriptor
@@ -47,7 +47,7 @@ class ParameterOwner(Protocol):
         """Declare a parameter."""
 
     def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter, or raise if it has no value."""
+        """Return a parameter; raise if it has no value."""
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Check changes with `callback`."""
@@ -68,7 +68,7 @@ class Leaf:
         owner: The instance, perhaps nested in another, that holds it.
         attribute: Name of the field there.
         hint: Its annotation, limits included.
-        kind: The annotation as msgspec's type, without None and metadata around it.
+        kind: The annotation as a msgspec type, without None and metadata.
         type_: The parameter's type.
         is_optional: Whether it may be None, that is, have no value.
         has_default: Whether it is declared with a value.
@@ -86,7 +86,7 @@ class Leaf:
     descriptor: ParameterDescriptor
 
     def problem(self, value: object) -> str | None:
-        """Return why a value does not fit the annotation, or None."""
+        """Return the reason why a value violates the annotation, or None."""
         if isinstance(self.kind, inspect.IntType | inspect.FloatType):
             return open_end_problem(self.kind, value)  # the descriptor checks the rest
         try:
@@ -96,7 +96,7 @@ class Leaf:
         return None
 
     def from_ros(self, value: Any) -> object:
-        """Return a parameter's value in the type of the field."""
+        """Convert a parameter's value to the type of the field."""
         if self.type_ is ParameterType.BYTE_ARRAY and not isinstance(value, bytes):
             value = b"".join(value)
         if isinstance(self.kind, inspect.IntType | inspect.FloatType):
@@ -104,7 +104,7 @@ class Leaf:
         return msgspec.convert(value, self.hint)
 
     def to_ros(self) -> Any:
-        """Return the field's value in the type of the parameter."""
+        """Convert the field's value to the type of the parameter."""
         value = getattr(self.owner, self.attribute)
         if isinstance(self.kind, inspect.FloatType):
             return float(value)
@@ -114,7 +114,7 @@ class Leaf:
         return plain
 
     def write(self, value: object) -> None:
-        """Set the field to a parameter's value."""
+        """Set the field from a parameter's value."""
         setattr(self.owner, self.attribute, None if value is None else self.from_ros(value))
 
 
@@ -125,13 +125,13 @@ def declare_struct(
     *,
     on_change: Callable[[StructT], None] | None = None,
 ) -> StructT:
-    """Declare the fields of a class as parameters, and return an instance that is kept current.
+    """Declare the fields of a class as parameters, and return an instance that is kept up to date.
 
-    A field becomes a parameter of its name, with its type, its default, and from `msgspec.Meta`
-    its limits (``ge``, ``le``, ``gt``, ``lt``, ``multiple_of``) and description. A field without a
+    A field becomes a parameter with the field's name, type and default, and with limits (``ge``,
+    ``le``, ``gt``, ``lt``, ``multiple_of``) and description from `msgspec.Meta`. A field without a
     default needs an override. ``X | None = None`` may stay without a value. `Literal` and `Enum`
-    allow only their values. ``Meta(extra={"read_only": True})`` makes a parameter
-    read-only. A field that is itself such a class becomes a group: ``group.name``.
+    allow only their values. ``Meta(extra={"read_only": True})`` makes a parameter read-only. A
+    field that is itself such a class becomes a group: ``group.name``.
 
     When a parameter changes, so does the field, before `on_change` is called.
 
@@ -142,7 +142,7 @@ def declare_struct(
         on_change: Called with the instance after a change.
 
     Raises:
-        TypeError: No parameter can have a field's type, or the class is frozen.
+        TypeError: A field has a type that no parameter can have, or the class is frozen.
         ParameterUninitializedException: A field has neither a default nor an override.
         InvalidParameterValueException: A default or an override is outside its limits.
         ParameterAlreadyDeclaredException: The node already has a parameter of one of the names.
@@ -183,7 +183,7 @@ def declare_leaf(owner: ParameterOwner, leaf: Leaf) -> None:
     """Declare one parameter, and copy its value to the field."""
     value = leaf.to_ros() if leaf.has_default else leaf.type_
     if isinstance(value, Parameter):
-        value = value.get_parameter_value()  # an empty list of a known type
+        value = value.get_parameter_value()  # an empty list with a known type
     parameter = owner.declare_parameter(leaf.name, value, leaf.descriptor)
     if not leaf.is_optional:
         parameter = owner.get_parameter(leaf.name)  # raises if it has no value
@@ -217,7 +217,7 @@ def blank(struct_type: type[StructT]) -> StructT:
 
 
 def leaves_of(instance: object, prefix: str) -> Iterator[Leaf]:
-    """Return the parameters of an instance and of those nested in it."""
+    """Return the parameters of an instance and of its nested instances."""
     info = inspect.type_info(type(instance))
     assert isinstance(info, inspect.StructType | inspect.DataclassType)  # noqa: S101 - by blank
     hints = get_type_hints(type(instance), include_extras=True)
@@ -243,7 +243,7 @@ def leaves_of(instance: object, prefix: str) -> Iterator[Leaf]:
 
 
 def unwrapped(kind: inspect.Type) -> tuple[inspect.Type, bool, list[inspect.Metadata]]:
-    """Return a type without None and metadata; whether None was there; and the metadata."""
+    """Strip None and metadata from a type; return it, whether it had None, and the metadata."""
     is_optional = False
     metas: list[inspect.Metadata] = []
     while isinstance(kind, inspect.Metadata | inspect.UnionType):
@@ -275,10 +275,10 @@ LISTS: dict[ParameterType, ParameterType] = {
 
 
 def parameter_type(kind: inspect.Type, where: str) -> ParameterType:
-    """Return the type of the parameter for a field.
+    """Return the parameter type for a field.
 
     Raises:
-        TypeError: No type of parameter fits.
+        TypeError: There is no such parameter type.
     """
     type_: ParameterType | None = SINGLE.get(type(kind))
     if isinstance(kind, inspect.LiteralType | inspect.EnumType):
@@ -297,14 +297,14 @@ def parameter_type(kind: inspect.Type, where: str) -> ParameterType:
 
 
 def choices(kind: inspect.LiteralType | inspect.EnumType) -> list[Any]:
-    """Return the values that a field may have."""
+    """Return the values that a field allows."""
     if isinstance(kind, inspect.LiteralType):
         return list(kind.values)
     return [member.value for member in kind.cls]
 
 
 def descriptor_of(kind: inspect.Type, metas: Iterable[inspect.Metadata]) -> ParameterDescriptor:
-    """Return the descriptor that a field's annotation describes."""
+    """Return the descriptor for a field's annotation."""
     descriptor = ParameterDescriptor()
     for meta in metas:
         schema, extra = meta.extra_json_schema or {}, meta.extra or {}
@@ -337,10 +337,10 @@ def integer_range(kind: inspect.IntType) -> IntegerRange:
 
 
 def float_range(kind: inspect.FloatType) -> FloatingPointRange:
-    """Return the range of a float; open ends are left to `open_end_problem`.
+    """Return the range of a float; open ends are checked by `open_end_problem`.
 
     Raises:
-        TypeError: It has steps, but no lower end to count them from.
+        TypeError: It has steps, but no lower end to count from.
     """
     step = kind.multiple_of or 0.0
     low = kind.ge if kind.ge is not None else kind.gt
@@ -356,7 +356,7 @@ def float_range(kind: inspect.FloatType) -> FloatingPointRange:
 
 
 def open_end_problem(kind: inspect.IntType | inspect.FloatType, value: Any) -> str | None:
-    """Return why a number is at or beyond an open end of its range, or None."""
+    """Return the reason why a number violates an open end of its range, or None."""
     if kind.gt is not None and not value > kind.gt:
         return f"must be > {kind.gt}"
     if kind.lt is not None and not value < kind.lt:

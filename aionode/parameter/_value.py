@@ -43,7 +43,7 @@ LISTS = (list, tuple, array.array)
 
 
 class ParameterType(IntEnum):
-    """The types of parameters; `Parameter.Type` is the same."""
+    """The types of parameters; also available as `Parameter.Type`."""
 
     NOT_SET = 0
     BOOL = 1
@@ -61,7 +61,7 @@ class ParameterType(IntEnum):
         """Return the type of a value. An empty list counts as BYTE_ARRAY, as in rclpy.
 
         Raises:
-            TypeError: No parameter type fits it.
+            TypeError: There is no parameter type for it.
         """
         if parameter_value is None:
             return cls.NOT_SET
@@ -118,17 +118,17 @@ ARRAYS = (
 
 
 def fits_element(value: object, kind: tuple[type, ...]) -> bool:
-    """Return whether a value is of this kind; a bool does not count as an int."""
+    """Return whether a value has this type; a bool does not count as an int."""
     return isinstance(value, kind) and not (isinstance(value, bool) and kind == (int,))
 
 
 def in_range(value: object) -> bool:
-    """Return whether an int has at most 64 bits."""
+    """Return whether an int fits into 64 bits."""
     return not isinstance(value, int) or -(2**63) <= value < 2**63
 
 
 def expect(value: object, kind: type | tuple[type, ...], what: str) -> None:
-    """Raise a TypeError that names `what` if `value` is not of this kind."""
+    """Raise a TypeError that names `what` unless `value` is of this kind."""
     if not isinstance(value, kind):
         message = f"{what} must be instance of type '{brief(kind)}', not {brief(value)}"
         raise TypeError(message)
@@ -140,10 +140,10 @@ class Parameter:
     Args:
         name: The name; dots make groups.
         type_: The type; by default that of the value.
-        value: The value. A numpy array or number is converted to a list or number.
+        value: The value. Numpy arrays and numbers are converted to lists and numbers.
 
     Raises:
-        TypeError: No parameter type fits the value.
+        TypeError: There is no parameter type for the value.
         ValueError: The value is not of the given type.
     """
 
@@ -176,7 +176,7 @@ class Parameter:
 
     @property
     def value(self) -> Any:
-        """The value; None if it is not set."""
+        """The value; None if not set."""
         return self._value
 
     def __eq__(self, other: object) -> bool:
@@ -193,7 +193,7 @@ class Parameter:
 
     @classmethod
     def from_parameter_msg(cls, param_msg: rcl_msg.Parameter) -> Parameter:
-        """Return the parameter in a message.
+        """Create a parameter from a message.
 
         Raises:
             ValueError: The type in the message is unknown.
@@ -203,8 +203,8 @@ class Parameter:
 
     def get_parameter_value(self) -> rcl_msg.ParameterValue:
         """Return the type and value as a message."""
-        # Empty tuples in place of the arrays that are the defaults: those need numpy, which takes
-        # longer to import than a node to start, and most parameters hold no array.
+        # Empty tuples in place of the default arrays, which need numpy: importing that takes longer
+        # than starting a node, and most parameters hold no array.
         message = rcl_msg.ParameterValue(
             type=int(self._type),
             bool_array_value=(),
@@ -229,7 +229,7 @@ FIELDS = {type_: f"{type_.name.lower()}_value" for type_ in ParameterType}
 
 
 def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
-    """Return the value in a message, as Python's built-in types; None if it is not set.
+    """Convert the value in a message to a built-in Python type; None if it is not set.
 
     Raises:
         RuntimeError: The type in the message is unknown.
@@ -254,11 +254,10 @@ def parameter_value_to_python(parameter_value: rcl_msg.ParameterValue) -> Any:
 
 
 def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
-    """Return the value of a text as ``ros2 param set`` reads it: as PyYAML does.
+    """Convert a text to a value like ``ros2 param set``, with PyYAML.
 
-    Text that PyYAML refuses is a string, and so is a value that no parameter can hold, such as a
-    list of mixed types.
-    Parameter files and ``-p`` have other rules: those of rcl.
+    Text that PyYAML rejects is a string, and so is a value that no parameter can hold, such as a
+    list of mixed types. Parameter files and ``-p`` follow other rules, those of rcl.
     """
     value = value_in_yaml(string_value)
     if isinstance(value, list):
@@ -272,8 +271,8 @@ def get_parameter_value(string_value: str) -> rcl_msg.ParameterValue:
 
 
 def value_in_yaml(text: str) -> Any:
-    """Return what PyYAML reads; the text itself where that is not YAML."""
-    import yaml  # programs that read no text start without
+    """Return the value that PyYAML reads, or the text itself if it is not YAML."""
+    import yaml  # imported only when a text is read
 
     try:
         return loaded_yaml(text)
@@ -287,12 +286,12 @@ def parameter_dict_from_yaml_file(
     target_nodes: list[str] | None = None,
     namespace: str = "",
 ) -> dict[str, rcl_msg.Parameter]:
-    """Return the parameters of a file, by name.
+    """Read the parameters of a file, by name.
 
     Args:
         parameter_file: Path of the file.
         use_wildcard: Whether to include the section ``/**``.
-        target_nodes: The names of nodes whose sections to include; by default all.
+        target_nodes: The nodes whose sections to include; by default all.
         namespace: Prepended to all names.
 
     Raises:

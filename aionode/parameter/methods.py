@@ -1,4 +1,4 @@
-"""The methods of a node over its parameters, which nodes of both faces have."""
+"""The parameter methods of nodes, shared by aionode's and rclpy's."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["ParameterMethods"]
 
 
 class ParameterMethods:
-    """Methods over a `ParameterStore`, which describes each step and exception."""
+    """Methods that delegate to a `ParameterStore`, where each step and exception is described."""
 
     def __init__(self, store: ParameterStore) -> None:
         self.__store = store
@@ -35,7 +35,7 @@ class ParameterMethods:
         descriptor: ParameterDescriptor | None = None,
         ignore_override: bool = False,  # rclpy's signature
     ) -> Parameter:
-        """Declare a parameter and return it; an override of its name gives the value.
+        """Declare a parameter and return it; an override takes precedence over `value`.
 
         Args:
             name: Its name.
@@ -76,7 +76,7 @@ class ParameterMethods:
         Raises:
             ParameterNotDeclaredException: it is undeclared, and undeclared parameters are not
                 allowed.
-            ParameterUninitializedException: it was declared without a value and never set.
+            ParameterUninitializedException: it was declared without a value and has never been set.
         """
         return self.__store.get_parameter(name)
 
@@ -85,7 +85,7 @@ class ParameterMethods:
         return self.__store.get_parameters(names)
 
     def get_parameter_or(self, name: str, alternative_value: Parameter | None = None) -> Parameter:
-        """Return a parameter, or `alternative_value` if it is undeclared or not set."""
+        """Return a parameter, or `alternative_value` if it is undeclared or has no value."""
         return self.__store.get_parameter_or(name, alternative_value)
 
     def get_parameter_type(self, name: str) -> ParameterType:
@@ -97,7 +97,7 @@ class ParameterMethods:
         return self.__store.get_parameter_types(names)
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, Parameter]:
-        """Return the parameters below `prefix`, keyed by the rest of their names."""
+        """Return the parameters below `prefix`, keyed by their names without the prefix."""
         return self.__store.get_parameters_by_prefix(prefix)
 
     def list_parameters(self, prefixes: list[str], depth: int) -> ListParametersResult:
@@ -144,15 +144,15 @@ class ParameterMethods:
     # Callbacks
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Call `callback` before a change is checked; it returns the parameters to set instead."""
+        """Add a callback that runs before a change is checked and returns what to set."""
         self.__store.add_pre_set_parameters_callback(callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Call `callback` to check a change; the first that rejects it decides."""
+        """Add a callback that checks changes; the first one that rejects a change decides."""
         self.__store.add_on_set_parameters_callback(callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call `callback` after a change."""
+        """Add a callback that runs after each change."""
         self.__store.add_post_set_parameters_callback(callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
