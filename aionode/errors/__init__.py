@@ -245,10 +245,10 @@ __all__ = [
     "UnknownROSArgsError",
 ]
 
-# Used by other modules of aionode to write error texts; not public.
+# For error texts in other modules of aionode; not public.
 brief, escaped, shortened = _base.brief, _base.escaped, _base.shortened
 silence = _calls.silence
 FAST_DDS_REMEDY, FAST_DDS_SILENCE = _calls.FAST_DDS_REMEDY, _calls.FAST_DDS_SILENCE
 
 for _name in __all__:
-    globals()[_name].__module__ = __name__  # users see aionode.errors.X, not the private module
+    globals()[_name].__module__ = __name__  # users see aionode.errors.X, no private module

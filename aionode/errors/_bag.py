@@ -13,7 +13,7 @@ class BagError(AionodeError, ValueError):
     Attributes:
         path: The bag, or the file in it.
         problem: What was found.
-        remedy: What to do next; empty if nothing is known to help.
+        remedy: What to do next; empty if unknown.
     """
 
     def __init__(self, path: str, problem: str, remedy: str = "") -> None:
@@ -24,12 +24,12 @@ class BagError(AionodeError, ValueError):
 
 
 class BagWriteError(AionodeError, OSError):
-    """A bag cannot be written any further; what was written before can be read.
+    """A bag can no longer be written; what was already written can be read.
 
     Attributes:
         path: The file.
-        problem: What the system says.
-        is_full: Whether the disk is full, or the file as large as it may be.
+        problem: The operating system's error.
+        is_full: Whether the disk is full, or the file has reached its maximum size.
     """
 
     def __init__(self, path: str, problem: str, *, is_full: bool = False) -> None:

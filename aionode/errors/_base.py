@@ -1,4 +1,4 @@
-"""The base of all errors, and how their texts show values."""
+"""The base of all errors, and the formatting of values in their texts."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = [
 ]
 
 MAX_TEXT = 2_000
-"""Longest error text, in characters; the values that it quotes can be far longer."""
+"""Maximum length of an error text, in characters; the values it quotes can be far longer."""
 
 MAX_NAME = 160
-"""Most characters of an invalid name that are shown."""
+"""Maximum number of characters of an invalid name that are shown."""
 
 
 def shortened(text: str, limit: int = MAX_TEXT) -> str:
@@ -30,15 +30,15 @@ def shortened(text: str, limit: int = MAX_TEXT) -> str:
 UNSHOWN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
 )
-"""Control characters but tab and newline, what changes the direction of text, and surrogates."""
+"""Control characters except tab and newline, bidirectional controls, and surrogates."""
 
 
 def escaped(text: str, *, one_line: bool = False) -> str:
-    r"""Return `text` with control characters as escapes such as ``\x1b``, for people to read.
+    r"""Return `text` with control characters escaped, as in ``\x1b``, for people to read.
 
-    A text may come from another process: printed as it is, an escape sequence could recolour,
-    overwrite or retitle a terminal. Tabs and newlines stay; with `one_line` newlines are escapes,
-    too, so that a name cannot look like another line.
+    The text may come from another process: printed unescaped, an escape sequence could recolour,
+    overwrite or retitle a terminal. Tabs and newlines stay; with `one_line`, newlines are escaped
+    too, so that a name cannot pose as another line.
     """
     if one_line:
         text = text.replace("\n", "\\n")
@@ -48,9 +48,9 @@ def escaped(text: str, *, one_line: bool = False) -> str:
 
 
 def brief(value: object) -> str:
-    """Return the shortened repr of `value`, for the text of an error.
+    """Return the shortened repr of `value` for an error text.
 
-    Python refuses to write integers of thousands of digits; the reason is returned for those.
+    For integers of thousands of digits, which Python refuses to convert, the reason is returned.
     """
     try:
         text = repr(value)
@@ -62,9 +62,9 @@ def brief(value: object) -> str:
 class AionodeError(Exception):
     """Base of all errors that aionode raises on purpose.
 
-    Texts of more than 2000 characters are shortened in the middle, as the beginning and the end say
-    what happened and what to do. Control characters are shown as escapes, since a text may quote
-    another process. The attributes hold the complete values.
+    Texts of more than 2000 characters are shortened in the middle, since the beginning says what
+    happened and the end what to do. Control characters are escaped, since a text may quote another
+    process. The attributes hold the complete values.
     """
 
     def __init__(self, *args: object) -> None:

@@ -46,8 +46,8 @@ class ServiceError(AionodeError, RuntimeError):
 class ServiceUnavailableError(ServiceError, TimeoutError):
     """Every server that received the request went away before it replied.
 
-    It is also a TimeoutError, since no reply will come: code that handles a missing reply handles
-    this too, without having to wait for the timeout.
+    It is also a TimeoutError: no reply will come, so code that handles a missing reply handles this
+    too, without waiting for the timeout.
     """
 
     def __init__(self, service: str) -> None:
@@ -58,7 +58,7 @@ class ServiceUnavailableError(ServiceError, TimeoutError):
 
 
 class RequestRefusedError(AionodeError, ValueError):
-    """A request to a service that every node offers is beyond the limits of that service."""
+    """A request exceeds the limits of a service that every node offers."""
 
 
 class RequestTimeoutError(AionodeError, TimeoutError):
@@ -169,7 +169,7 @@ class GoalCanceledError(GoalError):
 
     Attributes:
         result: The result message, as far as the server filled it in.
-        error_text: Why the server canceled it by itself; empty if a client asked for it.
+        error_text: Why the server canceled it on its own; empty if a client asked for it.
     """
 
     def __init__(self, action: str, goal_id: str, result: object, error_text: str = "") -> None:

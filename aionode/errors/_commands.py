@@ -1,4 +1,4 @@
-"""Errors of commands, and of the files that they are given."""
+"""Errors of commands and of their input files."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ class CommandError(AionodeError, RuntimeError):
 
 
 class LaunchFileError(AionodeError, ValueError):
-    """A launch file cannot be read, or says what cannot be done; nothing has been started.
+    """A launch file cannot be read, or asks for something impossible; nothing has been started.
 
     Attributes:
         path: The file.
         line: Line number, from 1; None if the problem is about the whole file.
-        problem: What is wrong, and what fits.
+        problem: What is wrong, and what would be valid.
     """
 
     def __init__(self, path: str, problem: str, *, line: int | None = None) -> None:

@@ -1,4 +1,4 @@
-"""Refusals of the gateway, and errors in its policy file."""
+"""Refusals by the gateway, and errors in its policy file."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ __all__ = ["PolicyFileError", "RefusedError"]
 
 
 class RefusedError(AionodeError, PermissionError):
-    """The gateway refuses what a client asked for; the robot was not touched.
+    """The gateway refuses a client's request; nothing reached the robot.
 
     Attributes:
         subject: What the client asked for, such as ``publish to /cmd_vel``.
-        reason: Why it is refused, and what fits.
-        code: The reason as a word for programs: ``not_allowed`` by the policy, ``unauthorized``
-            without a valid token or from a page that may not connect, ``out_of_limits`` for a value
-            outside the limits of its field, ``too_large``, ``too_fast``, ``not_confirmed`` by a
-            person, ``held`` by another client that commands the topic, ``too_many`` of what is
-            counted, ``too_old`` for a command that arrived late, ``unsupported`` for a protocol
-            that the gateway does not speak.
+        reason: Why it is refused, and what would be allowed. code: The reason as a word for
+            programs: ``not_allowed`` by the policy, ``unauthorized`` without a valid token or from
+            a page that may not connect, ``out_of_limits`` for a value outside the limits of its
+            field, ``too_large``, ``too_fast``, ``not_confirmed`` by a person, ``held`` by another
+            client that commands the topic, ``too_many`` of what is counted, ``too_old`` for a
+            command that arrived late, ``unsupported`` for a protocol that the gateway does not
+            speak.
     """
 
     def __init__(self, subject: str, reason: str, code: str = "not_allowed") -> None:
@@ -33,7 +33,7 @@ class PolicyFileError(AionodeError, ValueError):
 
     Attributes:
         path: The file.
-        problem: What is wrong, and what fits.
+        problem: What is wrong, and what would be valid.
     """
 
     def __init__(self, path: str, problem: str) -> None:

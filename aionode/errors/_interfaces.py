@@ -33,7 +33,7 @@ class IdlError(AionodeError, ValueError):
 
 
 class TypeDescriptionError(AionodeError, ValueError):
-    """The description of a type, which a node sent, is invalid or exceeds a limit.
+    """A type description sent by a node is invalid or exceeds a limit.
 
     Attributes:
         name: The type that was asked for.
@@ -85,7 +85,7 @@ class MessageError(AionodeError, ValueError):
 
 
 class DecodeError(AionodeError, ValueError):
-    """Bytes do not hold a message of the expected type.
+    """The bytes are not a message of the expected type.
 
     Attributes:
         type_name: The expected type.

@@ -83,7 +83,7 @@ class InvalidRemapRuleError(AionodeError, ValueError):
 
 
 class InvalidROSArgsError(AionodeError, ValueError):
-    """A known ``--ros-args`` flag has a value that cannot be read.
+    """A known ``--ros-args`` flag has an invalid value.
 
     Attributes:
         argument: The argument or arguments at fault, as given.

@@ -62,7 +62,7 @@ class TransitionError(AionodeError, RuntimeError):
 
 
 class EntityInactiveError(AionodeError, RuntimeError):
-    """An entity of a managed node was used while the node was not active.
+    """An entity of a managed node was used while the node was inactive.
 
     Attributes:
         subject: The entity that was used.
@@ -124,9 +124,9 @@ class CallbackSignatureError(AionodeError, TypeError, RuntimeError):
 
 
 class CallbackCancelledError(AionodeError, RuntimeError):
-    """A callback raised CancelledError, although nobody has cancelled it.
+    """A callback raised CancelledError although nobody cancelled it.
 
-    Something that it awaited was cancelled, or it took the result of a cancelled future.
+    Something it awaited was cancelled, or it read the result of a cancelled future.
 
     Attributes:
         subject: Name of the callback.

@@ -73,7 +73,7 @@ class InvalidParameterException(ParameterException, ValueError):
 
 
 class InvalidParameterTypeException(ParameterException, TypeError):
-    """A value is not of the type that the parameter was declared with.
+    """A value does not have the declared type of the parameter.
 
     Attributes:
         name: Name of the parameter.
@@ -119,7 +119,7 @@ class ParameterImmutableException(ParameterException, RuntimeError):
 
 
 class ParameterUninitializedException(ParameterException, RuntimeError):
-    """A parameter that was declared without a value was read before it had one."""
+    """A parameter declared without a value was read before it had one."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)

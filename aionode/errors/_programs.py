@@ -1,4 +1,4 @@
-"""Errors about programs: packages and executables, and the members of systems."""
+"""Errors about packages, executables, and members of systems."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ class PackageNotFoundError(AionodeError, LookupError):
 
     Attributes:
         name: The name that was looked up.
-        places: The workspace and the folders of installed packages that were looked at.
-        suggestions: Names of packages that are similar.
-        remark: What it is, and what to use instead, if aionode cannot have it.
+        places: The workspace and the folders of installed packages that were searched.
+        suggestions: Names of similar packages.
+        remark: What the package is and what to use instead, if aionode cannot provide it.
     """
 
     def __init__(
@@ -46,8 +46,9 @@ class ExecutableNotFoundError(AionodeError, LookupError):
     Attributes:
         package: The name of the package.
         name: The name that was looked up.
-        place: The folder of the package; None if aionode has programs of it, and it is not there.
-        suggestions: Names of its executables that are similar.
+        place: The folder of the package; None if the package is not there, and only aionode's own
+            programs stand in for it.
+        suggestions: Names of similar executables.
     """
 
     def __init__(self, package: str, name: str, place: str | None, known: Sequence[str]) -> None:
@@ -65,8 +66,8 @@ class ExecutableNotFoundError(AionodeError, LookupError):
 
 
 def offered(name: str, what: str, known: Sequence[str]) -> tuple[tuple[str, ...], str]:
-    """Return which names are close to one, and a text with them, or else with the first ten."""
-    import difflib  # only for an error
+    """Return the names close to `name`, and a hint with them, or else with the first ten."""
+    import difflib  # needed only for errors
 
     near = tuple(difflib.get_close_matches(name, known, 1))
     more = f" and {len(known) - 10} more" if len(known) > 10 else ""
@@ -79,7 +80,7 @@ class ProgramStartError(AionodeError, OSError):
 
     Attributes:
         argv: Its command line.
-        problem: Why not.
+        problem: The reason.
     """
 
     def __init__(self, argv: Sequence[str], problem: str) -> None:
@@ -103,12 +104,12 @@ class MemberNotFoundError(AionodeError, LookupError):
 
 
 class NotReadyError(AionodeError, TimeoutError):
-    """A member of a system is not ready: something is missing, or it has ended.
+    """A member of a system is not ready: something is missing, or the member has ended.
 
     Attributes:
         name: The member.
         problem: What is missing, or how it ended.
-        last_lines: What it printed last.
+        last_lines: The last lines that it printed.
     """
 
     def __init__(self, name: str, problem: str, last_lines: Sequence[str] = ()) -> None:

@@ -27,7 +27,7 @@ class InvalidQoSProfileException(AionodeError, ValueError):
 
 
 class InvalidQosOverridesError(AionodeError, ValueError, RuntimeError):
-    """QoS override parameters are not valid for an endpoint; a RuntimeError as in rclpy.
+    """QoS override parameters are invalid for an endpoint; a RuntimeError as in rclpy.
 
     Attributes:
         subject: The endpoint, or the parameter at fault.
@@ -41,7 +41,7 @@ class InvalidQosOverridesError(AionodeError, ValueError, RuntimeError):
 
 
 class ContentFilterError(AionodeError, ValueError):
-    """A content filter expression is not valid.
+    """A content filter expression is invalid.
 
     Attributes:
         expression: The filter expression.
@@ -58,7 +58,7 @@ class ContentFilterError(AionodeError, ValueError):
 
 
 class QueueFullError(AionodeError, RuntimeError):
-    """The queue of a KEEP_ALL subscription is full; the message was not published at all.
+    """The queue of a KEEP_ALL subscription is full; the message was not published to anyone.
 
     Attributes:
         topic: The topic.
@@ -76,11 +76,11 @@ class QueueFullError(AionodeError, RuntimeError):
 
 
 class LeaseExpiredError(AionodeError, TimeoutError):
-    """A lease for commands has ended: its stop was sent, and no command follows it.
+    """A command lease has ended: its stop was sent, and no more commands are.
 
     Attributes:
         topic: The topic of the commands.
-        reason: Why it has ended.
+        reason: Why it ended.
     """
 
     def __init__(self, topic: str, reason: str) -> None:
@@ -93,7 +93,7 @@ class LeaseExpiredError(AionodeError, TimeoutError):
 
 
 class LeaseHeldError(AionodeError, RuntimeError):
-    """A publisher was used in another way while a lease for its commands is held.
+    """A publisher was used directly while a command lease on it is held.
 
     Attributes:
         topic: The topic of the commands.

@@ -30,23 +30,23 @@ class LookupException(TransformException, LookupError):
 
 
 class ExtrapolationException(TransformException):
-    """The time lies outside of the data that the buffer holds."""
+    """The time is outside the range of the buffered data."""
 
 
 class BackwardExtrapolationException(ExtrapolationException):
-    """The time is earlier than the oldest data."""
+    """The time is before the oldest data."""
 
 
 class ForwardExtrapolationException(ExtrapolationException):
-    """The time is later than the newest data; waiting may help."""
+    """The time is after the latest data; waiting may help."""
 
 
 class NoDataForExtrapolationException(ExtrapolationException):
-    """A frame has at most one transform, and not at this time."""
+    """A frame has at most one transform, which is not at this time."""
 
 
 class InvalidArgumentException(TransformException, ValueError):
-    """The name of a frame is empty, or begins with a slash."""
+    """A frame name is empty or begins with a slash."""
 
 
 class TimeoutException(TransformException, TimeoutError):

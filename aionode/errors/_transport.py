@@ -34,10 +34,10 @@ class TransportError(AionodeError, ConnectionError):
 class FrameError(TransportError):
     """A malformed frame was received on, or passed to, the link between two processes.
 
-    The link is closed, and its messages go over Zenoh from then on.
+    The link is closed, and messages go over Zenoh from then on.
 
     Attributes:
-        problem: What was received, or was to be sent.
+        problem: What was received, or should have been sent.
     """
 
     def __init__(self, problem: str) -> None:
