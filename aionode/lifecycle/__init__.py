@@ -11,9 +11,9 @@
             self.device = await open_camera()
             return TransitionCallbackReturn.SUCCESS
 
-`LifecycleNode` has rclpy's names and behaviour, with callbacks that may be coroutines and that can
-be canceled. ``aionode lifecycle`` and ``ros2 lifecycle`` manage it from a terminal,
-and `LifecycleManager` from a program.
+`LifecycleNode` has rclpy's names and behaviour; its callbacks may be coroutines, and can be
+canceled. ``aionode lifecycle`` and ``ros2 lifecycle`` manage it from a terminal, and
+`LifecycleManager` from a program.
 """
 
 from __future__ import annotations

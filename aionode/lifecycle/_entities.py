@@ -37,7 +37,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
     """A publisher that sends only while its node is active; made by `create_lifecycle_publisher`.
 
     Attributes:
-        discarded: How many messages were published while it was disabled, and discarded.
+        discarded: How many messages were published and discarded while it was disabled.
     """
 
     def __init__(self, publisher: Publisher[MsgT]) -> None:
@@ -56,7 +56,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
 
     @property
     def topic_name(self) -> str:
-        """The full name of the topic."""
+        """The topic's full name."""
         return self._publisher.topic_name
 
     topic = topic_name
@@ -72,7 +72,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
         return self._publisher.stats
 
     def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
-        """Publish a message while enabled, as `Publisher.publish` does; otherwise discard it.
+        """Publish a message if enabled, like `Publisher.publish`; otherwise discard it.
 
         Raises:
             Exception: while enabled, the exceptions of `Publisher.publish`.
@@ -88,10 +88,10 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
         ttl_sec: float = 0.3,
         clock: Clock | None = None,
     ) -> CommandLease[MsgT]:
-        """Return the right to publish commands, as `Publisher.lease` does.
+        """Create a command lease, like `Publisher.lease`.
 
-        It can be entered while the publisher is enabled. When that ends, the stop goes out first,
-        and ``lease.publish`` raises EntityInactiveError from then on.
+        It can be entered only while the publisher is enabled. On deactivation the stop is sent
+        first, and ``lease.publish`` raises EntityInactiveError from then on.
 
         Raises:
             Exception: the exceptions of `Publisher.lease`.
@@ -111,7 +111,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
         return super().on_deactivate(state)
 
     def assert_liveliness(self) -> None:
-        """Tell the subscriptions that the publisher is alive, in any state of the node.
+        """Signal to subscriptions that the publisher is alive, in any state of the node.
 
         Raises:
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
@@ -124,7 +124,7 @@ class LifecyclePublisher(SimpleManagedEntity, Generic[MsgT]):
         return self._publisher.events
 
     async def drain(self) -> None:
-        """Wait until messages were sent; see `Publisher.drain`."""
+        """Wait until messages have been sent; see `Publisher.drain`."""
         await self._publisher.drain()
 
     def get_subscription_count(self) -> int:
@@ -165,11 +165,11 @@ class LifecycleTimer(SimpleManagedEntity):
             self.timer.reset()
 
     def cancel(self) -> None:
-        """Make no more calls until `reset`, or the next activation."""
+        """Stop calling until `reset` or the next activation."""
         self.timer.cancel()
 
     def is_canceled(self) -> bool:
-        """Return whether the timer makes no calls, as it was canceled or the node is not active."""
+        """Return whether the timer is stopped: canceled, or its node not active."""
         return self.timer.is_canceled()
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:
@@ -178,13 +178,13 @@ class LifecycleTimer(SimpleManagedEntity):
         return super().on_activate(state)
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Stop it."""
+        """Stop the timer."""
         self.timer.cancel()
         return super().on_deactivate(state)
 
 
 class Gate(SimpleManagedEntity):
-    """Passes calls to a callback while its node is active.
+    """Lets calls through to a callback while its node is active.
 
     Attributes:
         discarded: How many messages arrived while it was disabled.
@@ -196,26 +196,26 @@ class Gate(SimpleManagedEntity):
         self._watch: SilenceWatch | None = None
 
     def guard(self, watch: SilenceWatch) -> None:
-        """Make a subscription notice silence only while enabled."""
+        """Have a subscription watch for silence only while enabled."""
         self._watch = watch
         watch.enable(enabled=self.is_activated)
 
     def on_activate(self, state: State) -> TransitionCallbackReturn:
-        """Pass calls; the first message arms the watch."""
+        """Let calls through; the first message arms the silence watch."""
         result = super().on_activate(state)
         if self._watch is not None:
             self._watch.enable(enabled=True)
         return result
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Pass none: whoever deactivates the node says what stops."""
+        """Block calls and watch no silence: whoever deactivates the node decides what stops."""
         result = super().on_deactivate(state)
         if self._watch is not None:
             self._watch.enable(enabled=False)
         return result
 
     def dropping(self, callback: Callable[..., Any]) -> Callable[..., Any]:
-        """Return a callback for messages, which discards them while disabled."""
+        """Wrap a message callback so that it discards messages while disabled."""
 
         @functools.wraps(callback)
         def gated(*args: Any) -> Any:
@@ -227,7 +227,7 @@ class Gate(SimpleManagedEntity):
         return gated
 
     def refusing(self, callback: Callable[..., Any], subject: str) -> Callable[..., Any]:
-        """Return a callback for requests, which raises EntityInactiveError while disabled."""
+        """Wrap a request callback so that it raises EntityInactiveError while disabled."""
 
         @functools.wraps(callback)
         def gated(*args: Any) -> Any:
@@ -239,7 +239,7 @@ class Gate(SimpleManagedEntity):
 
 
 def enabled_of(entities: Iterable[ManagedEntity]) -> list[SimpleManagedEntity]:
-    """Return those entities that are enabled now."""
+    """Return the entities that are currently enabled."""
     return [
         entity
         for entity in entities
@@ -254,7 +254,7 @@ def settle_entities(
     *,
     is_active: bool,
 ) -> None:
-    """Leave entities enabled in the active state only, however a transition has ended.
+    """Enable entities in the active state and disable them in others, however a transition ended.
 
     Args:
         entities: All entities of the node.
@@ -265,7 +265,7 @@ def settle_entities(
     if not is_active:
         for entity in reversed(enabled_of(entities)):
             entity.on_deactivate(start)
-    elif start == ACTIVE:  # a deactivation that failed half-way
+    elif start == ACTIVE:  # a deactivation failed half-way
         for entity in enabled:
             if not entity.is_activated:
                 entity.on_activate(start)

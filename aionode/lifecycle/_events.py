@@ -1,4 +1,4 @@
-"""Events for any number of readers, each with a queue of its own."""
+"""Events for any number of readers, each with its own queue."""
 
 from __future__ import annotations
 
@@ -18,26 +18,26 @@ KEPT_EVENTS = 100
 
 
 class EventSource(Generic[EventT]):
-    """Hands each event to all that iterate over them."""
+    """Passes each event to all current iterations."""
 
     def __init__(self) -> None:
-        self._readers: dict[Reader[EventT], None] = {}  # in order, to wake them in order
+        self._readers: dict[Reader[EventT], None] = {}  # ordered, so that they wake in order
         self._ended = False
 
     def emit(self, event: EventT) -> None:
-        """Hand `event` to all readers."""
+        """Pass `event` to all readers."""
         for reader in self._readers:
             reader.events.append(event)
             reader.woken.set()
 
     def end(self) -> None:
-        """End all iterations once they have yielded what there was; later ones end at once."""
+        """End all iterations after their pending events; later ones end at once."""
         self._ended = True
         for reader in self._readers:
             reader.woken.set()
 
     async def iterate(self) -> AsyncIterator[EventT]:
-        """Iterate over the events from the first step of the iteration on."""
+        """Iterate over the events that occur from the first step of the iteration on."""
         reader: Reader[EventT] = Reader()
         self._readers[reader] = None
         try:
@@ -53,7 +53,7 @@ class EventSource(Generic[EventT]):
 
 
 class Reader(Generic[EventT]):
-    """The events that one iteration has not yielded yet."""
+    """The pending events of one iteration."""
 
     def __init__(self) -> None:
         self.events: deque[EventT] = deque(maxlen=KEPT_EVENTS)

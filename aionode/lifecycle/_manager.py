@@ -1,4 +1,4 @@
-"""Bringing managed nodes up in order, and down in reverse order, through their services."""
+"""Bring managed nodes up in order, and down in reverse order, through their services."""
 
 from __future__ import annotations
 
@@ -44,16 +44,16 @@ class LifecycleManager:
         async with LifecycleManager(node, ["/camera", "/planner"]):
             ...  # both are active; at the end /planner goes down first, then /camera
 
-    Within ``async with`` it watches the nodes. The log and `events` tell of a node that has gone or
-    cannot be reached any more, and of one that is back: a `Supervisor` or a launch file starts it
-    again, and it is unconfigured then. With `restore` it is brought to the state that it had.
+    Within ``async with`` it watches the nodes. The log and `events` report a node that has gone or
+    become unreachable, and one that is back: restarted by a `Supervisor` or a launch file, it is
+    unconfigured again. With `restore` it is brought back to the state that it had.
 
     Args:
         node: The node whose clients call the managed ones; it must be running.
         node_names: Full names of the managed nodes, in the order in which they are brought up.
         timeout_sec: How long a node may take to appear, and to answer each request, in seconds.
-        restore: Whether a node that is back is brought to the state that it had. It may begin to
-            move then without anybody's request, so the default is to leave it as it is. The nodes
+        restore: Whether a node that is back is brought to the state that it had. It might then
+            start moving without anybody asking for it, so by default it is left as it is. The nodes
             that use it keep their states.
     """
 
@@ -74,7 +74,7 @@ class LifecycleManager:
         for name in self.node_names:
             self._changes[name] = node.create_client(ChangeState, f"{name}/change_state")
             self._states[name] = node.create_client(GetState, f"{name}/get_state")
-        self._last_states: dict[str, str] = {}  # what is known, without asking
+        self._last_states: dict[str, str] = {}  # as known without asking
         self._events: EventSource[ManagedNodeEvent] = EventSource()
         self._tasks: asyncio.TaskGroup | None = None
         self._watch: NodeWatch | None = None
@@ -83,7 +83,7 @@ class LifecycleManager:
     async def __aenter__(self) -> Self:
         """Bring the nodes up, as `startup` does, and watch them."""
         await self.startup()
-        if self._watch is not None:  # it was entered before
+        if self._watch is not None:  # already entered
             self._events = EventSource()
         services = {name: client.srv_name for name, client in self._changes.items()}
         self._watch = NodeWatch(self._node, services, self._last_states, self._tell)
@@ -103,7 +103,7 @@ class LifecycleManager:
         assert self._tasks is not None  # noqa: S101  # as above
         assert self._watching is not None  # noqa: S101  # as above
         self._watch.close()
-        # A transition that is under way ends first: a node that is configuring cannot go down.
+        # A transition in progress has to end first: a node that is configuring cannot go down.
         await asyncio.wait([self._watching], timeout=self._timeout_s)
         self._watching.cancel()
         await self._tasks.__aexit__(None, None, None)
@@ -116,7 +116,7 @@ class LifecycleManager:
         """Configure the nodes in order, then activate them in order.
 
         If one fails, or this is cancelled, the nodes already configured are brought down again, the
-        last one first; the log names those that could not be.
+        last one first; the log names those for which that failed.
 
         Raises:
             TransitionError: a node refused, failed, or did not appear.
@@ -134,8 +134,8 @@ class LifecycleManager:
     async def reset(self) -> None:
         """Bring the nodes down to unconfigured, the last one first, whatever states they are in.
 
-        Every node is brought down, even if another one fails. The log names the nodes that were
-        configured or active when they were last seen, and are gone.
+        Every node is brought down, even if another one fails. The log names nodes that are gone but
+        were configured or active when last seen.
 
         Raises:
             ExceptionGroup: the failures of the nodes.
@@ -189,7 +189,7 @@ class LifecycleManager:
         return state
 
     async def events(self) -> AsyncIterator[ManagedNodeEvent]:
-        """Iterate over what becomes of the nodes, from the first step of the iteration on.
+        """Iterate over the events of the nodes, from the first step of the iteration on.
 
         It ends when ``async with`` is left. The newest hundred events are kept for a slow reader.
         """
@@ -197,7 +197,7 @@ class LifecycleManager:
             yield event
 
     async def _down(self) -> list[Exception]:
-        """Bring all nodes down that are there; return the failures."""
+        """Bring down all nodes that are present; return the failures."""
         errors: list[Exception] = []
         for name in reversed(self.node_names):
             try:
@@ -205,14 +205,14 @@ class LifecycleManager:
                     await self._lead(name, "unconfigured")
                 else:
                     self._warn_of_gone(name)
-            except ServiceUnavailableError:  # it ends just now
+            except ServiceUnavailableError:  # it is just ending
                 self._warn_of_gone(name)
             except (AionodeError, TimeoutError) as error:
                 errors.append(error)
         return errors
 
     def _warn_of_gone(self, name: str) -> None:
-        """Name a node that has gone, if it may still be active somewhere."""
+        """Log that a node is gone, if it may still be active somewhere."""
         last_state = self._last_states.get(name, "")
         if last_state in LEVELS[1:]:
             self._node.get_logger().warning(
@@ -221,10 +221,10 @@ class LifecycleManager:
             )
 
     async def _lead(self, name: str, goal: str) -> None:
-        """Have a node make the transitions from its state to `goal`, one of `LEVELS`.
+        """Take a node through the transitions from its state to `goal`, one of `LEVELS`.
 
         Raises:
-            TransitionError: it refused or failed, or its state leads nowhere.
+            TransitionError: it refused or failed, or no transition leads there.
             RequestTimeoutError: it did not answer in time.
         """
         state = await self.get_state(name)
@@ -239,7 +239,7 @@ class LifecycleManager:
     # Nodes that go and return
 
     def _tell(self, event: ManagedNodeEvent) -> None:
-        """Write an event to the log, and hand it to the readers."""
+        """Log an event, and pass it to the readers."""
         if event.kind in ("lost", "failed"):
             self._node.get_logger().error(f"lifecycle manager: {event}")
         else:
@@ -247,7 +247,7 @@ class LifecycleManager:
         self._events.emit(event)
 
     async def _welcome_all(self, watch: NodeWatch) -> None:
-        """Look at each node that is back, until the watch is closed or the manager's node ends."""
+        """Handle each node that is back, until the watch is closed or the manager's node ends."""
         while (name := await watch.next_return()) is not None:
             try:
                 await self._welcome(name, watch)
@@ -258,10 +258,10 @@ class LifecycleManager:
                 self._tell(ManagedNodeEvent(name, "failed", state, watch.state_before(name), error))
 
     async def _welcome(self, name: str, watch: NodeWatch) -> None:
-        """Tell of a node that is back, and restore its state if that is wanted.
+        """Report a node that is back, and restore its state if configured to.
 
         Raises:
-            TransitionError: it refused or failed, or went again.
+            TransitionError: it refused, failed, or went away again.
             RequestTimeoutError: it did not answer in time.
         """
         if not await self._states[name].wait_for_service(self._timeout_s):

@@ -1,4 +1,4 @@
-"""A managed node, which is configured, activated, deactivated, cleaned up and shut down."""
+"""A managed node: it can be configured, activated, deactivated, cleaned up and shut down."""
 
 from __future__ import annotations
 
@@ -41,9 +41,10 @@ if TYPE_CHECKING:
     from aionode.message import ServiceClass
 
     Result: TypeAlias = TransitionCallbackReturn | Any
-    """A `TransitionCallbackReturn`, or an awaitable of one. Type checkers take what these methods
-    return for the former, for ``return super().on_activate(state)``, and `Any` lets overrides be
-    coroutine functions."""
+    """A `TransitionCallbackReturn`, or an awaitable of one. To type checkers these methods return
+    the former, so that ``return super().on_activate(state)`` passes; `Any` lets overrides be
+    coroutine functions.
+    """
 
 __all__ = ["LifecycleNode"]
 
@@ -52,20 +53,20 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 EVENT_QOS = QoSProfile(depth=10)
-"""Reliable and volatile, as `rcl_lifecycle` publishes its events."""
+"""Reliable and volatile, as in `rcl_lifecycle`."""
 
 
 class LifecycleNode(Node):
     """A managed node: it works only after it has been configured and activated.
 
-    Override `on_configure`, `on_activate` and the others. They get the state in which the
-    transition started, and return a `TransitionCallbackReturn`. They may be coroutines, which may
-    await anything, including services of this node. An exception is logged with its traceback,
-    raised by the `trigger_*` method that was called, and passed to `on_error`.
+    Override `on_configure`, `on_activate` and the others. They receive the state in which the
+    transition started, and return a `TransitionCallbackReturn`. They may be coroutines and await
+    anything, including services of this node. An exception is logged with its traceback, raised by
+    the `trigger_*` method that was called, and passed to `on_error`.
 
     Other processes manage the node through the standard services (``aionode lifecycle``, ``ros2
-    lifecycle``); `get_state` also answers during a transition. Other requests during a transition
-    are refused, with three exceptions. ``transition_failure`` and ``transition_error``, which
+    lifecycle``); `get_state` also answers during a transition. Requests during a transition are
+    refused, with three exceptions. ``transition_failure`` and ``transition_error``, which
     `rcl_lifecycle` allows in this state, cancel the callback with that result. ``shutdown`` cancels
     it as a failure, and then shuts down.
 
@@ -134,14 +135,14 @@ class LifecycleNode(Node):
         return self.__all("on_deactivate", reversed(self.__transitions.entities), state)
 
     def on_shutdown(self, state: State) -> Result:
-        """End permanently; by default, shut down all entities, the last one first."""
+        """Shut down permanently; by default, shut down all entities, the last one first."""
         return self.__all("on_shutdown", reversed(self.__transitions.entities), state)
 
     def on_error(self, state: State, error: Exception | None = None) -> Result:  # noqa: ARG002  # for overrides
         """Recover from an error; SUCCESS leads to unconfigured, other results to finalized.
 
-        By default, have all entities recover, the last one first, which makes the node unconfigured
-        as in rclpy. An override takes ``(state)``, as in rclpy, or ``(state, error)``.
+        By default, all entities recover, the last one first, which makes the node unconfigured as
+        in rclpy. An override takes ``(state)``, as in rclpy, or ``(state, error)``.
 
         Args:
             state: The state in which the failed transition started.
@@ -215,7 +216,7 @@ class LifecycleNode(Node):
     # Entities
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Have `entity` take part in transitions from now on, after those added earlier.
+        """Make `entity` take part in transitions from now on, after those added earlier.
 
         Raises:
             TypeError: it is not a `ManagedEntity`.
@@ -230,7 +231,7 @@ class LifecycleNode(Node):
     def create_lifecycle_publisher(
         self, msg_type: type[MsgT], topic: str, qos_profile: QoSProfile | int, **options: Any
     ) -> LifecyclePublisher[MsgT]:
-        """Return a publisher that sends only while the node is active; see `create_publisher`."""
+        """Create a publisher that sends only while the node is active; see `create_publisher`."""
         publisher = LifecyclePublisher(
             self.create_publisher(msg_type, topic, qos_profile, **options)
         )
@@ -253,9 +254,9 @@ class LifecycleNode(Node):
         qos_profile: QoSProfile | int = 10,
         **options: Any,
     ) -> Subscription[MsgT]:
-        """Return a subscription whose callback is called only while the node is active.
+        """Create a subscription whose callback is called only while the node is active.
 
-        Messages that arrive in other states are discarded, and no silence is noticed; see
+        Messages that arrive in other states are discarded, and silence is not watched for; see
         `create_subscription`.
         """
         gate = Gate()
@@ -274,7 +275,7 @@ class LifecycleNode(Node):
         callback: ServiceCallback[RequestT, ResponseT],
         **options: Any,
     ) -> Service[RequestT, ResponseT]:
-        """Return a service that answers only while the node is active.
+        """Create a service that answers only while the node is active.
 
         In other states the client gets a `ServiceError`; see `create_service`.
         """
@@ -290,7 +291,7 @@ class LifecycleNode(Node):
         clock: Clock | None = None,
         **options: Any,
     ) -> LifecycleTimer:
-        """Return a timer that runs only while the node is active; see `create_timer`."""
+        """Create a timer that runs only while the node is active; see `create_timer`."""
         timer = LifecycleTimer(
             self.create_timer(timer_period_sec, callback, clock, autostart=False, **options)
         )
@@ -328,7 +329,7 @@ class LifecycleNode(Node):
             return False
         if not machine.in_transition:
             return await self.__transitions.run(transition) is SUCCESS
-        # The requester ends the running callback with a result of its choice.
+        # The requester ends the running callback with the result of its choice.
         if transition.label == SUCCESS.to_label() or transition.start == ERROR_PROCESSING:
             return False
         wanted = next(

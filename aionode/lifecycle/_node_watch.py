@@ -1,4 +1,4 @@
-"""Noticing managed nodes that go, and those that are back."""
+"""Notice managed nodes that go away and come back."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["LEVELS", "ManagedNodeEvent", "NodeWatch"]
 
 LEVELS = ("unconfigured", "inactive", "active")
-"""The states that a manager brings nodes to, each above the one before."""
+"""The states to which a manager brings nodes, in ascending order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class ManagedNodeEvent:
 
     Attributes:
         node_name: Its full name.
-        kind: ``"lost"``: the node has gone, or cannot be reached. ``"returned"``: it is there
-            again. ``"restored"``: it is in its earlier state again. ``"failed"``: it is not.
-        state: Label of its state, as far as it is known.
+        kind: ``"lost"``: the node has gone or cannot be reached. ``"returned"``: it is back.
+            ``"restored"``: it is in its earlier state again. ``"failed"``: restoring it failed.
+        state: Label of its state, as far as known.
         state_before: Label of the state that it had before it was lost.
-        error: The reason of ``"failed"``.
+        error: The reason for ``"failed"``.
     """
 
     node_name: str
@@ -53,15 +53,15 @@ class ManagedNodeEvent:
 
 
 class NodeWatch:
-    """Watches the services by which nodes are managed, and the states that nodes tell of.
+    """Watches the services of managed nodes, and the states that they publish.
 
-    A new node may be there before the one of its name that was killed is known to have gone; it is
-    told by its service, which is another one.
+    A new node may appear before its killed predecessor of the same name is known to be gone; it is
+    recognized by its service, which is a different one.
 
     Args:
         node: The node that watches.
         services: The ``change_state`` service of each managed node, by the name of the node.
-        states: The last known state of each; updated as nodes tell of it.
+        states: The last known state of each; updated as nodes publish it.
         tell: Called with each event that is noticed here.
     """
 
@@ -75,7 +75,7 @@ class NodeWatch:
         self._states = states
         self._tell = tell
         self._servers: dict[str, set[EndpointInfo]] = {name: set() for name in services}
-        self._states_before: dict[str, str] = {}  # of those that were lost or replaced
+        self._states_before: dict[str, str] = {}  # of nodes that were lost or replaced
         self._lost: set[str] = set()
         self._returned: set[str] = set()
         self._begun = False
@@ -115,7 +115,7 @@ class NodeWatch:
             self._states[name] = state
 
     async def next_return(self) -> str | None:
-        """Wait for a node that is back, the first one in order; None once this is closed."""
+        """Wait for a node that is back, the first in order; None once this is closed."""
         while not self._closed:
             for name in self._servers:
                 if name in self._returned:
@@ -130,16 +130,16 @@ class NodeWatch:
         return self._states_before.get(name, "unknown")
 
     def was_lost(self, name: str) -> bool:
-        """Return whether the node was gone before it was back."""
+        """Return whether the node was gone before it came back."""
         return name in self._lost
 
     def settle(self, name: str) -> None:
-        """Take the state that a node has now for the one that it is to have."""
+        """Accept a node's current state as the one that it should have."""
         self._states_before.pop(name, None)
         self._lost.discard(name)
 
     def close(self) -> None:
-        """Watch no more."""
+        """Stop watching."""
         self._closed = True
         self._changed.set()
         for unwatch in self._unwatch:

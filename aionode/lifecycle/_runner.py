@@ -1,6 +1,6 @@
-"""Runs the transitions of one managed node, one at a time, and always to a defined state.
+"""Runs the transitions of one managed node, one at a time, always ending in a defined state.
 
-However a transition ends, the node is in a primary state afterwards::
+Whatever the outcome of a transition, the node is in a primary state afterwards::
 
     the callback returns SUCCESS, FAILURE or ERROR    according to the table in `states`
     it returns anything else, or raises               as for ERROR, with the exception
@@ -71,11 +71,11 @@ class TransitionRunner:
 
     Args:
         node: Full name of the node, for errors.
-        logger: Where exceptions of callbacks go, with their traceback.
-        callback: Returns the callback for the label of a transition, or for ``"error"``. That takes
-            the state and the exception, and may return an awaitable.
+        logger: Logs exceptions of callbacks, with their traceback.
+        callback: Returns the callback for the label of a transition, or for ``"error"``. It is
+            called with the state and the exception, and may return an awaitable.
         publish: Called with the old and the new state at each change.
-        events: Where state changes and progress go.
+        events: Receives state changes and progress.
 
     Attributes:
         machine: The current state.
@@ -97,7 +97,7 @@ class TransitionRunner:
         self._callback = callback
         self._publish = publish
         self._label = ""  # of the current transition, or of the last one
-        self._error: Exception | None = None  # why that failed
+        self._error: Exception | None = None  # why it failed
         self._scope: asyncio.Timeout | None = None  # expires to cancel the running callback
         self._wanted = FAILURE  # the result of a callback that `cancel` cancels
         self._shutdowns_waiting = 0
@@ -130,8 +130,8 @@ class TransitionRunner:
     def find(self, label: str = "", transition_id: int = 0) -> Transition | None:
         """Return an available transition, as `StateMachine.find` does.
 
-        While a shutdown waits for a transition to end, it is the only one: a caller that tries
-        again as soon as a transition fails would otherwise overtake the shutdown.
+        While a shutdown waits for a transition to end, nothing else is available: otherwise a
+        caller that retries as soon as a transition fails would overtake the shutdown.
         """
         transition = self.machine.find(label, transition_id)
         return transition if transition and transition.label in self._available_labels() else None
@@ -171,7 +171,7 @@ class TransitionRunner:
         return result
 
     async def _call(self, name: str, start: State) -> TransitionCallbackReturn:
-        """Run a callback, and leave the transition state according to its result."""
+        """Run a callback, and move to the next state according to its result."""
         result = FAILURE
         self._wanted = FAILURE
         try:
@@ -184,7 +184,7 @@ class TransitionRunner:
             if is_cancelled_task():
                 self._logger.warning(f"on_{name} was canceled")
                 raise
-            # Something that the callback awaited was cancelled, and not this task.
+            # Something that the callback awaited was cancelled, not this task.
             error = CallbackCancelledError(f"{self._node}: on_{name}")
             error.__cause__ = lost
             self._fail(name, error)
@@ -202,7 +202,7 @@ class TransitionRunner:
         return result
 
     def _is_own_timeout(self, error: Exception) -> bool:
-        """Whether `cancel` cancelled the callback, and it raised nothing else in its place."""
+        """Whether `cancel` cancelled the callback, which then raised nothing else."""
         return (
             isinstance(error, TimeoutError)
             and isinstance(error.__cause__, asyncio.CancelledError)
@@ -211,7 +211,7 @@ class TransitionRunner:
         )
 
     def _checked(self, name: str, returned: object) -> TransitionCallbackReturn:
-        """Return the result of a callback; raise TypeError if it is something else."""
+        """Return the result of a callback; raise TypeError if it is not one."""
         if isinstance(returned, TransitionCallbackReturn):
             return returned
         raise TypeError(
