@@ -1,4 +1,4 @@
-"""Service clients: calls, their time limits, and what ends them."""
+"""Service clients: calls, their timeouts, and their ends."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ ResponseT = TypeVar("ResponseT", bound=Message)
 
 
 class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
-    """Calls a service. Made by `Node.create_client`.
+    """Calls a service. Created by `Node.create_client`.
 
     Attributes:
         srv_type: The service class.
         qos_profile: Its profile.
-        stats: What became of the calls.
+        stats: Counts and outcomes of the calls.
     """
 
     def __init__(
@@ -85,11 +85,12 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
         Returns:
             True once a server is matched, False if none was within `timeout_sec`. A server that is
-            known not to answer, on Fast DDS behind a bridge, counts, and is warned of in the log.
+            known not to answer, on Fast DDS behind a bridge, counts as a match but is warned about
+            in the log.
 
         Raises:
-            EntityDestroyedError: the client was destroyed, before or during the wait (a
-                RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            EntityDestroyedError: the client was destroyed before or during the wait (a
+                RuntimeError); its ``__cause__`` is the node's error, if it failed.
             CancelledError: the client was destroyed during the wait of one of the node's own
                 tasks: a callback, or the body of ``async with node``.
         """
@@ -105,13 +106,14 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
     async def call(self, request: RequestT, timeout_sec: float | None = None) -> ResponseT:
         """Send `request` and wait for the response.
 
-        Without a server no answer comes, so limit the wait with `timeout_sec` or
+        Without a server there is no answer, so limit the wait with `timeout_sec` or
         `asyncio.timeout`, or wait for the service first. A call that is cancelled or times out is
         dropped on both sides: a server that has not started it never does, and a late reply is
         ignored. If there are several servers, the first answer counts.
 
         Args:
-            request: An instance of ``srv_type.Request``; it may be changed once the call has begun.
+            request: An instance of ``srv_type.Request``; it may be changed once the call has
+                started.
             timeout_sec: The longest wait in seconds; None waits for ever.
 
         Raises:
@@ -120,8 +122,8 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             ServiceError: the handler failed; carries the type and text of its exception.
             ServiceUnavailableError: the server went away before it answered (a ServiceError).
             RequestTimeoutError: `timeout_sec` has passed (a TimeoutError).
-            EntityDestroyedError: the client was destroyed, before or during the call (a
-                RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            EntityDestroyedError: the client was destroyed before or during the call (a
+                RuntimeError); its ``__cause__`` is the node's error, if it failed.
             CancelledError: the client was destroyed during a call of one of the node's own tasks: a
                 callback, or the body of ``async with node``.
         """
@@ -181,7 +183,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         return task
 
     async def _exchange(self, request: RequestT) -> Any:
-        """Send through every transport and return the first answer."""
+        """Send through every transport, and return the first answer."""
         exchange = self._begin(request)
         try:
             return await exchange.answer
@@ -192,7 +194,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             exchange.cancel()
 
     def _begin(self, request: RequestT) -> Exchange:
-        """Send `request` to the servers matched now, and return what takes the answer.
+        """Send `request` to the servers matched now, and return the pending exchange.
 
         For requests that must outlive the task that sends them.
 
@@ -226,7 +228,7 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         return exchange
 
     def _introspect(self, request: Any, sample_info: SampleInfo, exchange: Exchange) -> None:
-        """Publish that a request was sent, and its response when that arrives."""
+        """Publish that a request was sent, and its response when it arrives."""
         publish = self._introspection.publish
         publish(REQUEST_SENT, sample_info, request)
 
@@ -240,11 +242,11 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
         return sum(requester.servers for requester in self._requesters)
 
     def _caveat(self) -> str:
-        """Return why the matched servers may not answer, if a transport knows."""
+        """Return why the matched servers may not answer, if a transport knows a reason."""
         return next((caveat for requester in self._requesters if (caveat := requester.caveat)), "")
 
     def _tell_caveat(self) -> None:
-        """Log once why the matched servers may not answer, if a transport knows."""
+        """Log once why the matched servers may not answer, if a transport knows a reason."""
         caveat = self._caveat()
         if caveat and not self._has_told_caveat:
             self._has_told_caveat = True
@@ -262,13 +264,13 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
             )
 
     def _close(self) -> None:
-        """Withdraw the client; end its calls, and the waits for a server."""
+        """Withdraw the client; end its calls and the waits for a server."""
         self._leave_graph()
-        # First, so that the calls do not fail as if the servers had gone.
+        # First, so that the calls do not fail as if the servers were gone.
         for answer in list(self._answers):
             if not answer.done():
                 answer.set_exception(EntityDestroyedError(self._subject))
-                answer.exception()  # retrieved, as nobody may await it any more
+                answer.exception()  # mark it retrieved: perhaps nobody awaits it any more
         self._futures.close()
         self._introspection.close()
         for requester in self._requesters:
@@ -276,20 +278,20 @@ class Client(IntrospectedEntity, Generic[RequestT, ResponseT]):
 
 
 class Exchange:
-    """The client's end of one call: the first answer of any transport counts.
+    """The client's end of one call; the first answer from any transport counts.
 
-    A call that began without any server stays open, since no server can go away.
+    A call that started without any server stays pending, since no server can go away.
 
     Args:
         service: Name of the service.
         servers: How many servers were matched when the call began.
-        answers: The client's open answers; this one is among them until `cancel`.
+        answers: The client's pending answers, which include this one until `cancel`.
 
     Attributes:
         answer: The response, or the error in its place; EntityDestroyedError if the client is
             destroyed. Cancelling a task that awaits it directly
             cancels it too, unless it is shielded by `asyncio.shield`.
-        calls: The request under way in each transport.
+        calls: The pending request in each transport.
         open: How many of `calls` may still answer.
     """
 
@@ -313,15 +315,15 @@ class Exchange:
             self.answer.set_exception(error)
 
     def end(self) -> None:
-        """Mark one transport as finished: no answer will come through it any more."""
+        """Mark one transport as finished: it will bring no more answers."""
         self.open -= 1
         if self.open == 0 and not self.answer.done():
             self.answer.set_exception(ServiceUnavailableError(self._service))
 
     def cancel(self) -> None:
-        """Drop the call: a server that has not started it need not, and a reply is ignored."""
+        """Drop the call: a server that has not started it never will, and a reply is ignored."""
         self._answers.discard(self.answer)
         if not self.answer.cancel() and not self.answer.cancelled():
-            self.answer.exception()  # retrieved, so that asyncio does not report it
+            self.answer.exception()  # mark it retrieved, so that asyncio does not report it
         for call in self.calls:
             call.cancel()

@@ -1,10 +1,10 @@
-"""Events of publishers and subscriptions: deadlines, liveliness, matches, and what is lost.
+"""Events of publishers and subscriptions: deadlines, liveliness, matches, lost messages.
 
-The names and fields are those of `rclpy.event_handler`. An event tells what has changed since the
-one before it (``…_change``), and the total since the endpoint was created.
+The names and fields are those of `rclpy.event_handler`. An event has the change since the previous
+one (``…_change``), and the total since the endpoint was created.
 
-There are two ways to get them: callbacks, given when the endpoint is created, and
-``async for event in publisher.events``.
+There are two ways to get them: callbacks, passed when the endpoint is created, and ``async for
+event in publisher.events``.
 """
 
 from __future__ import annotations
@@ -57,18 +57,18 @@ __all__ = [
 EventT = TypeVar("EventT")
 
 EVENTS_KEPT = 100
-"""Most events that wait for a callback or a reader; beyond, the oldest is dropped and counted."""
+"""Maximum events waiting for a callback or reader; then the oldest is dropped and counted."""
 
 
-# The asyncio form
+# The asyncio API
 
 
 class EventStream(Generic[EventT]):
     """The events of one endpoint, as an async iterator: ``async for event in publisher.events``.
 
-    It begins with what has happened since the endpoint was created, as one event of each kind, and
-    ends when the endpoint is destroyed. It keeps the newest hundred events. If several tasks read
-    it, each event goes to one of them.
+    It starts with one event of each kind for what has happened since the endpoint was created, and
+    ends when the endpoint is destroyed. It keeps the newest 100 events. If several tasks read it,
+    each event goes to one of them.
     """
 
     def __init__(self) -> None:
@@ -77,7 +77,7 @@ class EventStream(Generic[EventT]):
 
     @property
     def dropped(self) -> int:
-        """The number of events that were dropped because they were not read in time."""
+        """The number of events dropped because they were not read in time."""
         return self._queue.stats.dropped
 
     def __aiter__(self) -> AsyncIterator[EventT]:
@@ -98,6 +98,6 @@ class EventStream(Generic[EventT]):
         self._queue.put(event)
 
     def _end(self) -> None:
-        """End the iteration once what has happened was read."""
+        """End the iteration once all events are read."""
         self._ended = True
         self._queue.wake()

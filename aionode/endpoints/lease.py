@@ -1,4 +1,4 @@
-"""Leases for commands: the right to command, and a stop that goes out when it ends."""
+"""Command leases: the right to publish commands, with a stop that is sent when it ends."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ MsgT = TypeVar("MsgT")
 LeasedT_contra = TypeVar("LeasedT_contra", contravariant=True)
 
 LOCK_S: Final = 0.05
-"""Time for which another thread waits for a command in the middle of its publication."""
+"""How long another thread waits for a command that is just being published."""
 
 
 def send_stops(within_sec: float = REPEAT_S) -> bool:
-    """Send the stop of every open lease of this process now, and give it time to leave.
+    """Send the stops of all open leases of this process now, and give them time to leave.
 
-    For programs that are about to end without their event loop; `aionode.run` does so by itself. It
-    may be called in any thread and in a handler of signals, also while the loop is blocked. The
-    leases have expired then. With an open lease it takes `within_sec`, without one no time.
+    For programs that are about to end without their event loop; `aionode.run` does this itself. It
+    may be called in any thread and in a signal handler, even while the loop is blocked. The leases
+    are expired afterwards. It takes `within_sec` if a lease is open, and no time otherwise.
 
     Args:
         within_sec: How long it takes, in seconds.
@@ -48,12 +48,12 @@ def send_stops(within_sec: float = REPEAT_S) -> bool:
     """
     if not watch.stop_all():
         return False
-    threading.Event().wait(within_sec)  # it is put again meanwhile
+    threading.Event().wait(within_sec)  # meanwhile the stop is sent again
     return True
 
 
 class LeasedPublisher(Protocol[LeasedT_contra]):
-    """The parts of a publisher that its lease uses."""
+    """What a lease uses of its publisher."""
 
     _affinity: LoopAffinity
 
@@ -62,39 +62,39 @@ class LeasedPublisher(Protocol[LeasedT_contra]):
         """The full name of the topic."""
 
     def _hold(self, lease: Any, stop: LeasedT_contra | bytes | bytearray | memoryview) -> None:
-        """Have `lease` prepare its stop, and have only it publish from now on.
+        """Give `lease` the exclusive right to publish, and prepare its stop.
 
         Raises:
-            LeaseHeldError: another lease does.
+            LeaseHeldError: another lease has it.
         """
 
     def _let_go(self) -> None:
-        """Have `publish` publish again."""
+        """Let `publish` publish again."""
 
     def _publish_leased(self, msg: LeasedT_contra | bytes | bytearray | memoryview) -> None:
         """Publish a command."""
 
     def _number_stop(self, step: int) -> tuple[int, int]:
-        """Return the number of the stop, so much after the last one, and its time."""
+        """Return the sequence number of the stop, `step` after the last one, and its time."""
 
     def _prepare_stop(
         self, stop: LeasedT_contra, number: Callable[[], int]
     ) -> tuple[StopSender, ...]:
-        """Return what sends the stop of a lease, for each transport; `number` returns its own."""
+        """Return the stop senders of a lease, one per transport; `number` numbers the stop."""
 
 
 class State(enum.Enum):
-    """The states of a lease; it only goes down this list."""
+    """The states of a lease, in order: it never goes back."""
 
     NEW = enum.auto()
     OPEN = enum.auto()
     SENT = enum.auto()
-    """The stop was sent past the event loop, which has to do the rest when it goes on."""
+    """The stop was sent past the event loop, which does the rest when it continues."""
     ENDED = enum.auto()
 
 
 class CommandLease(Generic[MsgT]):
-    """The right to publish commands, for as long as its holder lives. Made by `Publisher.lease`.
+    """The right to publish commands while its holder is alive. Created by `Publisher.lease`.
 
     ::
 
@@ -102,24 +102,24 @@ class CommandLease(Generic[MsgT]):
             while True:
                 lease.publish(await next_command())
 
-    The stop goes out once, as soon as the block ends, however it ends; when the holder has
-    published nothing for the time to live; when the publisher, its node or its context is
-    destroyed, or the node fails. It also goes out when a second Ctrl-C ends `aionode.run` at once,
-    when the interpreter exits, and before Ctrl-Z suspends a process whose main thread has the event
-    loop. This does not take the holder's task to run again, nor, for other processes, the event
-    loop.
+    The stop is sent once: as soon as the block ends, however it ends; when the holder has published
+    nothing for the time to live; when the publisher, its node or its context is destroyed, or the
+    node fails. It is also sent when a second Ctrl-C ends `aionode.run` at once, when the
+    interpreter exits, and before Ctrl-Z suspends a process whose main thread runs the event loop.
+    None of this needs the holder's task to run again, nor, for subscriptions in other processes,
+    the event loop.
 
     When the time to live is over, the block is cancelled as by `asyncio.timeout`, and raises
-    LeaseExpiredError. `publish` compares the time itself: a holder that stood still sends nothing.
+    LeaseExpiredError. `publish` checks the time itself, so a holder that was frozen sends nothing.
 
     Raises:
         TypeError: `ttl_sec` is not a number, or `clock` not a clock.
         ValueError: `ttl_sec` is not positive and finite.
     """
 
-    # The state, under the lock, decides who sends the stop. The loop's thread holds the lock
-    # from the comparison of the time until the command is written, so that no command follows a
-    # stop of another thread. The lock is reentrant, because a signal handler may run meanwhile.
+    # The state, guarded by the lock, decides who sends the stop. The loop's thread holds the lock
+    # from the check of the time until the command is written, so that no command follows another
+    # thread's stop. The lock is reentrant because a signal handler may run meanwhile.
 
     def __init__(
         self,
@@ -145,21 +145,21 @@ class CommandLease(Generic[MsgT]):
         self._ttl_sec = ttl_sec
         self._clock = clock
         self._time_base = time_base.through_suspend()
-        self._silence: SilenceAlarm | None = None  # from the beginning of the block to the stop
-        # Held to act on `_state`, by the loop or the thread past it, so that only one of them sends
-        # the stop. Reentrant: a signal handler may interrupt the holder.
+        self._silence: SilenceAlarm | None = None  # from the start of the block to the stop
+        # Held to act on `_state`, by the loop or a thread past it, so that only one of them sends
+        # the stop. Reentrant, as a signal handler may interrupt the holder.
         self._lock = threading.RLock()
         self._state = State.NEW
         self._is_publishing = False
-        self._asked = ""  # why another thread ends it now, if one does
-        self._numbers = (0, 0)  # of the stop: its sequence number and time
-        self._message: MsgT | None = None  # the stop, which nobody changes
+        self._asked = ""  # why another thread is ending it, if one is
+        self._numbers = (0, 0)  # the stop's sequence number and time
+        self._message: MsgT | None = None  # the stop; never modified
         self._senders: tuple[StopSender, ...] = ()
-        self._refusal: Callable[[], Exception] | None = None  # what `publish` raises after the end
-        # The loop of the publisher's node, or that of the block if the node does not run.
+        self._refusal: Callable[[], Exception] | None = None  # for `publish` after the end
+        # The loop of the publisher's node, or of the block if the node is not running.
         self._loop: asyncio.AbstractEventLoop | None = None
         self._affinity = LoopAffinity()
-        # The block: its task and loop, and whether the time to live has cancelled it.
+        # The block: its task, its loop, and whether the expiry has cancelled it.
         self._task: asyncio.Task[Any] | None = None
         self._block_loop: asyncio.AbstractEventLoop | None = None
         self._cancelling = 0
@@ -173,13 +173,13 @@ class CommandLease(Generic[MsgT]):
 
     @property
     def held(self) -> bool:
-        """Whether commands may be published: it was entered, and its stop was not sent."""
+        """Whether commands may be published: it was entered, and its stop has not been sent."""
         return self._state is State.OPEN and not self._is_silent()
 
     # The block
 
     async def __aenter__(self) -> Self:
-        """Take the right to publish, and encode the stop.
+        """Acquire the right to publish, and encode the stop.
 
         Raises:
             LeaseHeldError: another lease of the publisher is held (a RuntimeError).
@@ -218,7 +218,7 @@ class CommandLease(Generic[MsgT]):
         watch.add(self)
 
     def prepare(self, stop: MsgT | None = None) -> None:
-        """Encode the stop for each transport; again when the publisher has one more in use."""
+        """Encode the stop for each transport, and again when the publisher starts using another."""
         self._message = self._message if stop is None else stop
         if self._message is not None:
             self._senders = self._publisher._prepare_stop(self._message, lambda: self._numbers[0])
@@ -229,12 +229,12 @@ class CommandLease(Generic[MsgT]):
         exc: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Send the stop, unless it was sent.
+        """Send the stop, unless already sent.
 
         Raises:
-            LeaseExpiredError: the time to live was over before (a TimeoutError).
+            LeaseExpiredError: the time to live ran out before (a TimeoutError).
         """
-        # Nothing is awaited here: the block may end because its coroutine is thrown away.
+        # Nothing is awaited here, as the block may end because its coroutine is closed.
         self._left = True
         if self._state in (State.OPEN, State.SENT) and self._affinity.is_other_thread():
             self._affinity.wait_for(self._end_block)
@@ -242,7 +242,7 @@ class CommandLease(Generic[MsgT]):
             self._end_block()
         if not self._has_expired:
             return
-        # As in asyncio.timeout: a cancellation of others passes.
+        # As in asyncio.timeout, a cancellation by others propagates.
         is_ours = self._cancelled and self._task is not None
         if is_ours and self._task.uncancel() > self._cancelling:  # type: ignore[union-attr]  # as above
             return
@@ -253,7 +253,7 @@ class CommandLease(Generic[MsgT]):
         self.end_for(lambda: LeaseExpiredError(self._publisher.topic_name, "its block has ended"))
 
     def _cancel_block(self) -> None:
-        """Cancel the block, whose loop may be another one, after the stop was sent."""
+        """Cancel the block, which may run in another loop, after the stop was sent."""
         if self._block_loop is not None and not self._left:
             try:
                 self._block_loop.call_soon_threadsafe(self._cancel_task)
@@ -268,15 +268,15 @@ class CommandLease(Generic[MsgT]):
     # Commands
 
     def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
-        """Publish a command as `Publisher.publish` does, and begin the time to live anew.
+        """Publish a command like `Publisher.publish`, and restart the time to live.
 
-        It may be called from any thread, as `Publisher.publish`.
+        Like `Publisher.publish`, it may be called from any thread.
 
         Raises:
-            LeaseExpiredError: the time to live is over, or the block has ended; nothing was sent
-                but the stop (a TimeoutError).
+            LeaseExpiredError: the time to live is over, or the block has ended; only the stop was
+                sent (a TimeoutError).
             RuntimeError: the lease was not entered.
-            Exception: the exceptions of `Publisher.publish`; the time to live goes on.
+            Exception: the exceptions of `Publisher.publish`; the time to live is not restarted.
         """
         if self._affinity.is_other_thread():
             self._affinity.wait_for(self.publish, msg)
@@ -305,19 +305,19 @@ class CommandLease(Generic[MsgT]):
     # Time
 
     def _is_silent(self) -> bool:
-        """Return whether the time to live is over; before the first command none runs."""
+        """Return whether the time to live is over; it starts with the first command."""
         left_ns = None if self._silence is None else self._silence.left_ns()
         return left_ns is not None and left_ns <= 0
 
     def _on_silence(self, periods: int) -> bool:  # noqa: ARG002  # the first one ends it
-        """End the lease; the alarm counts the next period by now, so `_is_silent` would not do."""
+        """End the lease; the alarm already counts the next period, so `_is_silent` would not do."""
         with self._lock:
             if self._state is State.OPEN:
                 self._expire(self._of_silence())
         return False
 
     def _look(self) -> None:
-        """End the lease if its time to live is over, or a thread asks for it; on the loop."""
+        """End the lease, on the loop, if its time to live is over or a thread has asked for it."""
         with self._lock:
             if self._state is State.OPEN and (self._asked or self._is_silent()):
                 self._expire(self._asked or self._of_silence())
@@ -326,7 +326,7 @@ class CommandLease(Generic[MsgT]):
         return f"nothing was published for {self._ttl_sec:g} s"
 
     def _expire(self, reason: str) -> None:
-        """Send the stop, and only then end the block."""
+        """Send the stop, and then end the block."""
         self._has_expired = True
         self.end_for(lambda: LeaseExpiredError(self._publisher.topic_name, reason))
         self._cancel_block()
@@ -334,15 +334,15 @@ class CommandLease(Generic[MsgT]):
     # The end, on the loop's thread
 
     def end_for(self, refusal: Callable[[], Exception]) -> None:
-        """Send the stop, unless it was sent, and do the rest after another thread has sent it.
+        """Send the stop unless another thread has, and do the rest in either case.
 
         Args:
-            refusal: Returns what `publish` raises from now on, and perhaps the block.
+            refusal: Creates the exception that `publish`, and perhaps the block, raise from now on.
         """
         with self._lock:
             if self._state is State.OPEN:
                 self._refusal = refusal
-                if self._is_publishing:  # a signal handler has interrupted it: not before its end
+                if self._is_publishing:  # interrupted by a signal handler: wait for its end
                     return
                 self._numbers = self._publisher._number_stop(1)
             elif self._state is not State.SENT:
@@ -355,24 +355,24 @@ class CommandLease(Generic[MsgT]):
         self._publisher._let_go()
 
     def finish(self) -> None:
-        """Do the rest now if another thread has sent the stop, or if the time to live is over."""
+        """Do the rest now if another thread has sent the stop or the time to live is over."""
         self._look()
         if self._state is State.SENT:
             self._take_over()
 
     def _end_if_refused(self) -> None:
-        """End what was ended while a command was being published: behind that command."""
+        """Finish an end that was requested during a publication, after that command."""
         if self._refusal is not None:
             if self._state is State.SENT:
                 self._numbers = self._publisher._number_stop(2)
             self.end_for(self._refusal)
 
     def _send(self, send: Callable[[StopSender, int, int], None]) -> None:
-        """Send the stop through each transport; what one cannot do is no reason to leave others."""
+        """Send the stop through each transport; a failure of one does not affect the others."""
         for sender in self._senders:
             try:
                 send(sender, *self._numbers)
-            except Exception:  # noqa: BLE001  # logged: who ends a lease could do nothing
+            except Exception:  # noqa: BLE001  # logged, as whoever ends a lease could do nothing about it
                 get_logger("aionode.lease").error(
                     f"{self._publisher.topic_name}: the stop of a lease was not sent over one "
                     f"transport:\n{traceback.format_exc()}"
@@ -382,7 +382,7 @@ class CommandLease(Generic[MsgT]):
 
     @property
     def is_sent(self) -> bool:
-        """Whether the stop was sent past the loop, which has not taken over yet."""
+        """Whether the stop was sent past the loop, which has not yet taken over."""
         return self._state is State.SENT
 
     @property
@@ -391,17 +391,17 @@ class CommandLease(Generic[MsgT]):
         return self._loop is not None and self._loop.is_closed()
 
     def left_ns(self) -> int | None:
-        """Return how much of the time to live is left, in nanoseconds; None if none runs.
+        """Return the rest of the time to live in nanoseconds; None if it is not running.
 
-        Time that a test sets by hand ends a lease on the loop only.
+        A manual clock of a test ends leases on the loop only.
         """
         if self._silence is None or not isinstance(self._time_base, MachineTime):
             return None
         return self._silence.left_ns()
 
     def send_past_loop(self, reason: str) -> bool:
-        """Send the stop, unless another thread does; see `Watched`."""
-        self._asked = reason  # a holder that publishes without a pause may not leave the lock
+        """Send the stop, unless another thread is doing so; see `Watched`."""
+        self._asked = reason  # a holder that publishes without pause may never leave the lock free
         is_locked = self._lock.acquire(timeout=LOCK_S)
         if not (is_locked or reason):
             return False  # a command is being published
@@ -423,13 +423,13 @@ class CommandLease(Generic[MsgT]):
         return True
 
     def _take_over(self) -> None:
-        """Go on, on the loop, after the stop was sent past it."""
+        """Continue on the loop after the stop was sent past it."""
         if self._state is State.SENT and self._refusal is not None:
             self.end_for(self._refusal)
         self._cancel_block()
 
     def repeat(self) -> None:
-        """Put the stop again, unless the loop has taken over."""
+        """Send the stop again, unless the loop has taken over."""
         if self._lock.acquire(timeout=LOCK_S):
             try:
                 if self._state is State.SENT:
@@ -438,7 +438,7 @@ class CommandLease(Generic[MsgT]):
                 self._lock.release()
 
     def leave_to_parent(self) -> None:
-        """Send nothing any more, in a forked child."""
+        """Stop sending, in a forked child."""
         self._lock = threading.RLock()
         self._state = State.ENDED
         self._has_expired = False

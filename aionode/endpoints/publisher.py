@@ -1,6 +1,6 @@
 """Publishers.
 
-`engine/wire/cdr/_encoder.py` encodes messages, field by field; the writers in
+`engine/wire/cdr/_encoder.py` encodes messages field by field; the writers in
 `engine/transport/link/_publisher.py` and `engine/transport/zenoh/endpoints/publisher.py` send them.
 """
 
@@ -42,9 +42,9 @@ MsgT = TypeVar("MsgT", bound=Message)
 
 
 class HeldWriter(Writer):
-    """Takes the place of a publisher's writers while a lease is held: `publish` raises.
+    """Replaces a publisher's writers while a lease is held, so that `publish` raises.
 
-    So `publish` of publishers without a lease has nothing to ask.
+    That way `publish` needs no check for a lease.
     """
 
     bounded = True
@@ -61,19 +61,19 @@ class HeldWriter(Writer):
         raise LeaseHeldError(self._topic)
 
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:
-        """Take nothing."""
+        """Do nothing."""
 
     def close(self) -> None:
-        """There is nothing to withdraw."""
+        """Do nothing: there is nothing to withdraw."""
 
 
 class Publisher(Endpoint, Generic[MsgT]):
-    """Sends messages of one type to one topic. Made by `Node.create_publisher`.
+    """Sends messages of one type to one topic. Created by `Node.create_publisher`.
 
     Attributes:
         msg_type: The class of its messages.
         qos_profile: Its profile.
-        stats: How much it sent, and by which routes.
+        stats: How much it sent, and over which routes.
     """
 
     def __init__(
@@ -92,12 +92,12 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._monitor: PublisherMonitor | None = None  # if a policy or the program needs one
         qos = self.qos_profile
         if event_callbacks is not None or is_limited(qos.deadline, qos.liveliness_lease_duration):
-            # Before anything is announced to others: it refuses callbacks that do not fit.
+            # Before anything is announced to others, as it may reject callbacks.
             self._monitor = PublisherMonitor(self, time_base, event_callbacks)
         self._lease: CommandLease[MsgT] | None = None  # while it is held
-        writers = self._all_writers = tuple(make_writers())  # one for each transport
+        writers = self._all_writers = tuple(make_writers())  # one per transport
         self.stats = PublisherStats(writers, self._matched)
-        # The tasks in `drain`, and whether `_close` has cancelled them.
+        # The tasks in `drain`, and whether `_close` cancelled them.
         self._draining: dict[asyncio.Task[Any], bool] = {}
         self._signs: tuple[Writer, ...] = ()
         if self._monitor is not None and self._monitor.needs_signs:
@@ -107,7 +107,7 @@ class Publisher(Endpoint, Generic[MsgT]):
             writer.when_replaced(self._leave_out_placeholders)
 
     def _leave_out_placeholders(self) -> None:
-        """Have the other writers take the messages."""
+        """Send messages only to writers that are not placeholders."""
         ready = tuple(writer for writer in self._all_writers if not writer.is_placeholder)
         self._ready_writers: tuple[Writer, ...] = ready + self._signs
         if self._lease is None:
@@ -129,14 +129,14 @@ class Publisher(Endpoint, Generic[MsgT]):
     topic = topic_name
 
     def publish(self, msg: MsgT | bytes | bytearray | memoryview) -> None:
-        """Hand `msg` to every matched subscription; never blocks and never waits.
+        """Send `msg` to every matched subscription; never blocks or waits.
 
-        The object may be changed and published again at once: readers get a snapshot. A full
-        KEEP_LAST queue drops its oldest message and counts it. To wait for slow readers instead,
+        The object may be changed and published again at once, as readers get a snapshot. A full
+        KEEP_LAST queue drops and counts its oldest message. To wait for slow readers instead,
         subscribe with KEEP_ALL and `await drain()` before the next message.
 
-        The message may also be given as CDR bytes, for example as received by a subscription
-        with ``raw=True``.
+        The message may also be CDR bytes, for example as received by a subscription with
+        ``raw=True``.
 
         It may be called from any thread, such as that of an offloaded callback. Outside the event
         loop's thread it blocks until the loop has taken the message.
@@ -177,12 +177,12 @@ class Publisher(Endpoint, Generic[MsgT]):
         stats.published = sequence
 
     def _fitting(self, msg: Any) -> Any:
-        """Return `msg`, decoded if it is bytes; TypeError if it is of an unrelated class."""
+        """Return `msg`, decoded if bytes; TypeError if it is of an unrelated class."""
         if isinstance(msg, bytes | bytearray | memoryview):
             from aionode.engine.wire import cdr  # most publishers never need the codec
 
             return cdr.decode(self.msg_type, msg)
-        self._check(msg)  # raises the TypeError; subclasses pass
+        self._check(msg)  # raises TypeError; accepts subclasses
         return msg
 
     # The lease
@@ -193,7 +193,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         ttl_sec: float = 0.3,
         clock: Clock | None = None,
     ) -> CommandLease[MsgT]:
-        """Return the right to publish commands, for ``async with``; its end sends `stop`.
+        """Create a command lease for ``async with``, which sends `stop` when it ends.
 
         ::
 
@@ -201,21 +201,21 @@ class Publisher(Endpoint, Generic[MsgT]):
                 lease.publish(command)
 
         While the lease is held, only ``lease.publish`` publishes, and no other lease of this
-        publisher begins. Other publishers of the topic are not affected. See `CommandLease` for
-        when the stop goes out.
+        publisher can be entered. Other publishers of the topic are not affected. See `CommandLease`
+        for when the stop is sent.
 
         Args:
             stop: The message that stops what the commands move, or its CDR bytes. It is validated
                 and encoded when the block is entered.
-            ttl_sec: For how many seconds the holder may publish nothing, from its first command
-                on; in steady time, to which a suspended host counts.
-            clock: The clock that counts them instead, as for timers. A clock that stands still for
-                `ttl_sec` of steady time ends the lease as well.
+            ttl_sec: The longest pause between commands, in seconds, from the first command on. It
+                is measured in steady time, including time while the host is suspended.
+            clock: A different clock to measure it, as for timers. If that clock stands still for
+                `ttl_sec` of steady time, the lease ends as well.
 
         Raises:
-            InvalidQoSProfileException: the publisher is KEEP_ALL, whose stop might have to wait, or
-                transient local with a depth above 1, which gives a late subscription old commands
-                before the stop (a ValueError).
+            InvalidQoSProfileException: the publisher is KEEP_ALL, so the stop might have to wait,
+                or transient local with a depth above 1, so late subscriptions would get old
+                commands before the stop (a ValueError).
             TypeError: `ttl_sec` is not a number, or `clock` not a clock.
             ValueError: `ttl_sec` is not positive and finite.
         """
@@ -228,7 +228,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         clock: Clock | None,
         refuse: Callable[[], None] | None = None,
     ) -> CommandLease[MsgT]:
-        """Return a lease; `refuse` raises when it cannot be entered."""
+        """Create a lease; `refuse` raises if it cannot be entered."""
         if keeps_all(self.qos_profile):
             raise InvalidQoSProfileException(
                 f"a lease of {self.topic_name} needs a KEEP_LAST publisher: the stop must not wait "
@@ -244,7 +244,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         return CommandLease(self, stop, ttl_sec, clock, self._time_base, refuse)
 
     def _hold(self, lease: CommandLease[MsgT], stop: MsgT | bytes | bytearray | memoryview) -> None:
-        """Have only `lease` publish from now on, and prepare its stop."""
+        """Give `lease` the exclusive right to publish, and prepare its stop."""
         self._refuse_if_destroyed("enter a lease")
         if self._lease is not None:
             self._lease.finish()
@@ -255,7 +255,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         self._writers = (HeldWriter(self.topic_name),)
 
     def _prepare_stop(self, stop: MsgT, number: Callable[[], int]) -> tuple[StopSender, ...]:
-        """Return what sends the stop of a lease, for each transport; `number` returns its own."""
+        """Return the stop senders of a lease, one per transport; `number` numbers the stop."""
         stats = self.stats
         return tuple(
             writer.prepare_stop(stop, lambda: number() == stats.published)
@@ -263,7 +263,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         )
 
     def _let_go(self) -> None:
-        """Have `publish` publish again: the lease has ended."""
+        """Let `publish` publish again, as the lease has ended."""
         self._lease = None
         self._writers = self._ready_writers
 
@@ -276,20 +276,20 @@ class Publisher(Endpoint, Generic[MsgT]):
             self._writers = held
 
     def _number_stop(self, step: int) -> tuple[int, int]:
-        """Return the number of the stop, so much after the last one, and its time."""
+        """Return the sequence number of the stop, `step` after the last one, and its time."""
         self.stats.published += step
         return self.stats.published, self._now_ns()
 
     def _end_lease(self, refusal: Callable[[], Exception]) -> None:
-        """Send the stop of an open lease, whose `publish` raises what `refusal` returns."""
+        """Send the stop of an open lease; its `publish` then raises what `refusal` returns."""
         if self._lease is not None:
             self._lease.end_for(refusal)
 
     def assert_liveliness(self) -> None:
-        """Tell the subscriptions that the publisher is alive, without a message.
+        """Signal to subscriptions that the publisher is alive, without a message.
 
-        With liveliness MANUAL_BY_TOPIC it has to be called, or a message published, at least once
-        in every `liveliness_lease_duration`. It may be called from any thread, as `publish`.
+        With liveliness MANUAL_BY_TOPIC it must be called, or a message published, at least once per
+        `liveliness_lease_duration`. Like `publish`, it may be called from any thread.
 
         Raises:
             EntityDestroyedError: the publisher or its node was destroyed (a RuntimeError).
@@ -307,7 +307,7 @@ class Publisher(Endpoint, Generic[MsgT]):
     def events(self) -> EventStream[PublisherEvent]:
         """The events of the publisher: ``async for event in publisher.events``.
 
-        It is the same stream each time; it begins with what has happened so far.
+        It is the same stream each time, and starts with what has happened so far.
         """
         if self._monitor is None:
             self._monitor = PublisherMonitor(self, self._time_base, None)
@@ -322,9 +322,9 @@ class Publisher(Endpoint, Generic[MsgT]):
         for callbacks. Cancelling is safe.
 
         Raises:
-            EntityDestroyedError: the publisher was destroyed during the wait (a RuntimeError); what
-                was published is sent all the same. Its ``__cause__`` is the error of the node, if
-                that failed.
+            EntityDestroyedError: the publisher was destroyed during the wait (a RuntimeError);
+                published messages are sent all the same. Its ``__cause__`` is the node's error, if
+                it failed.
             CancelledError: the publisher was destroyed during the wait of one of the node's own
                 tasks: a callback, or the body of ``async with node``.
         """
@@ -345,11 +345,11 @@ class Publisher(Endpoint, Generic[MsgT]):
             del self._draining[task]
 
     def get_subscription_count(self) -> int:
-        """Return how many subscriptions are matched, in this process and in others."""
+        """Return the number of matched subscriptions, in this process and others."""
         return self._count_matched()
 
     async def wait_for_subscribers(self, count: int = 1) -> None:
-        """Wait until at least `count` subscriptions are matched, without a limit of its own.
+        """Wait, without a timeout, until at least `count` subscriptions are matched.
 
         Raises:
             EntityDestroyedError, CancelledError: the publisher was destroyed, as in `drain`.
@@ -357,7 +357,7 @@ class Publisher(Endpoint, Generic[MsgT]):
         await self._until(lambda: self.get_subscription_count() >= count)
 
     def _run(self) -> None:
-        """Begin to watch deadline and liveliness; there is no work for a task."""
+        """Start monitoring deadline and liveliness; there is no work for a task."""
         if self._monitor is not None:
             self._monitor.start(self._all_writers)
 

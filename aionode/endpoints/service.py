@@ -1,4 +1,4 @@
-"""Services."""
+"""Service servers."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ RequestT = TypeVar("RequestT", bound=Message)
 ResponseT = TypeVar("ResponseT", bound=Message)
 
 WAITING_REQUESTS = 10_000
-"""Most requests that are queued; further ones are refused at once with an error.
+"""Maximum queued requests; further ones are refused at once with an error.
 
-Unlike a message, a request has a client that waits for the answer, so none is silently dropped
-because of the depth of the profile.
+Unlike a message, a request has a client waiting for the answer, so none is silently dropped because
+of the profile's depth.
 """
 
 REFUSED_SEC = 10.0
-"""So often at most the log says that requests are refused."""
+"""Minimum time between log lines about refused requests."""
 
 ServiceCallback = (
     Callable[[RequestT, ResponseT], ResponseT | Coroutine[Any, Any, ResponseT]]
@@ -53,12 +53,12 @@ ServiceCallback = (
 
 
 class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
-    """Answers requests. Made by `Node.create_service`.
+    """Answers requests. Created by `Node.create_service`.
 
     Attributes:
         srv_type: The service class.
         qos_profile: Its profile.
-        callback: What answers the requests.
+        callback: Answers the requests.
         stats: Counts and durations of its requests.
     """
 
@@ -77,7 +77,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         super().__init__(subject, setup, srv_type, create_publisher)
         self.callback = callback
         self.stats = CallbackStats()
-        self._registrations: list[Registration] = []  # one for each transport
+        self._registrations: list[Registration] = []  # one per transport
         self._message_queue: MessageQueue[Request] = MessageQueue(
             WAITING_REQUESTS, self.stats, keep_all=True, slice_ns=setup.callbacks.slice_ns
         )
@@ -90,7 +90,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
                 unweighed=0,
             )
         self._concurrent = checked_concurrency(concurrent, self._subject)
-        self._client_gid = b""  # of the last request that was begun
+        self._client_gid = b""  # of the last request that was started
         wants = accepts(
             callback, 2, 1, subject=self._subject, wanted="(request, response) or (request)"
         )
@@ -106,11 +106,11 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
         )
 
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:
-        """Keep what the transports returned for this server, to be closed with it."""
+        """Keep the transports' registrations of this server, to be closed with it."""
         self._registrations.extend(registrations)
 
     def _serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
-        """Take one request from a transport; see `Serve` for `inline_deadline_ns`."""
+        """Accept a request from a transport; see `Serve` for `inline_deadline_ns`."""
         if self.destroyed:
             request.drop()
         elif inline_deadline_ns and self._message_queue.take_inline(request, inline_deadline_ns):

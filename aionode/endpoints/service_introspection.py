@@ -1,8 +1,8 @@
-"""Service introspection: each request and response of a service, as messages on a topic.
+"""Service introspection: publish each request and response of a service on a topic.
 
-A client or server that is introspected publishes on ``<service>/_service_event`` what it sends and
+An introspected client or server publishes on ``<service>/_service_event`` what it sends and
 receives: the client ``REQUEST_SENT`` and ``RESPONSE_RECEIVED``, the server ``REQUEST_RECEIVED`` and
-``RESPONSE_SENT``. All four have the client's gid and the number of the request in common.
+``RESPONSE_SENT``. All four share the client's gid and the sequence number of the request.
 """
 
 from __future__ import annotations
@@ -25,12 +25,11 @@ __all__ = ["ServiceIntrospectionState"]
 
 
 class IntrospectedEntity(Endpoint):
-    """A service, or a client of one: its type, its name, and what is published about its calls.
+    """A service or its client: its type, its name, and the introspection of its calls.
 
     Args:
         subject: What it is, for errors and logs.
-        setup: What its node gives to it.
-        srv_type: The service class.
+        setup: What it uses of its node. srv_type: The service class.
         create_publisher: The node's method.
         stage: When it is destroyed as its node ends.
 
@@ -51,7 +50,7 @@ class IntrospectedEntity(Endpoint):
         self.srv_type = srv_type
         self._introspection = Introspection(srv_type, setup.endpoint.name, create_publisher)
         self._introspects = False  # whether it publishes events
-        # Returns whether a request is internal, and is not to be published.
+        # Returns whether a request is internal and must not be published.
         self._is_internal: Callable[[Any], bool] = lambda _request: False
 
     @property
@@ -67,16 +66,15 @@ class IntrospectedEntity(Endpoint):
         service_event_qos_profile: QoSProfile | int,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Publish each request and response that is sent or received from now on.
+        """Publish each request and response sent or received from now on.
 
         The topic is ``<service>/_service_event``, and ``aionode service echo`` prints it. It may be
-        called at any time, with another state.
+        called again at any time with another state.
 
         Args:
-            clock: Where the time stamps come from, such as ``node.get_clock()``.
+            clock: The source of time stamps, such as ``node.get_clock()``.
             service_event_qos_profile: QoS of the publisher.
-            introspection_state: Whether to publish nothing, which requests there are, or their
-                contents as well.
+            introspection_state: Whether to publish nothing, metadata only, or contents as well.
 
         Raises:
             TypeError: `clock` or the profile has the wrong type.

@@ -1,6 +1,6 @@
-"""Counts and measurements of each entity.
+"""Counters and timings of each entity.
 
-All durations are real time in nanoseconds, even where a test steps the clock: they are what the
+All durations are real time in nanoseconds, even if a test steps the clock: they are what the
 machine spent, not what passed on the program's clock.
 """
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 __all__ = ["CallbackStats", "ClientStats", "Distribution", "PublisherStats"]
 
 ID_DIGITS: Final = 8
-"""Hexadecimal digits of an id that are shown: enough to tell endpoints apart."""
+"""Number of hexadecimal digits of an id that are shown; enough to tell endpoints apart."""
 
 NOTED_CALLS: Final = 256
-"""Calls that are recorded at once, which takes a tenth of the time of recording one by one, and
-leaves the code for it out of the processor's caches.
+"""Number of calls recorded at once, which takes a tenth of the time of recording them one by one,
+and keeps that code out of the CPU caches.
 """
 
 
-# A bucket is one sixteenth of a power of two, so a percentile is off by 3 % at most. The offset
-# keeps the smallest values in buckets of their own.
+# A bucket is one sixteenth of a power of two, so a percentile is off by at most 3 %. The offset
+# gives the smallest values their own buckets.
 _SUB_BUCKETS_LOG2 = 4
 _OFFSET = 1 << _SUB_BUCKETS_LOG2
 _NO_WAIT = _OFFSET  # the bucket of 0 ns
@@ -37,7 +37,7 @@ class Distribution:
     """A histogram of durations, in constant memory.
 
     Args:
-        before_reading: Called before anything is read, to record what is still buffered.
+        before_reading: Called before anything is read, to flush buffered values.
     """
 
     __slots__ = ("_before_reading", "_buckets", "_max_ns")
@@ -55,7 +55,7 @@ class Distribution:
 
     def record(self, duration_ns: int) -> None:
         """Add one duration, which must not be negative."""
-        if duration_ns > self._max_ns:  # noqa: PLR1730  # max() is a call, on the path of messages
+        if duration_ns > self._max_ns:  # noqa: PLR1730  # max() is a call, on the hot path
             self._max_ns = duration_ns
         shifted = duration_ns + _OFFSET
         octave = shifted.bit_length() - _SUB_BUCKETS_LOG2 - 1
@@ -68,7 +68,7 @@ class Distribution:
     def _record_all(self, durations_ns: Sequence[int], *others: Distribution) -> None:
         """Record each duration, in this and in `others`.
 
-        Sorted, they are counted bucket by bucket, and not one by one.
+        They are sorted, and counted per bucket rather than one by one.
         """
         if not durations_ns:
             return
@@ -86,7 +86,7 @@ class Distribution:
             distribution._merge(counts, ordered[-1])
 
     def _merge(self, buckets: dict[int, int], longest_ns: int) -> None:
-        """Add buckets that were counted elsewhere."""
+        """Merge buckets that were counted elsewhere."""
         self._max_ns = max(self._max_ns, longest_ns)
         for bucket, count in buckets.items():
             self._buckets[bucket] = self._buckets.get(bucket, 0) + count
@@ -118,7 +118,7 @@ class Distribution:
         return self.percentile_ns(99)
 
     def percentile_ns(self, percent: float) -> int:
-        """Return the duration that `percent` % of all do not exceed, within 3 %."""
+        """Return the duration that `percent` % of all durations do not exceed, within 3 %."""
         wanted = self.count * percent / 100
         seen = 0
         for bucket in sorted(self._buckets):
@@ -147,11 +147,11 @@ class CallbackStats:
     queued.
 
     Attributes:
-        received: How many were handed to a callback or a reader.
+        received: How many were passed to a callback or a reader.
         dropped: How many a full queue discarded, or were unread when the entity was destroyed.
-        expired: How many were older than their lifespan when they arrived, or when their turn came.
+        expired: How many exceeded their lifespan on arrival or in the queue.
         errors: How many callbacks raised.
-        filtered: How many arrived and did not pass the content filter.
+        filtered: How many arrived but did not pass the content filter.
         lost: How many are missing in the sequence numbers of publishers in other processes; not
             counted while there is a content filter.
     """
@@ -176,10 +176,10 @@ class CallbackStats:
         self.errors = 0
         self.filtered = 0
         self.lost = 0
-        # Of the waits, runs and blocking stretches; None until something is recorded or read.
+        # Waits, runs and blocking stretches; None until something is recorded or read.
         self._distributions: tuple[Distribution, Distribution, Distribution] | None = None
-        # Calls since `_record_noted` of callbacks that did not await: how long their items waited,
-        # and how long they ran; then how long calls ran whose item did not wait.
+        # Calls since `_record_noted` of callbacks that did not await: the waits of their items and
+        # their run times; then the run times of calls whose item did not wait.
         self._waited_ns: list[int] = []
         self._took_ns: list[int] = []
         self._inline_ns: list[int] = []
@@ -208,19 +208,19 @@ class CallbackStats:
         return distributions
 
     def _record_call(self, waited_ns: int, took_ns: int) -> None:
-        """Add a callback that did not await: how long its item was queued, and how long it ran."""
+        """Record a callback that did not await: the wait of its item, and its run time."""
         self._waited_ns.append(waited_ns)
         self._record_took(took_ns)
 
     def _record_took(self, took_ns: int) -> None:
-        """Add a callback that did not await: how long it ran."""
+        """Record the run time of a callback that did not await."""
         took = self._took_ns
         took.append(took_ns)
         if len(took) >= NOTED_CALLS:
             self._record_noted()
 
     def _record_noted(self) -> None:
-        """Record what was noted."""
+        """Record the buffered calls."""
         queue_wait, run_time, blocking = self._recorded()
         if self._inline_ns:
             queue_wait._merge({_NO_WAIT: len(self._inline_ns)}, 0)
@@ -261,20 +261,20 @@ class PublisherStats:
 
     @property
     def dropped(self) -> int:
-        """The number of messages dropped on the way to other processes: a link or Zenoh was slow.
+        """The number of messages dropped on the way to other processes, over a slow link or Zenoh.
 
-        What a full subscription drops is counted by the subscription.
+        Messages that a full subscription drops are counted by the subscription.
         """
         return sum(writer.dropped for writer in self._writers)
 
     @property
     def routes(self) -> dict[str, str]:
-        """The route by which each matched subscription gets its messages now.
+        """The current route of messages to each matched subscription.
 
-        The key is the full name of its node and the first digits of its id, as in
-        ``/listener 6f00a1c2``. The value is ``local`` within the context, and ``link`` or ``zenoh``
-        to another one. It is ``link and zenoh`` while the publisher has to send both ways: another
-        subscription has no link, or this one has only just got its link.
+        The key is the full name of its node and the first digits of its id, as in ``/listener
+        6f00a1c2``. The value is ``local`` within the context, and ``link`` or ``zenoh`` to another
+        one. It is ``link and zenoh`` while the publisher has to send both ways, because another
+        subscription has no link or this one's link has only just come up.
         """
         return {
             f"{reader.node.fully_qualified_name} {reader.gid.hex()[:ID_DIGITS]}": route

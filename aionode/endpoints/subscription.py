@@ -1,7 +1,7 @@
 """Subscriptions.
 
-Messages arrive in `_core/subscription_reader.py`; a full `_core/message_queue.py` drops the oldest;
-`_core/callback_runner.py` calls the callback.
+Messages arrive in `core/subscription_reader.py`; a full `core/message_queue.py` drops the oldest;
+`core/callback_runner.py` calls the callback.
 """
 
 from __future__ import annotations
@@ -55,11 +55,11 @@ __all__ = ["MessageInfo", "Subscription", "SubscriptionCallback"]
 ItemT = TypeVar("ItemT")
 
 SubscriptionCallback = Callable[[ItemT], object] | Callable[[ItemT, MessageInfo], object]
-"""A function that a subscription calls, sync or async; an awaitable that it returns is awaited."""
+"""The callback of a subscription, sync or async; an awaitable result is awaited."""
 
 
 class Subscription(Endpoint, Generic[ItemT]):
-    """Receives the messages of one topic. Made by `Node.create_subscription`.
+    """Receives the messages of one topic. Created by `Node.create_subscription`.
 
     A callback is called with each message while the node runs. Without one, the subscription is an
     async iterator: ``async for msg in subscription``. If several tasks read it, each message goes
@@ -93,7 +93,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         self.raw = raw
         self.callback = callback or take
         self.stats = CallbackStats()
-        self._registrations: list[Registration] = []  # one for each transport
+        self._registrations: list[Registration] = []  # one per transport
         self._content_filter: ContentFilterOptions | None = None
         self._concurrent = checked_concurrency(concurrent, self._subject)
         self._turn_ends_ns = 0
@@ -148,7 +148,7 @@ class Subscription(Endpoint, Generic[ItemT]):
     topic = topic_name
 
     def get_publisher_count(self) -> int:
-        """Return how many publishers are matched, in this process and in others."""
+        """Return the number of matched publishers, in this process and others."""
         return self._count_matched()
 
     # Content filter
@@ -164,17 +164,17 @@ class Subscription(Endpoint, Generic[ItemT]):
     ) -> None:
         """Receive only messages that pass a filter, from now on.
 
-        Messages that are already in the queue stay there. `stats.filtered` counts what arrived and
+        Messages already in the queue stay there. `stats.filtered` counts messages that arrived but
         did not pass.
 
         Args:
             filter_expression: A condition over the fields of the message, as described in
                 `aionode.content_filter`; an empty one lets all messages pass.
-            expression_parameters: The literals that ``%0`` and the following stand for, as text.
+            expression_parameters: The literals that ``%0``, ``%1`` and so on stand for, as text.
 
         Raises:
             ContentFilterError: the expression is malformed, or does not fit the type (a
-                ValueError). The filter before it stays.
+                ValueError); the previous filter stays.
             TypeError: a parameter is not a str.
             EntityDestroyedError: the subscription was destroyed (a RuntimeError).
         """
@@ -204,12 +204,12 @@ class Subscription(Endpoint, Generic[ItemT]):
     def events(self) -> EventStream[SubscriptionEvent]:
         """The events of the subscription: ``async for event in subscription.events``.
 
-        It is the same stream each time; it begins with what has happened so far.
+        It is the same stream each time, and starts with what has happened so far.
         """
         return (self._monitor or self._make_monitor()).events()
 
     def _note_publisher(self, publisher: EndpointInfo, present: bool) -> None:
-        """Have messages expire if a publisher says so."""
+        """Enable the expiry of messages if a publisher has a lifespan."""
         limited = present and is_limited(publisher.qos.lifespan)
         if limited and self._monitor is None and self._endpoint.matches(publisher):
             self._make_monitor()
@@ -232,7 +232,7 @@ class Subscription(Endpoint, Generic[ItemT]):
             self,
             self._reader,
             runner,
-            # Never in a thread: what stops a robot does not wait for one to be free.
+            # Never in a thread: stopping a robot must not wait for a free one.
             lambda callback: self._callbacks.make_runner(
                 callback, self, self.stats, on_error=on_error, offload=False
             ),
@@ -242,7 +242,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         )
 
     def _is_linked(self, gid: bytes) -> bool | None:
-        """Return whether a link connects a publisher; None if none ever did."""
+        """Return whether a publisher is connected by a link; None if it never was."""
         for registration in self._registrations:
             if isinstance(registration, ReaderRegistration):
                 linked = registration.is_linked(gid)
@@ -253,19 +253,19 @@ class Subscription(Endpoint, Generic[ItemT]):
     # Reading without a callback
 
     def __aiter__(self) -> AsyncIterator[ItemT]:
-        """Iterate over the messages as they arrive, until the subscription is destroyed."""
+        """Iterate over messages as they arrive, until the subscription is destroyed."""
         self._refuse_if_it_has_a_callback()
         return self
 
     async def __anext__(self) -> ItemT:
-        """Wait for the next message; end the iteration once destroyed and empty."""
+        """Wait for the next message; stop once destroyed and empty."""
         try:
             return await self.receive()
         except EntityDestroyedError:
             raise StopAsyncIteration from None
 
     async def receive(self) -> ItemT:
-        """Wait for the next message and take it. Cancelling loses nothing.
+        """Wait for the next message and return it. Cancelling loses no message.
 
         Raises:
             EntityDestroyedError: the subscription is destroyed, and all messages have been read.
@@ -273,7 +273,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         """
         self._refuse_if_it_has_a_callback()
         if perf_ns() >= self._turn_ends_ns:
-            # With a full queue this never waits, so nothing else would run.
+            # While the queue has messages this never waits, so nothing else would run.
             await checkpoint()
             self._turn_ends_ns = perf_ns() + self._reader.slice_ns
         while not self._reader:
@@ -299,7 +299,7 @@ class Subscription(Endpoint, Generic[ItemT]):
     # Called by the node
 
     def _add_registrations(self, registrations: Sequence[Registration]) -> None:
-        """Keep what the transports returned for this reader, to be closed with it."""
+        """Keep the transports' registrations of this reader, to be closed with it."""
         self._registrations.extend(registrations)
 
     def _run(self) -> Coroutine[Any, Any, None] | None:
@@ -319,7 +319,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         return consume(self._reader, receive, self._concurrent, inline=self._runner.is_sync)
 
     def _close(self) -> None:
-        """Withdraw the subscription; unread messages can still be read, without a callback."""
+        """Withdraw the subscription; without a callback, unread messages can still be read."""
         if self._monitor is not None:
             self._monitor.close()
         if self._silence_watch is not None:

@@ -354,7 +354,7 @@ async def test_a_request_that_does_not_fit_is_an_error(node: Node, *, served: bo
         ((String, "add", add), TypeError, "is not a service class"),
         ((AddTwoInts.Request, "add", add), TypeError, "is not a service class"),
         ((AddTwoInts, "1add", add), InvalidServiceNameException, "must not start with a number"),
-        ((AddTwoInts, "add", None), TypeError, "None cannot be called"),
+        ((AddTwoInts, "add", None), TypeError, "None is not callable"),
         ((AddTwoInts, "add", lambda: None), CallbackSignatureError, "must take (request, resp"),
     ],
 )

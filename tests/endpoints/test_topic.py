@@ -502,7 +502,7 @@ async def test_publishing_on_a_destroyed_publisher_is_an_error(node: Node) -> No
         ((String, "bad topic", print), InvalidTopicNameException, "must not contain characters"),
         ((str, "words", print), TypeError, "<class 'str'> is not a message class"),
         ((AddTwoInts, "words", print), TypeError, "is not a message class"),
-        ((String, "words", "print"), TypeError, "'print' cannot be called"),
+        ((String, "words", "print"), TypeError, "'print' is not callable"),
         ((String, "words", lambda: None), CallbackSignatureError, "must take (message) or"),
         ((String, "words", lambda a, b, c: None), RuntimeError, "must take (message) or"),
         ((String, "words", print, -1), ValueError, "greater than or equal to zero, not -1"),

@@ -1,1 +1,1 @@
-"""Deadline, lifespan and liveliness kept, and the events of publishers and subscriptions."""
+"""Enforcement of deadline, lifespan and liveliness, and the events of endpoints."""

@@ -1,4 +1,4 @@
-"""Hands the events of one endpoint to its callbacks and to its stream."""
+"""Dispatches the events of one endpoint to its callbacks and its stream."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ __all__ = ["EventHandler", "EventHub", "is_limited"]
 
 
 def is_limited(*durations: Duration) -> bool:
-    """Return whether a policy sets a limit, so that its endpoint has to be watched."""
+    """Return whether a policy sets a limit, so that the endpoint has to be monitored."""
     return not all(map(is_unlimited, durations))
 
 
@@ -35,11 +35,11 @@ class EventHandler(Entity):
 
     Args:
         subject: The endpoint, for errors and reports.
-        event_callbacks: The functions, by the name of their event.
+        event_callbacks: The functions, by event name.
         callbacks: How the node runs callbacks.
 
     Raises:
-        CallbackSignatureError: a function takes another number of arguments (a TypeError).
+        CallbackSignatureError: a function takes the wrong number of arguments (a TypeError).
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class EventHandler(Entity):
         return name in self._runners
 
     def put(self, name: str, event: object) -> None:
-        """Have the callback called, if there is one for this event."""
+        """Schedule the callback for this event, if there is one."""
         if name in self._runners and not self.destroyed:
             self._queue.put((name, event))
 
@@ -84,15 +84,15 @@ class EventHandler(Entity):
 
 
 class EventHub:
-    """Hands the events of one endpoint on, and remembers the newest of each kind.
+    """Dispatches the events of one endpoint, and remembers the latest of each kind.
 
     Args:
         entity: The endpoint.
-        event_callbacks: What the program gave for its events.
-        wanted: The class of that.
+        event_callbacks: The callbacks that the program passed.
+        wanted: Their class.
 
     Attributes:
-        handler: Calls the callbacks; None without any.
+        handler: Calls the callbacks; None if there are none.
 
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
@@ -142,15 +142,15 @@ class EventHub:
 
     @property
     def has_listeners(self) -> bool:
-        """Whether the program gets events in either form."""
+        """Whether the program listens to events in either form."""
         return self.handler is not None or self._stream is not None
 
     def emitter(self, name: str) -> Callable[[Any], None]:
-        """Return the function that takes the events called `name`."""
+        """Return the function that emits the events called `name`."""
         return partial(self.emit, name)
 
     def emit(self, name: str, event: Any) -> None:
-        """Hand an event on; it replaces the newest of its name."""
+        """Dispatch an event; it replaces the latest of its name."""
         self._newest[name] = event
         if self.handler is not None:
             self.handler.put(name, event)
@@ -158,7 +158,7 @@ class EventHub:
             self._stream._put(event)
 
     def stream(self) -> EventStream[Any]:
-        """Return the stream; a new one begins with what has happened so far."""
+        """Return the stream; a new one begins with the totals so far."""
         if self._stream is None:
             self._stream = EventStream()
             for event in self._newest.values():
@@ -177,7 +177,7 @@ class EventHub:
 
 
 def since_creation(event: Any) -> Any:
-    """Return an event with each change replaced by the count that it is a change of."""
+    """Return an event in which each change is replaced by its total, counted since creation."""
     changes = {
         field.name: getattr(event, field.name.removesuffix("_change"))
         for field in dataclasses.fields(event)

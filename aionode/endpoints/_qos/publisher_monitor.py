@@ -1,4 +1,4 @@
-"""Keeps the promises of a publisher: says that it is alive, and notices a missed deadline."""
+"""Enforces a publisher's QoS: asserts its liveliness, and notices missed deadlines."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ if TYPE_CHECKING:
 __all__ = ["PublisherMonitor", "SignOfLife"]
 
 ASSERTIONS_IN_LEASE = 3
-"""Assertions of AUTOMATIC liveliness within one lease: two may be lost."""
+"""Assertions of AUTOMATIC liveliness per lease: two may be lost."""
 
 
 class SignOfLife(Writer):
-    """Stands behind the writers of a publisher, and notes each message that they have taken.
+    """A writer after a publisher's other writers, which notes each message they have accepted.
 
-    So publishers without deadline and lease have nothing more to do for each message.
+    That way publishers without deadline and lease do no extra work per message.
 
     Args:
-        writers: The others.
-        check: Checks a message that none of them has use for; raises what `publish` does.
-        note: Takes the sign.
+        writers: The other writers.
+        check: Checks a message that none of them uses; raises what `publish` raises.
+        note: Called for each message.
     """
 
     active = True
@@ -55,16 +55,16 @@ class SignOfLife(Writer):
         self._note()
 
     def close(self) -> None:
-        """There is nothing to withdraw."""
+        """Do nothing: there is nothing to withdraw."""
 
 
 class PublisherMonitor(EventHub):
-    """Watches one publisher, and tells of its events.
+    """Monitors one publisher, and emits its events.
 
     Args:
         entity: The publisher.
-        time_base: The time.
-        event_callbacks: What the program gave for its events.
+        time_base: The source of time.
+        event_callbacks: The event callbacks that the program passed.
 
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
@@ -93,7 +93,7 @@ class PublisherMonitor(EventHub):
         super().__init__(entity, event_callbacks, PublisherEventCallbacks)
         self._entity = entity
         self._time_base = time_base
-        self._writers: Sequence[Writer] = ()  # its counterparts in the transports
+        self._writers: Sequence[Writer] = ()  # its writers in the transports
         self._missed = 0
         self._lost = 0
         qos = entity.qos_profile
@@ -120,7 +120,7 @@ class PublisherMonitor(EventHub):
         return bool(self._alarms)
 
     def note_message(self) -> None:
-        """Take a message as a sign of life."""
+        """Count a published message as a sign of life."""
         for alarm in self._alarms:
             alarm.note()
 
@@ -130,7 +130,7 @@ class PublisherMonitor(EventHub):
         return self.stream()
 
     def start(self, writers: Sequence[Writer]) -> None:
-        """Begin to watch, and to assert AUTOMATIC liveliness by `writers`: the node runs now."""
+        """Start monitoring, and asserting AUTOMATIC liveliness through `writers`."""
         self._writers = writers
         for alarm in self._alarms:
             alarm.start()
@@ -138,12 +138,12 @@ class PublisherMonitor(EventHub):
             self._beat()
 
     def renew_lease(self) -> None:
-        """Take the program's assertion that the publisher is alive."""
+        """Record that the program asserts the publisher's liveliness."""
         if self._lease_alarm is not None:
             self._lease_alarm.note()
 
     def close(self) -> None:
-        """Watch nothing more."""
+        """Stop monitoring."""
         for alarm in self._alarms:
             alarm.stop()
         if self._heartbeat is not None:
@@ -156,7 +156,7 @@ class PublisherMonitor(EventHub):
             self._entity._watch(Matching(self._entity._endpoint, self.emit).note)
 
     def _beat(self) -> None:
-        """Assert AUTOMATIC liveliness, again and again."""
+        """Assert AUTOMATIC liveliness periodically."""
         for writer in self._writers:
             writer.assert_liveliness()
         due_ns = self._time_base.steady_ns() + self._lease_ns // ASSERTIONS_IN_LEASE

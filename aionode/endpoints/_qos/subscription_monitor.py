@@ -1,4 +1,4 @@
-"""Watches what a subscription has requested: deadline, lifespan, liveliness of its publishers."""
+"""Monitors the QoS that a subscription requests: deadline, lifespan, liveliness of publishers."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["MonitoredReader", "SubscriptionMonitor"]
 
 REMEMBERED_LIFESPANS = 1024
-"""Of how many publishers a subscription remembers the lifespan."""
+"""For how many publishers a subscription remembers the lifespan."""
 
 
 class MonitoredReader(Protocol):
@@ -44,20 +44,20 @@ class MonitoredReader(Protocol):
     on_lost: Callable[[int], None] | None
 
     def wake_writers(self) -> None:
-        """Wake what waits for room."""
+        """Wake writers that wait for room."""
 
 
 class SubscriptionMonitor(EventHub):
-    """Watches the publishers and messages of one subscription, and tells of its events.
+    """Monitors the publishers and messages of one subscription, and emits its events.
 
-    It puts itself into the way of messages only if a policy needs that: the subscription's own
-    deadline, lease or lifespan, or the lifespan of a publisher.
+    It intercepts messages only if a policy requires it: the subscription's own deadline, lease or
+    lifespan, or the lifespan of a publisher.
 
     Args:
         entity: The subscription.
         reader: Its queue.
-        time_base: The time.
-        event_callbacks: What the program gave for its events.
+        time_base: The source of time.
+        event_callbacks: The event callbacks that the program passed.
 
     Raises:
         TypeError: `event_callbacks` is of another class, or a function in it takes other arguments.
@@ -105,8 +105,8 @@ class SubscriptionMonitor(EventHub):
         if not is_unlimited(qos.liveliness_lease_duration) or self.calls("liveliness"):
             self._watch_liveliness()
         self._own_lifespan_ns = lifespan_ns(qos.lifespan)
-        # By gid, of publishers that limit it. They stay when the publisher has gone, as its
-        # messages may still be on their way; the one known for longest is first.
+        # Lifespans by gid, of publishers that limit it. They outlive the publisher, whose messages
+        # may still be on their way; the longest known one is first.
         self._lifespans_ns: Recent[bytes, int] = Recent(REMEMBERED_LIFESPANS)
         self._items: ExpiringItems | None = None
         self._purge: Alarm | None = None
@@ -129,7 +129,7 @@ class SubscriptionMonitor(EventHub):
         return self.stream()
 
     def start(self) -> None:
-        """Begin to watch: the node runs now."""
+        """Start monitoring; the node runs now."""
         self._runs = True
         if self._deadline is not None:
             self._deadline.start()
@@ -137,7 +137,7 @@ class SubscriptionMonitor(EventHub):
             self._liveliness.start()
 
     def close(self) -> None:
-        """Watch nothing more."""
+        """Stop monitoring."""
         self._runs = False
         if self._deadline is not None:
             self._deadline.stop()
@@ -148,12 +148,12 @@ class SubscriptionMonitor(EventHub):
         super().close()
 
     def note_alive(self, gid: bytes) -> None:
-        """Take the assertion of a publisher."""
+        """Record that a publisher asserted its liveliness."""
         if self._liveliness is not None:
             self._liveliness.note_assertion(gid)
 
     def note_filtered(self, gid: bytes) -> None:
-        """Take a message that is not delivered: its publisher is alive all the same."""
+        """Record a message that is not delivered, as a sign of life of its publisher."""
         if self._liveliness is not None:
             self._liveliness.note_message(gid)
 
@@ -187,7 +187,7 @@ class SubscriptionMonitor(EventHub):
     # Messages
 
     def _on_arrival(self, sample_info: SampleInfo) -> bool:
-        """Record a message; return whether it is to be delivered."""
+        """Record a message; return whether to deliver it."""
         if self._liveliness is not None:
             self._liveliness.note_message(sample_info.gid)
         if self._items is not None and not self._is_fresh(self._items, sample_info):
@@ -207,11 +207,11 @@ class SubscriptionMonitor(EventHub):
     # Lifespan
 
     def _expire(self) -> None:
-        """From now on, drop messages when they expire, also while they are queued."""
+        """From now on, drop messages when they expire, even while queued."""
         if self._items is None:
             reader = self._reader
             queued = list(reader.items)
-            reader.items.clear()  # the consumer may be about to look into it
+            reader.items.clear()  # the consumer may be about to read it
             self._items = reader.items = ExpiringItems(queued, self._now_ns, self._on_expired)
             reader.on_arrival = self._on_arrival
 
@@ -235,17 +235,17 @@ class SubscriptionMonitor(EventHub):
         self._reader.wake_writers()
 
     def _purge_at(self, expires_ns: int) -> None:
-        """Make room in a KEEP_ALL queue when messages expire: publishers may wait for it."""
+        """Make room in a KEEP_ALL queue when messages expire, as publishers may wait for it."""
         left_ns = max(0, expires_ns - self._now_ns())
         self._purge = self._time_base.call_at(self._time_base.steady_ns() + left_ns, self._on_purge)
 
     def _on_purge(self) -> None:
         self._purge = None
-        # Asking drops what has expired.
+        # Reading the length drops expired messages.
         if self._items and self._items.earliest_ns != NEVER_NS:
             self._purge_at(self._items.earliest_ns)
 
 
 def lifespan_ns(lifespan: Duration) -> int:
-    """Return a lifespan in nanoseconds, `NEVER_NS` without a limit."""
+    """Return a lifespan in nanoseconds; `NEVER_NS` if unlimited."""
     return NEVER_NS if is_unlimited(lifespan) else lifespan.nanoseconds

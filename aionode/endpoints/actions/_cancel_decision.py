@@ -1,4 +1,4 @@
-"""Whether an action server cancels a goal when it is asked to."""
+"""Decides whether an action server cancels a goal on request."""
 
 from __future__ import annotations
 
@@ -17,24 +17,22 @@ OWNER_LOST: Final = "the one for whom its client sent it is lost"
 async def agrees(
     cancel_callback: Callable[[Any], Any] | None, goal: Any, warn: Callable[[str], None]
 ) -> bool:
-    """Return whether a `cancel_callback` accepts to cancel a goal; without one, as in rclpy, no."""
+    """Return whether `cancel_callback` agrees to cancel a goal; False without one, as in rclpy."""
     if cancel_callback is None:
         return False
     answer = await awaited(cancel_callback(goal))
     if not isinstance(answer, CancelResponse):
-        warn(
-            f"cancel_callback returned {brief(answer)}, no CancelResponse; the request is rejected"
-        )
+        warn(f"cancel_callback returned {brief(answer)}, not a CancelResponse; rejected")
     return answer is CancelResponse.ACCEPT
 
 
 def ends_for_lost_owner(
     on_client_lost: str | None, cancel_callback: Callable[[Any], Any] | None
 ) -> bool:
-    """Return whether a goal is cancelled because nobody is there any more for whom it was sent.
+    """Return whether to cancel a goal because the party it was sent for is gone.
 
-    Its client asks so after an ordinary request was rejected: see `lost_id`. A `cancel_callback`
-    has rejected it then, which counts unless ``on_client_lost="cancel"`` has the last word.
+    Its client asks for this after an ordinary request was rejected; see `lost_id`. A rejection by
+    `cancel_callback` stands, unless ``on_client_lost="cancel"`` overrides it.
     """
     if on_client_lost is None:
         return cancel_callback is None

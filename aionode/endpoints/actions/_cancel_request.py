@@ -1,4 +1,4 @@
-"""Cancelling a goal at its server, independently of the task that asked for it."""
+"""Cancel a goal at its server, independently of the task that asked for it."""
 
 from __future__ import annotations
 
@@ -23,23 +23,22 @@ __all__ = ["CancelRequest", "is_rejected", "warner"]
 FIRST_RETRY_S = 0.1
 LONGEST_RETRY_S = 5.0
 ATTEMPTS = 14
-"""Most requests that are sent, within 45 s; after that only answers are awaited."""
+"""Maximum number of requests, sent within 45 s; after that only answers are awaited."""
 
 
 class CancelRequest:
     """A request to cancel a goal, sent at once and repeated until the server has answered.
 
-    It runs in callbacks of the loop and not in a task, so that no cancellation can stop it. If the
-    server has not yet accepted the goal, the request is repeated until it has decided. It also
-    ends when the goal has ended. If the server goes away it may come back, until all attempts are
-    made.
+    It runs in callbacks of the loop rather than a task, so that no cancellation can stop it. If the
+    server has not yet accepted the goal, the request is repeated until it has decided. It also ends
+    when the goal has ended. A server that goes away may come back until all attempts are used up.
 
     Args:
         client: The client of the server's cancel service.
         goal: The goal.
-        on_end: Called soon after the end; nothing is sent any more by then.
-        lost: Whether the goal was sent for somebody who is lost. A server that rejects the
-            request is then told so; see `lost_id`.
+        on_end: Called soon after the end, when nothing is sent any more.
+        lost: Whether the goal was sent on behalf of a client that is lost. A server that rejects
+            the request is then told so; see `lost_id`.
 
     Attributes:
         answer: The server's answer, or the error in its place; ServiceUnavailableError as soon as
@@ -56,13 +55,13 @@ class CancelRequest:
     ) -> None:
         self._loop = asyncio.get_running_loop()
         self.answer: asyncio.Future[Any] = self._loop.create_future()
-        # Retrieves the exception, so that asyncio does not report it.
+        # Retrieve the exception, so that asyncio does not report it.
         self.answer.add_done_callback(lambda done: done.cancelled() or done.exception())
         self._client = client
         self._goal = goal
         self._on_end = on_end
         self._is_lost = lost
-        self._rejection: Any = None  # what it has answered, if it was then told of the loss
+        self._rejection: Any = None  # its first answer, if it was then told of the loss
         self._request = client.srv_type.Request()
         self._request.goal_info.goal_id = goal.goal_id
         self._attempts = 0
@@ -98,8 +97,8 @@ class CancelRequest:
     def _take(self, request: Any, decided: bool, answer: asyncio.Future[Any]) -> None:
         """Take the answer to one request.
 
-        It is final if the server had `decided` about the goal when the request was sent. Before
-        that, the server may have got the request before it knew the goal.
+        It is final if the server had `decided` on the goal when the request was sent; otherwise the
+        server may have received the request before it knew the goal.
         """
         if self._ended or request is not self._request:
             return
@@ -109,7 +108,7 @@ class CancelRequest:
         elif isinstance(error, ServiceUnavailableError):
             if not self._client.service_is_ready():
                 self._fail(error)
-        elif error is not None and self._is_lost:  # the callback has failed, and decided nothing
+        elif error is not None and self._is_lost:  # the callback failed without a decision
             rejected = self._client.srv_type.Response(return_code=CancelCode.REJECTED)
             self._take_response(rejected)
         elif error is not None:
@@ -139,18 +138,18 @@ class CancelRequest:
 
     def _take_response(self, response: Any) -> None:
         if response.return_code == CancelCode.NONE and not response.goals_canceling:
-            response.return_code = int(CancelCode.REJECTED)  # so does a server of rclpy reject
+            response.return_code = int(CancelCode.REJECTED)  # rclpy's server rejects like this
         if self._is_lost and response.return_code == CancelCode.REJECTED:
             self._tell_lost(response)
             return
         if self._rejection is not None and response.return_code == CancelCode.UNKNOWN_GOAL_ID:
-            response = self._rejection  # it knows nothing of losses
+            response = self._rejection  # it does not support losses
         if not self.answer.done():
             self.answer.set_result(response)
         self.end()
 
     def _tell_lost(self, rejection: Any) -> None:
-        """Ask once more, by the id which tells that nobody is there any more who wants the goal."""
+        """Ask once more, with the id that says that nobody wants the goal any more."""
         self._is_lost, self._rejection = False, rejection
         self._request = self._client.srv_type.Request()
         self._request.goal_info.goal_id = uuid_message(lost_id(self._goal._key))
@@ -170,7 +169,7 @@ class CancelRequest:
         self.answer.add_done_callback(lambda _: self.end())
 
     def end(self) -> None:
-        """Send nothing more, and drop the open requests."""
+        """Stop sending, and drop the open requests."""
         if self._ended:
             return
         self._ended = True
@@ -184,7 +183,7 @@ class CancelRequest:
 
 
 def is_rejected(answer: asyncio.Future[Any]) -> bool:
-    """Return whether the server has rejected a cancel request, or its callback has failed."""
+    """Return whether the server rejected a cancel request, or its callback failed."""
     if answer.cancelled():
         return False
     error = answer.exception()
@@ -194,7 +193,7 @@ def is_rejected(answer: asyncio.Future[Any]) -> bool:
 
 
 def warner(logger: RcutilsLogger, subject: str) -> Callable[[str], None]:
-    """Return what tells that a goal, given by its id, goes on though its client has given it up."""
+    """Return a function that logs that an abandoned goal, given by its id, goes on."""
 
     def tell_goes_on(goal_id: str) -> None:
         logger.warning(

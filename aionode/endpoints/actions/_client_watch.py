@@ -1,4 +1,4 @@
-"""Noticing at the server that the client of a goal is lost: killed, frozen, blocked or cut off."""
+"""Detects at the server that a goal's client is lost: killed, frozen, blocked or cut off."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ if TYPE_CHECKING:
 __all__ = ["SIGNS_IN_TIME", "ClientWatch", "announcing"]
 
 SIGNS_IN_TIME = 3
-"""Signs that a client gives within the time after which it is lost: two may be late."""
+"""Signs of life that a client sends per loss timeout: two may be late."""
 
 STALLS_IN_TIME = 6
-"""A look that is late by this part of that time, or more, shows that the server stood still."""
+"""A check late by at least this fraction of the timeout shows that the server stood still."""
 
 
 def announcing(profile: QoSProfile | int, lost_ns: int) -> QoSProfile:
-    """Return the profile of a service that gives results, which tells clients to give signs.
+    """Return the profile of the result service, which asks clients to send signs of life.
 
-    Its lifespan is the time after which they are lost: no response is of use to them then.
+    Its lifespan is the loss timeout, after which a response is of no use to the client.
     """
     chosen = as_profile(profile)
     return chosen.replace(lifespan=Duration(nanoseconds=lost_ns)) if lost_ns else chosen
@@ -38,16 +38,17 @@ def announcing(profile: QoSProfile | int, lost_ns: int) -> QoSProfile:
 
 @dataclass(slots=True)
 class WatchedGoal:
-    """The client of one goal, as its server knows it.
+    """What the server knows of the client of one goal.
 
     Attributes:
-        gid: The gid of its client of the service that takes goals.
-        client: The full name of its node; empty if it is not known.
-        candidates: The gids of the clients of which one has sent the goal, where the middleware
-            does not tell which.
-        found_by_ns: Until which steady time such a client may be found only after its goal.
-        heard_ns: The steady time of its last sign; None if it has given none.
-        gone_ns: From which steady time on it is lost, as it is not in the graph; None if it is.
+        gid: The gid of its client of the goal service.
+        client: The full name of its node; empty if unknown.
+        candidates: The gids of the clients one of which sent the goal, if the middleware does not
+            say which.
+        found_by_ns: Steady time until which the client may still be discovered, after its goal.
+        heard_ns: Steady time of its last sign of life; None if it never sent one.
+        gone_ns: Steady time from which on it counts as lost for not being in the graph; None while
+            it is in the graph.
     """
 
     gid: bytes
@@ -59,22 +60,23 @@ class WatchedGoal:
 
 
 class ClientWatch:
-    """Watches the clients of the goals of one server, until these end or are being cancelled.
+    """Watches the clients of one server's goals, until the goals end or are being cancelled.
 
-    A client that has given a sign is lost when it has been silent for a certain time. One that has
-    never given any, such as rclpy's, is lost when it leaves the graph.
+    A client that sends signs of life is lost when it has been silent for the timeout. One that
+    never sent any, such as rclpy's, is lost when it leaves the graph.
 
-    The silence of a server that stood still says nothing of its clients. So it looks at them three
-    times within that time. If a look is late, what has arrived meanwhile is taken first, and the
-    time begins anew; for a short delay not again and again, or a server that is always a little
-    late would lose nobody.
+    When the server itself stood still, silence says nothing about its clients. So it checks them
+    three times per timeout. If a check is late, signs that arrived meanwhile are processed first,
+    and the timeout starts again; but not repeatedly for short delays, or a server that is always a
+    little late would never lose a client.
 
     Args:
-        service: Full name of the service that takes goals.
+        service: Full name of the goal service.
         graph: The graph.
-        time_base: Whose steady clock counts.
-        lost_ns: After how long a silence a client is lost; with 0, none ever is.
-        on_lost: Called with ids of goals, and who their client was and why it is lost.
+        time_base: Provides the steady clock.
+        lost_ns: The silence after which a client is lost; 0 for never.
+        on_lost: Called with the ids of goals, and a text that names their client and why it is
+            lost.
     """
 
     def __init__(
@@ -99,7 +101,7 @@ class ClientWatch:
             self._unwatch = graph.watch(EndpointKind.CLIENT, service, self._note_client)
 
     def stop(self) -> None:
-        """Watch nothing more."""
+        """Stop watching."""
         if self._unwatch is not None:
             self._unwatch()
         self._goals.clear()
@@ -108,7 +110,7 @@ class ClientWatch:
     # Goals
 
     def add(self, goal_id: bytes, gid: bytes) -> None:
-        """Watch the client from which a goal has come; the server is about to decide on it."""
+        """Watch the client of a goal that the server is about to decide on."""
         if not self._lost_ns:
             return
         goal = WatchedGoal(gid, found_by_ns=self._time_base.steady_ns() + self._lost_ns)
@@ -120,19 +122,19 @@ class ClientWatch:
         if goal.client:
             goal.candidates.clear()
         elif not goal.candidates and any(gid):
-            # It is found a little later than its goal, or has gone while that was queued.
+            # It is discovered a little after its goal arrives, or left while the goal was queued.
             goal.gone_ns = goal.found_by_ns
         self._goals[goal_id] = goal
         if self._alarm is None:
             self._set_alarm()
 
     def remove(self, goal_id: bytes) -> None:
-        """Watch a goal no longer: it has ended, or its client has left it on purpose."""
+        """Stop watching a goal: it has ended, or its client has left it on purpose."""
         if self._goals.pop(goal_id, None) is not None and not self._goals:
             self._set_alarm()
 
     def take(self, asked_id: bytes) -> None:
-        """Take what a client says by asking for the result of a goal that does not exist."""
+        """Take a sign of life: a request for the result of a goal that does not exist."""
         goal = self._goals.get(alive_id(asked_id))
         if goal is not None:
             goal.heard_ns = self._time_base.steady_ns()
@@ -153,11 +155,11 @@ class ClientWatch:
                 goal.candidates.add(client.gid)
                 goal.gone_ns = None
         if self._goals and not present:
-            # Later, as an endpoint whose gid changes goes and returns at once.
+            # Later, as an endpoint whose gid changes leaves and returns at once.
             asyncio.get_running_loop().call_soon(self._look)
 
     def _set_alarm(self) -> None:
-        """Set when to look next; nothing wakes a server without goals."""
+        """Schedule the next check; nothing wakes a server without goals."""
         if self._alarm is not None:
             self._alarm.cancel()
             self._alarm = None
@@ -172,12 +174,12 @@ class ClientWatch:
         self._alarm = self._time_base.call_at(self._due_ns, self._ring)
 
     def _ring(self) -> None:
-        # Signs that have arrived may still wait to be read, which takes some turns of the loop.
+        # Signs that have arrived may not be read yet, which takes some iterations of the loop.
         loop = asyncio.get_running_loop()
         loop.call_soon(loop.call_soon, self._look)
 
     def _look(self) -> None:
-        """Find the clients that are lost."""
+        """Find lost clients."""
         if not self._goals:
             return
         now_ns = self._time_base.steady_ns()
@@ -200,7 +202,7 @@ class ClientWatch:
             self._on_lost(goal_ids, text)
 
     def _lost_at_ns(self, goal: WatchedGoal) -> int | None:
-        """Return from when on the client of `goal` is lost if nothing changes; None if never."""
+        """Return when the client of `goal` will be lost if nothing changes; None if never."""
         if goal.heard_ns is not None:
             return max(goal.heard_ns, self._awake_ns) + self._lost_ns
         if goal.gone_ns is not None:
@@ -209,5 +211,5 @@ class ClientWatch:
 
 
 def is_anonymous(client: EndpointInfo) -> bool:
-    """Return whether the gid of a client in the graph is not the one that its requests have."""
+    """Return whether a client's gid in the graph differs from the one in its requests."""
     return client.node.over_rcl or client.node.bridged

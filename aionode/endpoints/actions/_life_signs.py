@@ -1,4 +1,4 @@
-"""The signs by which an action client tells servers that it is alive."""
+"""The signs of life by which an action client tells servers that it is alive."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ if TYPE_CHECKING:
 __all__ = ["LifeSigns"]
 
 RETRY_NS = 20_000_000
-"""How soon signs are given again when one could not be delivered."""
+"""How soon a sign is sent again if it could not be delivered."""
 
 
 class LifeSigns:
-    """Gives signs for the goals of one client, as long as its event loop runs.
+    """Sends signs of life for the goals of one client, as long as its event loop runs.
 
-    They are sent by an alarm of the loop, so that a blocked loop shows as well. Servers that have
-    not announced that they want signs get none.
+    They are sent from an alarm of the loop, so that a blocked loop is noticed as well. Only servers
+    that announced that they want signs get them.
 
     Args:
-        get_result: The client of the service that gives results.
+        get_result: The client of the result service.
         graph: The graph.
-        time_base: Whose steady clock counts.
+        time_base: Provides the steady clock.
     """
 
     def __init__(self, get_result: Client[Any, Any], graph: Graph, time_base: TimeBase) -> None:
         self._get_result = get_result
         self._graph = graph
         self._time_base = time_base
-        self._goals: dict[bytes, Exchange | None] = {}  # with the last sign of each
+        self._goals: dict[bytes, Exchange | None] = {}  # goal id to last sign
         self._interval_ns = 0
         self._alarm: Alarm | None = None
         self._farewells: set[asyncio.Future[Any]] = set()
 
     @property
     def is_leaving(self) -> bool:
-        """Whether servers have not answered yet to what `leave` told them."""
+        """Whether servers still have to answer the messages of `leave`."""
         return bool(self._farewells)
 
     def add(self, goal_id: bytes) -> None:
-        """Give signs for a goal that was accepted, beginning now, if a server wants them."""
+        """Send signs for an accepted goal from now on, if a server wants them."""
         announced_ns = self._announced_ns()
         if announced_ns and goal_id not in self._goals:
             self._goals[goal_id] = None
@@ -62,7 +62,7 @@ class LifeSigns:
                 self._set_alarm(announced_ns)
 
     def remove(self, goal_id: bytes) -> None:
-        """Give no more signs for a goal."""
+        """Stop sending signs for a goal."""
         sign = self._goals.pop(goal_id, None)
         if sign is not None:
             sign.cancel()
@@ -71,12 +71,12 @@ class LifeSigns:
             self._alarm = None
 
     def stop(self) -> None:
-        """Give no more signs."""
+        """Stop sending signs."""
         for goal_id in list(self._goals):
             self.remove(goal_id)
 
     def leave(self, on_answered: Callable[[], None]) -> list[asyncio.Future[Any]]:
-        """Give no more signs, and tell the servers that this is no loss: the goals go on.
+        """Stop sending signs, and tell the servers that this is no loss, so that the goals go on.
 
         Args:
             on_answered: Called after each answer.
@@ -99,14 +99,14 @@ class LifeSigns:
         return list(self._farewells)
 
     def _announced_ns(self) -> int:
-        """Return the time between two signs that the servers want, in nanoseconds; 0 for none."""
+        """Return the interval between signs that the servers want, in nanoseconds; 0 for none."""
         servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
         lifespans = [server.qos.lifespan for server in servers]
         limits_ns = [lifespan.nanoseconds for lifespan in lifespans if not is_unlimited(lifespan)]
         return min(limits_ns) // SIGNS_IN_TIME if limits_ns else 0
 
     def _beat(self) -> None:
-        """Give a sign for each goal, and set when to do so next."""
+        """Send a sign for each goal, and schedule the next ones."""
         for goal_id in self._goals:
             self._sign(goal_id)
         # A server that has left the graph may come back, with its goals.
@@ -128,16 +128,16 @@ class LifeSigns:
             sign.answer.add_done_callback(partial(self._note_answer, goal_id))
 
     def _note_answer(self, goal_id: bytes, answer: asyncio.Future[Any]) -> None:
-        # The first sign counts most: without any, the server takes the client for one of ROS.
+        # The first sign matters most: without any, the server takes the client for a ROS one.
         if not answer.cancelled() and answer.exception() is not None and goal_id in self._goals:
             self._set_alarm(RETRY_NS)
 
     def _send(self, asked_id: bytes) -> Exchange | None:
-        """Ask for the result of a goal that does not exist; nothing without a server."""
+        """Ask for the result of a goal that does not exist; do nothing without a server."""
         client = self._get_result
         if client.destroyed or not client.service_is_ready():
             return None
         sent = client._begin(client.srv_type.Request(goal_id=uuid_message(asked_id)))
-        # Retrieves the exception, so that asyncio does not report it.
+        # Retrieve the exception, so that asyncio does not report it.
         sent.answer.add_done_callback(lambda done: done.cancelled() or done.exception())
         return sent

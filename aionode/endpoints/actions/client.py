@@ -1,4 +1,4 @@
-"""Action clients: they send goals, and report their progress and results."""
+"""Action clients: send goals, and follow their progress and results."""
 
 from __future__ import annotations
 
@@ -48,22 +48,22 @@ ResultT = TypeVar("ResultT", bound=Message)
 FeedbackT = TypeVar("FeedbackT", bound=Message)
 
 ANSWER_LIMIT_S = 1.0
-"""The longest wait for an answer that should come at once, in seconds of real time."""
+"""Timeout for an answer that should come at once, in seconds of real time."""
 
 UNLIMITED = 2**63 - 1
 
 LAST_FEEDBACK_S = 0.02
 """Time to wait for feedback after a result from another process, in seconds.
 
-In Zenoh a reply may overtake the samples before it: of 100 goals that sent feedback just before
-their end, in 3 to 7 it came after the result, by less than a millisecond.
+In Zenoh a reply may overtake earlier samples: of 100 goals that sent feedback just before their
+end, for 3 to 7 it arrived after the result, by less than a millisecond.
 """
 
 TURNS_FOR_FEEDBACK = 10
-"""After how many iterations of the loop the feedback that has arrived has left its queue."""
+"""Iterations of the loop until feedback that has arrived has left its queue."""
 
 FEEDBACK_QOS = QoSProfile(depth=1000)
-"""All goals share one queue of feedback, with room for what ten goals keep."""
+"""All goals share one feedback queue, with room for the feedback of ten goals."""
 
 
 class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
@@ -84,9 +84,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         node: The node that it belongs to.
         action_type: An action class.
         action_name: Name of the action; relative names are in the node's namespace.
-        goal_service_qos_profile: Profile of the service that takes goals.
-        result_service_qos_profile: Profile of the service that gives results.
-        cancel_service_qos_profile: Profile of the service that takes cancel requests.
+        goal_service_qos_profile: Profile of the goal service.
+        result_service_qos_profile: Profile of the result service.
+        cancel_service_qos_profile: Profile of the cancel service.
         feedback_sub_qos_profile: Profile of the feedback topic.
         status_sub_qos_profile: Profile of the status topic.
 
@@ -121,17 +121,17 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._graph = node.graph
         self._participant = node.context.participant
         self._new_uuid = node.context.new_uuid
-        # Goals from when they are sent until they end, by id.
+        # Goals by id, from sending until their end.
         self._goals: dict[bytes, ClientGoalHandle[ResultT, FeedbackT]] = {}
         self._accepted: MessageQueue[Any] = MessageQueue(
             UNLIMITED, CallbackStats(), keep_all=True, slice_ns=node.context.time_base.slice_ns
         )
         # One for each task that waits for an answer; set when the client is destroyed.
-        self._waits: dict[asyncio.Future[None], None] = {}  # in order, to wake them in order
+        self._waits: dict[asyncio.Future[None], None] = {}  # ordered, to wake them in order
         self._futures = Futures(self)
-        self._cancel_requests: dict[CancelRequest, None] = {}  # those that have not ended
+        self._cancel_requests: dict[CancelRequest, None] = {}  # those in progress
         self._expect_at_end = core_of(node).shutdown.expect
-        self._sends_for_others = False  # such as the clients of a gateway; see `lost_id`
+        self._sends_for_others = False  # such as clients of a gateway; see `lost_id`
         self._tell_goes_on = warner(node.get_logger(), self._subject)
 
         impl = self.action_type.Impl
@@ -291,11 +291,11 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> ClientGoalHandle[ResultT, FeedbackT]:
         """Send `goal`, and return its handle once the server has accepted it.
 
-        Without a server no answer comes, so use `wait_for_server` first, or limit the wait with
+        Without a server there is no answer, so use `wait_for_server` first, or limit the wait with
         `asyncio.timeout`. Cancelling cancels the goal, even if the server accepts it later.
 
         Args:
-            goal: An instance of ``action_type.Goal``; it may be changed once the call has begun.
+            goal: An instance of ``action_type.Goal``; it may be changed once the call has started.
             feedback_callback: Called with each feedback message, as in rclpy: the feedback itself
                 is in its field ``feedback``. Sync or async. Without it, iterate over the handle.
             goal_uuid: The id as unique_identifier_msgs/msg/UUID; by default a random one.
@@ -322,8 +322,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     ) -> asyncio.Future[ClientGoalHandle[ResultT, FeedbackT]]:
         """Send `goal`, and return a future of its handle, as in rclpy.
 
-        For a rejected goal the handle's `accepted` is False, as in rclpy. See `send_goal` for the
-        rest, and `Client.call_async` for the future.
+        For a rejected goal the handle's `accepted` is False, as in rclpy. Otherwise see
+        `send_goal`, and `Client.call_async` for the future.
 
         Raises:
             EntityDestroyedError: the client was destroyed (a RuntimeError).
@@ -333,7 +333,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return self._futures.begin(self._send(goal, feedback_callback, goal_uuid))
 
     def _in_future(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
-        """Return the result of `work` as a future. For goal handles."""
+        """Return a future for the result of `work`. Used by goal handles."""
         return self._futures.begin(work)
 
     def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
@@ -354,18 +354,18 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         handle: ClientGoalHandle[ResultT, FeedbackT] = ClientGoalHandle(
             self, goal_uuid, feedback_callback
         )
-        # Registered first, because feedback may be faster than the answer.
+        # Registered first, as feedback may arrive before the answer.
         self._goals.setdefault(handle._key, handle)
         try:
             handle._sending = self._send_goal._begin(
                 self.action_type.Impl.SendGoalService.Request(goal_id=handle.goal_id, goal=goal)
             )
-            # It continues when the caller is cancelled, so that `CancelRequest` learns the answer.
+            # It continues if the caller is cancelled, so that `CancelRequest` gets the answer.
             response = await self._awaiting(handle, self._kept(handle._sending.answer))
         except BaseException:
             self._forget(handle)
             raise
-        handle._sending.cancel()  # it is answered
+        handle._sending.cancel()  # already answered
         if not response.accepted:
             self._forget(handle)
             handle.reason = await self._told(handle)
@@ -384,7 +384,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._signs.remove(goal._key)
 
     async def _kept(self, answer: asyncio.Future[T]) -> T:
-        """Wait for `answer`, which stays open if the wait ends before it.
+        """Wait for `answer`, which stays pending if the wait ends first.
 
         Raises:
             CancelledError: the task was cancelled, or the client was destroyed during the wait and
@@ -409,7 +409,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return answer.result()
 
     async def _awaiting(self, goal: ClientGoalHandle[ResultT, FeedbackT], wait: Awaitable[T]) -> T:
-        """Return the result of `wait`; if cancelled, cancel `goal` as well. For its handle."""
+        """Return the result of `wait`; if cancelled, cancel `goal` as well. Used by its handle."""
         goal._waiting += 1
         try:
             return await wait
@@ -421,7 +421,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             goal._waiting -= 1
 
     def _cancel_at_server(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
-        """Begin to cancel `goal` at the server, without waiting. For its handle."""
+        """Start cancelling `goal` at the server, without waiting. Used by its handle."""
         if goal._sending is not None and not goal._sending.calls:
             goal._sending.cancel()  # no server can have received it
         elif not goal._cancel_sent:
@@ -451,9 +451,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             self._close_parts()
 
     async def _request_cancel(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> Any:
-        """Ask the server to cancel `goal`. For its handle."""
+        """Ask the server to cancel `goal`. Used by its handle."""
         self._refuse_if_destroyed("cancel goal")
-        if not self._cancel_goal.service_is_ready():  # it was ready, so it has gone
+        if not self._cancel_goal.service_is_ready():  # it was ready before, so it has gone
             raise ServiceUnavailableError(self._cancel_goal.srv_name)
         return await self._kept(self._begin_to_cancel(goal).answer)
 
@@ -462,7 +462,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     def _on_feedback(self, message: Any) -> Any:
         goal = self._goals.get(message.goal_id.uuid.tobytes())
         if goal is None:
-            return None  # of another client, or late
+            return None  # another client's, or late
         if goal._feedback_callback is not None:
             return goal._feedback_callback(message)
         goal._take(message.feedback)
@@ -479,8 +479,8 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _run(self) -> None:
         """Wait for the results of all goals, until the client is destroyed.
 
-        A node that fails cancels its tasks at once, but destroys its action clients only when its
-        callbacks have ended. Until then this task goes on, as for a node that was destroyed.
+        A failing node cancels its tasks at once, but destroys its action clients only after its
+        callbacks have ended. Until then this task continues, as for a destroyed node.
         """
         try:
             await consume(self._accepted, self._follow, concurrent=True)
@@ -504,10 +504,10 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _until_end(self, goal: ClientGoalHandle[ResultT, FeedbackT]) -> None:
         if self.destroyed:
             return
-        # A task that is cancelled here leaves the goal to `_run`, or to `_close`.
+        # If this task is cancelled, `_run` or `_close` takes care of the goal.
         try:
             await self._until_askable()
-            self._signs.add(goal._key)  # now, if the service was found later than the goal accepted
+            self._signs.add(goal._key)  # perhaps the service was discovered late
             response = await self._ask(goal.goal_id)
             status = GoalStatus(response.status)
             text = await self._reason(goal, status)
@@ -525,7 +525,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._forget(goal)
 
     async def _hear_out(self) -> None:
-        """Wait for feedback that was overtaken by the result of its goal."""
+        """Wait for feedback that the result has overtaken."""
         if self._is_remote():
             with suppress(TimeoutError):
                 async with asyncio.timeout(LAST_FEEDBACK_S):
@@ -534,12 +534,12 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             await checkpoint()
 
     def _is_remote(self) -> bool:
-        """Return whether a server of another process may have had the goal."""
+        """Return whether a server of another process may have executed the goal."""
         servers = self._graph.endpoints(EndpointKind.SERVER, name=self._get_result.srv_name)
         return any(server.node.participant != self._participant for server in servers)
 
     async def _until_askable(self) -> None:
-        """Wait for the server's result service, which may be found later than its goal service.
+        """Wait for the server's result service, which may be discovered after its goal service.
 
         Raises:
             ServiceUnavailableError: the server has gone since it accepted the goal.
@@ -554,7 +554,7 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return await self._get_result.call(request, timeout_sec)
 
     async def _reason(self, goal: ClientGoalHandle[ResultT, FeedbackT], status: GoalStatus) -> str:
-        """Return why the server ended `goal`, if it runs aionode and knows; else ""."""
+        """Return why the server ended `goal`, if it runs aionode and knows, else ""."""
         is_own_wish = status is GoalStatus.CANCELED and goal._cancel_requested
         if is_own_wish or status not in (GoalStatus.ABORTED, GoalStatus.CANCELED):
             return ""
@@ -575,9 +575,9 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     # The end
 
     def _close(self) -> None:
-        """Withdraw the client; end its waits, and cancel the goals that tasks await.
+        """Withdraw the client, end its waits, and cancel the goals that tasks are awaiting.
 
-        The other goals continue at the server, which is told so.
+        Other goals continue at the server, which is told so.
         """
         for goal in self._goals.values():
             if goal._is_awaited and not goal.done:
@@ -596,11 +596,11 @@ class ActionClient(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             goal._end()
 
     def _close_parts(self) -> None:
-        """Destroy all parts, except those that are still needed to cancel or to leave goals."""
+        """Destroy all parts except those still needed to cancel or leave goals."""
         needed: list[object] = []
         if self._cancel_requests:
             needed += [self._send_goal, self._cancel_goal]
-        if self._signs.is_leaving:  # a server could take the end of the first for a loss
+        if self._signs.is_leaving:  # a server could mistake the end of the first for a loss
             needed += [self._send_goal, self._get_result]
         for part in self._parts:
             if part not in needed:

@@ -26,7 +26,7 @@ FeedbackT = TypeVar("FeedbackT", bound=Message)
 T = TypeVar("T")
 
 KEPT_FEEDBACK = 100
-"""Most feedback messages that are kept for the reader; the oldest is dropped first."""
+"""Maximum feedback messages kept for the reader; the oldest is dropped first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +34,11 @@ class ActionResult(Generic[ResultT]):
     """How a goal ended.
 
     Attributes:
-        status: ``SUCCEEDED``, ``CANCELED`` or ``ABORTED``; ``UNKNOWN`` if the server does not, or
-            no longer, know the goal.
+        status: ``SUCCEEDED``, ``CANCELED`` or ``ABORTED``; ``UNKNOWN`` if the server does not know
+            the goal, or no longer.
         result: The result message; an empty one if the server had none.
-        error_text: Why the goal was aborted, or canceled by the server itself, which had lost its
-            client; empty if no reason was given, or if the server does not run aionode.
+        error_text: Why the goal was aborted, or canceled by a server that had lost its client;
+            empty if no reason was given, or if the server does not run aionode.
     """
 
     status: GoalStatus
@@ -47,7 +47,7 @@ class ActionResult(Generic[ResultT]):
 
 
 class GoalClient(Protocol):
-    """The methods of an `ActionClient` that its goal handles call; the client describes each."""
+    """The methods of an `ActionClient` that its goal handles call; described there."""
 
     action_name: str
     _subject: str
@@ -62,8 +62,8 @@ class GoalClient(Protocol):
 class FeedbackIterator(AsyncIterator[FeedbackT]):
     """One loop over the feedback of a goal.
 
-    The loop holds the only reference to it, and drops that when it is left. So the goal knows of
-    the loop also while its body runs, in which no task waits for the goal.
+    The loop holds the only reference to it, and drops it on exit. So the goal knows of the loop
+    even while the loop body runs, when no task is waiting for the goal.
     """
 
     def __init__(
@@ -80,22 +80,21 @@ class FeedbackIterator(AsyncIterator[FeedbackT]):
 
 
 class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
-    """A goal that was sent. Made by `ActionClient.send_goal`.
+    """A goal that was sent. Created by `ActionClient.send_goal`.
 
     It is an async iterator of feedback: ``async for feedback in goal`` yields the feedback received
-    since the goal was sent (the newest 100 messages are kept), then what follows, and ends with the
-    goal.
+    since the goal was sent (the newest 100 messages are kept), then what follows, and ends when the
+    goal ends.
 
     Cancelling a task that awaits the goal, in `result` or in the iteration, cancels the goal. So
-    does destroying the client, or the end of its node in whatever way, while a task awaits the
-    goal. The cancel request is sent at once, and the wait ends without waiting for the answer. The
-    request is repeated until the server has answered or is gone; nothing interrupts this, and the
-    node waits up to 1 s for the answer before it ends. When the client is destroyed, waiting tasks
-    of the node and the body of ``async with node`` get CancelledError. All other tasks get
-    EntityDestroyedError (a RuntimeError), whose cause is the error that the node failed with, if it
-    did. To cancel only the wait, put ``asyncio.shield`` around `result`.
-    Leaving the iteration with ``break`` does not affect the goal, except within
-    ``async with goal:``, which cancels the goal when it is left.
+    does destroying the client, or any end of its node, while a task awaits the goal. The cancel
+    request is sent at once, and the wait ends without waiting for the answer. The request is
+    repeated until the server has answered or is gone; nothing interrupts this, and the node waits
+    up to 1 s for the answer before it ends. When the client is destroyed, waiting tasks of the node
+    and the body of ``async with node`` get CancelledError. All other tasks get EntityDestroyedError
+    (a RuntimeError), whose cause is the error that the node failed with, if any. To cancel only the
+    wait, wrap `result` in ``asyncio.shield``. Leaving the iteration with ``break`` does not affect
+    the goal, except within ``async with goal:``, which cancels the goal when it is left.
 
     Attributes:
         goal_id: Its id, as unique_identifier_msgs/msg/UUID.
@@ -118,12 +117,12 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self.accepted = False
         self.reason = ""
         self._feedback_callback = feedback_callback
-        # The exchange that sends the goal, from when that begins.
+        # The exchange that sends the goal, once started.
         self._sending: Exchange | None = None
-        self._cancel_sent = False  # whether a cancel request is under way
-        self._cancel_requested = False  # whether there was ever one from here
-        self._waiting = 0  # how many tasks wait for the goal
-        self._blocks = 0  # how many `async with` blocks it is bound to
+        self._cancel_sent = False  # whether a cancel request is in progress
+        self._cancel_requested = False  # whether this client ever sent one
+        self._waiting = 0  # number of tasks waiting for the goal
+        self._blocks = 0  # number of `async with` blocks it is bound to
         self._iterations: WeakSet[FeedbackIterator[Any]] = WeakSet()
         self._client = client
         self._feedback: MessageQueue[FeedbackT] = MessageQueue(KEPT_FEEDBACK, CallbackStats())
@@ -152,19 +151,19 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
 
     @property
     def _has_server_ended(self) -> bool:
-        """Whether the server has reported the end; a goal that was lost may still go on there."""
+        """Whether the server has reported the end; a lost goal may still be running there."""
         return self._outcome is not None
 
     @property
     def _is_awaited(self) -> bool:
-        """Whether the program waits for the goal, or is in a block or loop that depends on it."""
+        """Whether the program awaits the goal, or is in a block or loop bound to it."""
         return self._waiting > 0 or self._blocks > 0 or len(self._iterations) > 0
 
     async def __aenter__(self) -> Self:
-        """Bind the goal to a block: if it has not ended when the block is left, it is cancelled.
+        """Bind the goal to a block: it is cancelled if it has not ended when the block is left.
 
-        The block may be left by an exception, a cancellation, ``break`` or ``return``, or by the
-        closing of an async generator around it, such as the response stream of a web server whose
+        The block may be left by an exception, a cancellation, ``break`` or ``return``, or by
+        closing an async generator around it, such as the response stream of a web server whose
         client has disconnected. The goal is cancelled as well if its client is destroyed meanwhile.
         """
         self._blocks += 1
@@ -181,13 +180,13 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         if not self.done:
             self._client._cancel_at_server(self)
 
-    # For callers to await
+    # To await
 
     async def result(self) -> ActionResult[ResultT]:
         """Wait for the end of the goal, and return how it ended.
 
-        Any number of tasks may wait, and once the goal has ended, every call returns at once.
-        Cancelling cancels the goal, see the class.
+        Any number of tasks may wait; once the goal has ended, every call returns at once.
+        Cancelling cancels the goal; see the class.
 
         Raises:
             GoalLostError: the server went away.
@@ -200,7 +199,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         return self._outcome
 
     def __aiter__(self) -> AsyncIterator[FeedbackT]:  # noqa: PYI034  # one for each loop
-        """Iterate over the feedback. While the loop runs, it counts as waiting for the goal.
+        """Iterate over the feedback; while the loop runs, it counts as waiting for the goal.
 
         Raises:
             RuntimeError: the goal was sent with a `feedback_callback`, which gets the feedback.
@@ -238,7 +237,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     async def cancel(self) -> Any:
         """Ask the server to cancel the goal, and return its answer.
 
-        The goal has not ended by then, and may still succeed: `result` returns how it ended. The
+        The goal has not ended by then and may still succeed: `result` returns its outcome. The
         request is repeated until the server has answered. Cancelling stops only the wait for the
         answer, not the request.
 
@@ -256,7 +255,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
     # The names of rclpy
 
     def get_result_async(self) -> asyncio.Future[ActionResult[ResultT]]:
-        """Return a future of how the goal ends, as in rclpy: see `result`.
+        """Return a future of the goal's outcome, as in rclpy: see `result`.
 
         Its ``result().status`` and ``result().result`` are as in rclpy's response. Cancelling
         the future cancels the goal.
@@ -281,7 +280,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         self._feedback.put(feedback)
 
     def _update_status(self, status: GoalStatus) -> None:
-        """Take a state from the status topic; one that comes late changes nothing."""
+        """Update the state from the status topic; late messages change nothing."""
         self.status = max(self.status, status)
 
     def _end(
@@ -289,7 +288,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
         outcome: ActionResult[ResultT] | None = None,
         lost: GoalLostError | None = None,
     ) -> None:
-        """Set how the goal ended; without either argument, the client was destroyed."""
+        """Set the outcome; with neither argument, the client was destroyed."""
         if not self.done:
             self._outcome = outcome
             self._lost = lost
@@ -300,7 +299,7 @@ class ClientGoalHandle(AsyncIterator[FeedbackT], Generic[ResultT, FeedbackT]):
             self._end_feedback()
 
     def _end_feedback(self) -> None:
-        """End the iteration once all feedback is read: no more will come."""
+        """End the iteration once all feedback is read, as no more will come."""
         self._feedback_ended.set()
         self._feedback.wake()
 

@@ -37,19 +37,19 @@ SHORTEST_LOSS_NS = 30_000_000
 
 
 class ActionEntity(Entity):
-    """An action server or client: an entity that is made of other entities, its parts."""
+    """An action server or client: an entity composed of other entities, its parts."""
 
     def __init__(self, subject: str, stage: EndStage = EndStage.CALLBACKS) -> None:
         super().__init__(subject, stage)
         self._parts: list[Entity] = []
-        self._goals: Any = {}  # those that are known, by id
+        self._goals: Any = {}  # known goals, by id
 
     def _part(self, part: Any) -> Any:
         self._parts.append(part)
         return part
 
     def _is_sign(self, request: Any) -> bool:
-        """Return whether a request for a result only tells that a client is alive."""
+        """Return whether a result request is only a sign of life of its client."""
         return is_sign(bytes(request.goal_id.uuid), self._goals)
 
     def configure_introspection(
@@ -58,16 +58,15 @@ class ActionEntity(Entity):
         service_event_qos_profile: QoSProfile | int,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Publish what the three services of the action send and receive from now on.
+        """Publish the requests and responses of the action's three services from now on.
 
         The topics are ``<action>/_action/send_goal/_service_event``, and those of ``cancel_goal``
         and ``get_result``.
 
         Args:
-            clock: Where the time stamps come from, such as ``node.get_clock()``.
+            clock: The source of time stamps, such as ``node.get_clock()``.
             service_event_qos_profile: QoS of the publishers.
-            introspection_state: Whether to publish nothing, which requests there are, or their
-                contents as well.
+            introspection_state: Whether to publish nothing, metadata only, or contents as well.
 
         Raises:
             TypeError: `clock` or the profile has the wrong type.
@@ -104,14 +103,14 @@ def expect_action_type(action_type: object, subject: str) -> None:
     """Raise TypeError unless `action_type` is an action class."""
     if not (isinstance(action_type, type) and issubclass(action_type, ActionType)):
         raise TypeError(
-            f"{shortened(subject)}: {brief(action_type)} is no action class; "
+            f"{shortened(subject)}: {brief(action_type)} is not an action class; "
             f"{fitting(action_type, 'aionode.interfaces.example_interfaces.action.Fibonacci')}, "
             "or derive from aionode.message.ActionType"
         )
 
 
 def seconds_to_ns(seconds: float, subject: str) -> int:
-    """Return seconds, 0 or more, in nanoseconds.
+    """Convert non-negative seconds to nanoseconds.
 
     Raises:
         TypeError: `seconds` is not a number.
@@ -125,7 +124,7 @@ def seconds_to_ns(seconds: float, subject: str) -> int:
 
 
 def checked_client_lost(on_client_lost: str | None, client_lost_sec: float, subject: str) -> int:
-    """Return after how many nanoseconds without a sign a client is lost; 0 if it never is.
+    """Return the silence in nanoseconds after which a client is lost; 0 for never.
 
     Raises:
         TypeError: `client_lost_sec` is not a number.
@@ -147,7 +146,7 @@ def checked_client_lost(on_client_lost: str | None, client_lost_sec: float, subj
 
 def uuid_message(goal_id: bytes) -> Any:
     """Return 16 bytes as unique_identifier_msgs/msg/UUID."""
-    # Imported here, because programs without actions never need this message.
+    # Imported here, as programs without actions never need this message.
     from aionode.interfaces.unique_identifier_msgs.msg import UUID
 
     return UUID(uuid=list(goal_id))
@@ -162,5 +161,5 @@ def stamp_ns(stamp: Any) -> int:
 
 
 async def awaited(outcome: Any) -> Any:
-    """Return `outcome`, awaited if it can be: the result of a sync or an async callback."""
+    """Return the result of a sync or async callback: `outcome`, awaited if awaitable."""
     return await outcome if isinstance(outcome, Awaitable) else outcome

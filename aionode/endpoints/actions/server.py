@@ -71,7 +71,7 @@ UNLIMITED = 2**63 - 1
 """Depth of the queues of goals: `goal_callback` limits their number."""
 
 DRAIN_LIMIT_S = 1.0
-"""Time for which a result waits until the last feedback is sent, in seconds of real time."""
+"""How long a result waits for the last feedback to be sent, in seconds of real time."""
 
 
 class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
@@ -88,9 +88,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
 
         ActionServer(node, Fibonacci, "fibonacci", execute)
 
-    An accepted cancel request cancels a coroutine. It may clean up in
-    ``except asyncio.CancelledError`` and end with ``goal_handle.canceled()`` or `succeed()`; if it
-    lets the error through, the goal becomes CANCELED. If it is cancelled for another reason, such
+    An accepted cancel request cancels a coroutine. It may clean up in ``except
+    asyncio.CancelledError`` and end with ``goal_handle.canceled()`` or `succeed()`; if it lets the
+    error through, the goal becomes CANCELED. If the coroutine is cancelled for another reason, such
     as the end of the node, the goal becomes ABORTED. A sync callback has to check
     ``goal_handle.is_cancel_requested`` itself. Like every sync callback it blocks the event loop,
     so run a long one in a thread: ``offload=True``.
@@ -108,41 +108,41 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             `GoalResponse.ACCEPT` or ``REJECT``, or raises `GoalRejected` with a reason, which the
             client gets if it runs aionode. Without it all are accepted. Sync or async.
         handle_accepted_callback: Called with the handle of each accepted goal, after the client has
-            been told; calls ``goal_handle.execute()``, then or later. Without it, goals are
+            been told; should call ``goal_handle.execute()``, then or later. Without it, goals are
             executed at once. Sync or async.
         cancel_callback: Called with the handle of a goal that a client wants to cancel; returns
             `CancelResponse.ACCEPT` or ``REJECT``. Without it all are rejected. Sync or async.
         result_timeout: How long a result is kept after the end of its goal, in seconds. With 0 it
             is sent only to clients that asked before the end.
-        max_goals: How many goals may be active at once: those beyond are rejected before
-            `goal_callback` is asked, which is logged once a second at most. So many results are
-            kept, too: the oldest is forgotten first, even before `result_timeout`.
+        max_goals: How many goals may be active at once: further ones are rejected without asking
+            `goal_callback`, which is logged at most once a second. It also limits the results that
+            are kept: the oldest is discarded first, even before `result_timeout`.
         concurrent: True executes all accepted goals at once, False one after the other, a number at
             most that many at once; the others wait as ACCEPTED.
         on_error: What to do with an exception in the other callbacks, once the client has been
             told: ``"log"`` logs it with its traceback, counts it and continues, ``"raise"`` ends
-            the node, a function gets (exception, CallbackContext). The client gets a
+            the node, a function is called with (exception, CallbackContext). The client gets a
             `ServiceError` for a failing `goal_callback` or `cancel_callback`; a failing
             `handle_accepted_callback` aborts the goal.
         offload: Whether to run a sync `execute_callback` in a thread, where it may use its handle.
-        on_client_lost: What becomes of the goals of a client that is killed, frozen, blocked or cut
-            off: ``"cancel"`` cancels them, without asking `cancel_callback`; ``"continue"`` lets
-            them go on, as in rclpy. The goals of a client that ends properly go on in both cases.
-            By default they go on, too, unless a gateway has lost the client for whom it sent them
-            and there is no `cancel_callback`.
-        client_lost_sec: After how many seconds without a sign a client is lost; at least 0.03.
-            Clients of aionode give signs three times in this time. Others, such as rclpy's, are
+        on_client_lost: What happens to the goals of a client that is killed, frozen, blocked or cut
+            off: ``"cancel"`` cancels them without asking `cancel_callback`; ``"continue"`` lets
+            them go on, as in rclpy. The goals of a client that ends properly go on in either case.
+            By default lost goals go on as well, unless a gateway sent them for a client that it has
+            lost and there is no `cancel_callback`.
+        client_lost_sec: The silence after which a client is lost, in seconds; at least 0.03.
+            Clients of aionode send three signs of life in this time. Others, such as rclpy's, are
             lost when they leave the graph.
-        goal_service_qos_profile: Profile of the service that takes goals.
-        result_service_qos_profile: Profile of the service that gives results.
-        cancel_service_qos_profile: Profile of the service that takes cancel requests.
+        goal_service_qos_profile: Profile of the goal service.
+        result_service_qos_profile: Profile of the result service.
+        cancel_service_qos_profile: Profile of the cancel service.
         feedback_pub_qos_profile: Profile of the feedback topic.
         status_pub_qos_profile: Profile of the status topic.
 
     Attributes:
         action_type: The action type.
         action_name: The full name of the action.
-        stats: Counts of the goals: `received` are those whose execution has started.
+        stats: Counts of the goals: `received` counts those whose execution has started.
 
     Raises:
         TypeError: an argument has the wrong type, or a callback takes other arguments.
@@ -232,7 +232,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                     node.create_service(srv_type, service, callback, qos_profile=profile, **options)
                 )
 
-            # One after the other, or two goals could both be accepted as "the only one".
+            # One at a time, or two goals could both be accepted as "the only one".
             self._send_goal = serve(
                 impl.SendGoalService,
                 "send_goal",
@@ -247,7 +247,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 cancel_service_qos_profile,
                 on_error=on_error,
             )
-            # A request stays open until its goal ends, so many are open at once.
+            # A request stays pending until its goal ends, so many are pending at once.
             get_result = serve(
                 impl.GetResultService,
                 "get_result",
@@ -293,7 +293,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         )
 
     def register_goal_callback(self, goal_callback: Callable[[GoalT], Any] | None) -> None:
-        """Set the function that decides about new goals; None accepts all."""
+        """Set the function that decides on new goals; None accepts all."""
         if goal_callback is not None:
             accepts(goal_callback, 1, subject=self._subject, wanted="(goal)")
         self._goal_callback = goal_callback
@@ -304,7 +304,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None
         ),
     ) -> None:
-        """Set the function that gets accepted goals; None executes them at once."""
+        """Set the function that handles accepted goals; None executes them at once."""
         if handle_accepted_callback is not None:
             accepts(handle_accepted_callback, 1, subject=self._subject, wanted="(goal_handle)")
         self._handle_accepted_callback = handle_accepted_callback
@@ -313,7 +313,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self,
         cancel_callback: Callable[[ServerGoalHandle[GoalT, ResultT, FeedbackT]], Any] | None,
     ) -> None:
-        """Set the function that decides about cancel requests; None rejects all."""
+        """Set the function that decides on cancel requests; None rejects all."""
         if cancel_callback is not None:
             accepts(cancel_callback, 1, subject=self._subject, wanted="(goal_handle)")
         self._cancel_callback = cancel_callback
@@ -331,7 +331,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             return response
         self._client_watch.add(goal_id, self._send_goal._client_gid)
         try:
-            # It may be refused now because of a request that came during the callback.
+            # It may have to be refused now, because of a request that arrived during the callback.
             if not await self._welcomes(request.goal) or self._is_refused(goal_id):
                 return response
         except GoalRejected as rejected:
@@ -345,7 +345,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         finally:
             if not response.accepted:
                 self._client_watch.remove(goal_id)
-        # Either way the goal is queued first, so that the client is told before it starts.
+        # In either case the goal is queued first, so that the client is told before it starts.
         if self._handle_accepted_callback is None:
             goal.execute()
         else:
@@ -353,7 +353,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return response
 
     def _is_refused(self, goal_id: bytes) -> bool:
-        """Return whether the goal is known already, or was cancelled before it came."""
+        """Return whether the goal is already known, or was cancelled before it arrived."""
         return goal_id in self._goals or goal_id in self._early_cancels
 
     async def _welcomes(self, goal: GoalT) -> bool:
@@ -362,7 +362,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         answer = await awaited(self._goal_callback(goal))
         if not isinstance(answer, GoalResponse):
             self._warn(
-                f"goal_callback returned {brief(answer)}, no GoalResponse; the goal is rejected"
+                f"goal_callback returned {brief(answer)}, not a GoalResponse; the goal is rejected"
             )
         elif answer is GoalResponse.REJECT:
             tell_rejected(self._logger, self._subject)
@@ -393,7 +393,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
                 await awaited(callback(goal))
         except (Exception, asyncio.CancelledError) as error:
             if not is_cancelled_task():
-                goal._failed(error)  # otherwise its client would wait for ever
+                goal._failed(error)  # otherwise its client would wait forever
             raise
 
     # Execution
@@ -412,7 +412,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         goal: ServerGoalHandle[GoalT, ResultT, FeedbackT],
         execute_callback: Callable[..., Any] | None,
     ) -> None:
-        """Queue `goal` for execution. For its handle."""
+        """Queue `goal` for execution. Used by its handle."""
         runner = None if execute_callback is None else self._executing(execute_callback)
         self._waiting.put((goal, runner))
 
@@ -446,7 +446,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
     async def _call_execute(
         self, goal: ServerGoalHandle[Any, Any, Any], runner: CallbackRunner
     ) -> None:
-        if not self._offload:  # a thread cannot be cancelled; it has to check for itself
+        if not self._offload:  # a thread cannot be cancelled; it has to check itself
             goal._run_in(asyncio.current_task())
         try:
             goal._returned(await runner.call(goal))
@@ -455,13 +455,13 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             raise
         except Exception as error:  # noqa: BLE001  # logged and counted, and told to the client
             if self.destroyed and isinstance(error, CallbackCancelledError):
-                goal._stopped()  # the node ends: its clock was closed just before this task
+                goal._stopped()  # the node is ending: its clock was closed just before this task
                 return
             runner.fail(error)
             goal._failed(error)
 
     def _in_loop(self, action: Callable[..., None], *args: Any) -> None:
-        """Run `action` in the event loop; from another thread, wait for it. For goal handles.
+        """Run `action` in the event loop; from another thread, wait for it. Used by goal handles.
 
         Raises:
             Exception: what `action` raised.
@@ -505,12 +505,12 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return response
 
     def _on_client_lost(self, goal_ids: list[bytes], text: str) -> None:
-        """Cancel the goals of a lost client, as an accepted request does."""
+        """Cancel the goals of a lost client, like an accepted cancel request."""
         ids = ", ".join(goal_id.hex() for goal_id in goal_ids)
         self._warn(f"{text}; cancelling its goal{'s'[: len(goal_ids) > 1]} {ids}")
         for goal_id in goal_ids:
             goal = self._goals.get(goal_id)
-            if goal is None:  # not decided on yet
+            if goal is None:  # not yet decided on
                 self._early_cancels.note(goal_id)
             elif is_cancelable(goal.status):
                 goal._cancel(text)
@@ -537,26 +537,26 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         return response
 
     async def _send_feedback_first(self) -> None:
-        """Send feedback before the result: clients stop listening once they have the result."""
+        """Send feedback before the result, as clients stop listening once they have the result."""
         with suppress(TimeoutError):  # a full KEEP_ALL reader must not hold results back
             async with asyncio.timeout(DRAIN_LIMIT_S):
                 await self._feedback.drain()
 
     def _keep(self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT]) -> None:
-        """Keep the result of `goal`, which has ended, for `result_timeout`. For its handle."""
+        """Keep the result of an ended goal for `result_timeout`. Used by its handle."""
         goal_id = goal._key.goal_id
         self._client_watch.remove(goal_id)
         if not self.destroyed and goal_id in self._goals:
             self._goals.keep(goal_id)
             if not self._goals.kept_ns:
-                self._publish_status()  # then it is forgotten
+                self._publish_status()  # before it is discarded
 
     # Topics
 
     def _publish_feedback(
         self, goal: ServerGoalHandle[GoalT, ResultT, FeedbackT], feedback: FeedbackT
     ) -> None:
-        """Send `feedback` of `goal`. For its handle."""
+        """Send `feedback` of `goal`. Used by its handle."""
         if not isinstance(feedback, self.action_type.Feedback):
             raise TypeError(
                 f"{self._subject}: feedback is a {type(feedback).__name__}; a "
@@ -564,11 +564,11 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
             )
         if not self.destroyed:
             message = self.action_type.Impl.FeedbackMessage(goal_id=goal.goal_id, feedback=feedback)
-            with suppress(QueueFullError):  # a reader that is too slow must not stop the goal
+            with suppress(QueueFullError):  # a slow reader must not stop the goal
                 self._feedback.publish(message)
 
     def _publish_status(self) -> None:
-        """Send the states of all goals soon. For goal handles."""
+        """Send the states of all goals soon. Used by goal handles."""
         if not self.destroyed:
             self._status_pace.note_change()
 
@@ -586,7 +586,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._goals.forget_ended()
 
     def _warn(self, text: str) -> None:
-        """Log a mistake of a callback. For goal handles."""
+        """Log a mistake in a callback. Used by goal handles."""
         self._logger.warning(f"{self._subject}: {text}")
 
     # The end
@@ -597,7 +597,7 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         self._close_parts()
         self._client_watch.stop()
         for goal in self._goals.close():
-            if goal.status is GoalStatus.ACCEPTED:  # the others end with their callbacks
+            if goal.status is GoalStatus.ACCEPTED:  # executing goals end with their callbacks
                 goal._stopped()
         self._accepted.discard()
         self._waiting.discard()

@@ -1,4 +1,4 @@
-"""One goal at the server that executes it: its feedback, its cancellation, and how it ends."""
+"""One goal at the server that executes it: its feedback, cancellation and end."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STOPPED_TEXT = "the action server stopped"
 
 
 class GoalServer(Protocol):
-    """The methods of an `ActionServer` that its goal handles call; the server describes each."""
+    """The methods of an `ActionServer` that its goal handles call; described there."""
 
     action_name: str
     destroyed: bool
@@ -38,7 +38,7 @@ class GoalServer(Protocol):
 
 
 class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
-    """A goal that an action server has accepted, as its callbacks get it.
+    """A goal accepted by an action server, as passed to its callbacks.
 
     An `execute_callback` that runs in a thread (``offload=True``) may use it there.
 
@@ -64,8 +64,8 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._running = False
         self._task: asyncio.Task[Any] | None = None
         self._result: ResultT | None = None
-        self._error_text = ""  # why it was aborted
-        self._cancel_text = ""  # why the server cancels it by itself
+        self._error_text = ""  # the reason if it was aborted
+        self._cancel_text = ""  # the reason if the server cancels it on its own
         self._known = asyncio.Event()
 
     def __repr__(self) -> str:
@@ -93,7 +93,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether the goal is to be cancelled.
+        """Whether the goal should be cancelled.
 
         `cancel_callback` has accepted a request, or the server has lost the goal's client.
         """
@@ -102,15 +102,16 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     # For callbacks
 
     def execute(self, execute_callback: Callable[..., Any] | None = None) -> None:
-        """Execute the goal, as soon as `concurrent` allows.
+        """Execute the goal as soon as `concurrent` allows it.
 
-        For a `handle_accepted_callback` that decides when; without one, goals are executed at once.
+        To be called by `handle_accepted_callback`, now or later; without that callback, goals are
+        executed at once.
 
         Args:
             execute_callback: Called instead of the server's own.
 
         Raises:
-            GoalTransitionError: it is being or was executed, or has ended (a RuntimeError).
+            GoalTransitionError: it is already being executed, or has ended (a RuntimeError).
         """
         self._server._in_loop(self._execute, execute_callback)
 
@@ -123,7 +124,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._server._enqueue(self, execute_callback)
 
     def publish_feedback(self, feedback: FeedbackT) -> None:
-        """Send the client the progress of the goal; never waits in the event loop.
+        """Send progress of the goal to its client; never blocks the event loop.
 
         Raises:
             TypeError: `feedback` is not of the action's Feedback type.
@@ -135,12 +136,11 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         """End the goal as SUCCEEDED.
 
         Args:
-            result: What the client gets; without it, what `execute_callback` returns.
+            result: The result for the client; if omitted, the one that `execute_callback` returns.
 
-        Raises:
-            GoalTransitionError: the goal is not being executed, or has ended (a RuntimeError).
-            TypeError: `result` is not of the action's Result type.
-            MessageError: a value does not fit its field.
+        Raises: GoalTransitionError: the goal is not being executed, or has ended (a RuntimeError).
+        TypeError: `result` is not of the action's Result type. MessageError: a value does not fit
+        its field.
         """
         self._server._in_loop(self._end, GoalEvent.SUCCEED, result)
 
@@ -148,8 +148,8 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         """End the goal as ABORTED. See `succeed` for `result` and the errors.
 
         Args:
-            result: What the client gets; without it, what `execute_callback` returns.
-            error_text: The reason, which clients that run aionode get.
+            result: The result for the client; if omitted, the one that `execute_callback` returns.
+            error_text: The reason, which reaches clients that run aionode.
         """
         self._server._in_loop(self._end, GoalEvent.ABORT, result, error_text)
 
@@ -162,7 +162,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     def _end(self, event: GoalEvent, result: ResultT | None, error_text: str = "") -> None:
         if self._server.destroyed:
-            # No client can be told any more, and a callback that cleans up should not fail for it.
+            # No client can be told any more, but that should not fail a callback that cleans up.
             self.status = TRANSITIONS.get((self.status, event), self.status)
             return
         checked = None if result is None else self._server._checked_result(result)
@@ -183,7 +183,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._server._publish_status()
 
     def _begin(self) -> None:
-        """Mark the goal as executing: its callback is about to be called."""
+        """Mark the goal as executing, as its callback is about to be called."""
         self._running = True
         if not self.is_cancel_requested:
             self._move(GoalEvent.EXECUTE)
@@ -191,7 +191,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
     def _run_in(self, task: asyncio.Task[Any] | None) -> None:
         """Set the task that a cancel request cancels; if there was one already, cancel it.
 
-        In that case the callback runs up to its first await, so that it can clean up.
+        In that case the callback runs until its first await, so that it can clean up.
         """
         self._task = task
         if task is not None and self.is_cancel_requested:
@@ -199,11 +199,11 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
 
     @property
     def _end_text(self) -> str:
-        """Why it was aborted, or canceled without a request; empty if there is no reason."""
+        """Why it was aborted, or canceled without a request; empty if unknown."""
         return self._cancel_text if self.status is GoalStatus.CANCELED else self._error_text
 
     def _cancel(self, text: str = "") -> None:
-        """Cancel the goal: a request was accepted, or the server does it because of `text`."""
+        """Cancel the goal: a request was accepted, or the server does so for the reason `text`."""
         self._cancel_text = text
         self._move(GoalEvent.CANCEL_GOAL)
         if self._task is not None:
@@ -212,7 +212,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
             self._stopped()  # its callback has not started, so there is nothing to clean up
 
     def _returned(self, result: ResultT | None) -> None:
-        """Take the result that the callback returned.
+        """Handle the result that the callback returned.
 
         Raises:
             TypeError: it is not of the action's Result type.
@@ -231,7 +231,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._set_result(checked)
 
     def _failed(self, error: BaseException) -> None:
-        """Take an exception of the callback: the goal is aborted, unless it has already ended."""
+        """Handle an exception of the callback: abort the goal, unless it has already ended."""
         if self.is_active:
             self._error_text = f"{type(error).__name__}: {error}"
             if self.status is GoalStatus.ACCEPTED:
@@ -240,7 +240,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._set_result(None)
 
     def _stopped(self) -> None:
-        """End the goal: its callback was cancelled, on request or because the server stops."""
+        """End the goal, as its callback was cancelled, on request or because the server stops."""
         if self.status is GoalStatus.CANCELING:
             self._move(GoalEvent.CANCELED)
         elif self.is_active:
@@ -251,7 +251,7 @@ class ServerGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         self._set_result(None)
 
     def _set_result(self, result: ResultT | None) -> None:
-        """Set the result, only once; None becomes an empty message at the client."""
+        """Set the result, once; None becomes an empty message at the client."""
         self._running = False
         self._task = None
         if not self._known.is_set():

@@ -1,1 +1,1 @@
-"""The parts of which all endpoints are built: queue, callback runner, graph entry."""
+"""The building blocks of all endpoints: queue, callback runner, graph entry."""

@@ -1,7 +1,7 @@
-"""Running callbacks: measured, fair to the rest of the loop, and with a policy for errors.
+"""Run callbacks: measured, fair to the rest of the loop, with a policy for errors.
 
-Every callback of every entity runs through `CallbackRunner`, and `consume` hands it what is queued;
-no other place decides what happens around a callback.
+Every callback of every entity runs through `CallbackRunner`, and `consume` passes it the queued
+items; nothing else decides what happens around a callback.
 """
 
 from __future__ import annotations
@@ -47,15 +47,15 @@ T = TypeVar("T")
 
 
 REFUSED_SEC = 1.0
-"""The shortest time between two reports of requests beyond the limits of a service."""
+"""Minimum time between two reports of requests beyond the limits of a service."""
 
 REPORT_INTERVAL_NS = 1_000_000_000
-"""The shortest time between two reports of slow callbacks of one entity."""
+"""Minimum time between two reports of slow callbacks of one entity."""
 
 
 @dataclass(frozen=True, slots=True)
 class CallbackContext:
-    """The callback that failed, and its input, for an `on_error` function.
+    """The callback that failed, as passed to an `on_error` function.
 
     Attributes:
         node: Full name of the node.
@@ -78,8 +78,7 @@ class CallbackRunner:
         callback: A function or coroutine function.
         entity: The entity.
         callbacks: How its node runs callbacks.
-        stats: Where counts and durations go.
-        on_error: What to do with an exception: see `fail`.
+        stats: Receives counts and durations. on_error: What to do with an exception: see `fail`.
         offload: Whether a sync callback runs in a thread.
 
     Raises:
@@ -89,9 +88,9 @@ class CallbackRunner:
     Attributes:
         offload: Whether the callback runs in a thread.
         is_sync: Whether a call is expected to finish at once, in the loop's own thread.
-        budget_ns: How long a callback may block the loop before that is reported.
-        waiting: The callbacks of the node that have started and are suspended; shared with it.
-        thread_time: For how long the node's thread has run; read after callbacks.
+        budget_ns: How long a callback may block the loop before it is reported.
+        waiting: The node's callbacks that have started and are suspended; shared with the node.
+        thread_time: How long the node's thread has run; read after callbacks.
     """
 
     def __init__(
@@ -138,20 +137,20 @@ class CallbackRunner:
         return f"{self._entity._subject} (callback {callback_name(self.callback)})"
 
     def run(self, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Run the callback and handle its errors; return what is left to await, or None.
+        """Run the callback and handle its errors; return the rest to await, or None.
 
         Raises:
             Exception: what the callback raised, if `on_error` is ``"raise"``.
         """
         try:
             entered = self.enter(*args)
-        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+        except Exception as error:  # noqa: BLE001  # the policy decides: `fail`
             self.fail(error)
             return None
         return self._finish(entered) if is_unfinished(entered) else None
 
     def receive(self, entered_ns: int, *args: Any) -> Coroutine[Any, Any, None] | None:
-        """Do `run` for an item that was queued at `entered_ns`; count it, and record its wait.
+        """Call `run` for an item that was queued at `entered_ns`; count it, and record its wait.
 
         Raises:
             Exception: what the callback raised, if `on_error` is ``"raise"``.
@@ -164,7 +163,7 @@ class CallbackRunner:
             return self._finish(_Offloaded(self, args))
         try:
             outcome = self.callback(*args)
-        except (Exception, asyncio.CancelledError) as error:  # noqa: BLE001  # the policy decides, see `fail`
+        except (Exception, asyncio.CancelledError) as error:  # noqa: BLE001  # the policy decides: `fail`
             return self.conclude(waited_ns, perf_ns() - began_ns, None, error)
         took_ns = perf_ns() - began_ns
         if outcome is not None or took_ns > self.budget_ns:
@@ -177,7 +176,7 @@ class CallbackRunner:
     def conclude(
         self, waited_ns: int, took_ns: int, outcome: Any, error: BaseException | None = None
     ) -> Coroutine[Any, Any, None] | None:
-        """Record a call of the callback, handle its error, and return what is left to await.
+        """Record a call of the callback, handle its error, and return the rest to await.
 
         Args:
             waited_ns: How long its item was queued.
@@ -186,7 +185,7 @@ class CallbackRunner:
             error: What it raised.
 
         Raises:
-            BaseException: `error`, if it is no `Exception` or `on_error` is ``"raise"``.
+            BaseException: `error`, if it is not an `Exception` or `on_error` is ``"raise"``.
         """
         stats = self.stats
         if outcome is not None and isinstance(outcome, Awaitable):
@@ -203,10 +202,10 @@ class CallbackRunner:
         return None
 
     def _cancelled(self, cause: asyncio.CancelledError) -> CallbackCancelledError:
-        """Return the error of a callback that raised a cancellation which was not that of its task.
+        """Return the error for a callback that raised CancelledError with its task not cancelled.
 
-        A sync callback always does: its task is only cancelled where it awaits. Left as it is, the
-        cancellation would end that task silently, and with it the entity.
+        That is always so for a sync callback, as its task is cancelled only where it awaits. If it
+        propagated, it would silently end that task and with it the entity.
         """
         error = CallbackCancelledError(self.subject)
         error.__cause__ = cause
@@ -215,11 +214,11 @@ class CallbackRunner:
     async def _finish(self, outcome: Any) -> None:
         try:
             await self.outcome(outcome)
-        except Exception as error:  # noqa: BLE001  # the policy decides, see `fail`
+        except Exception as error:  # noqa: BLE001  # the policy decides: `fail`
             self.fail(error)
 
     def enter(self, *args: Any) -> Any:
-        """Run the callback up to its first await; pass the result to `outcome`.
+        """Run the callback up to its first await; the result is for `outcome`.
 
         Raises:
             Exception: what a sync callback raised.
@@ -262,7 +261,7 @@ class CallbackRunner:
         return await self.outcome(self.enter(*args))
 
     def fail(self, error: Exception) -> None:
-        """Apply the policy for errors: count it, then raise it, log it, or pass it to `on_error`.
+        """Apply the error policy: count the error, then raise it, log it, or pass it to `on_error`.
 
         Raises:
             Exception: `error` itself, if `on_error` is ``"raise"``.
@@ -272,7 +271,7 @@ class CallbackRunner:
             error.add_note(f"in {self.subject} of node {self._callbacks.node}")
             raise error
         if self._on_error == "log" and isinstance(error, RequestRefusedError):
-            # Whoever sends such requests must not fill the log of this node.
+            # A client that sends such requests must not be able to fill this node's log.
             self._callbacks.logger.warning(
                 f"{self.subject} refused a request: {error}", throttle_duration_sec=REFUSED_SEC
             )
@@ -308,16 +307,16 @@ class CallbackRunner:
 
 @dataclass(frozen=True, slots=True)
 class Callbacks:
-    """How the callbacks of one node are run.
+    """The shared settings and state for running one node's callbacks.
 
     Attributes:
         node: Full name of the node.
         logger: Its logger.
-        budget_ns: How long a callback may block the loop before that is reported.
-        waiting: The callbacks that have started and are suspended; ``str()`` of each names it.
-            Each adds itself when it starts and removes itself when it ends.
-        thread_time: For how long the node's thread has run.
-        slice_ns: For how long a queue is drained before others get their turn; of the time base.
+        budget_ns: How long a callback may block the loop before it is reported.
+        waiting: The callbacks that have started and are suspended, each named by its ``str()``.
+            They add themselves when they start and remove themselves when they end.
+        thread_time: How long the node's thread has run.
+        slice_ns: How long a queue is drained before others get a turn; from the time base.
     """
 
     node: str
@@ -336,7 +335,7 @@ class Callbacks:
         on_error: OnError,
         offload: bool,
     ) -> CallbackRunner:
-        """Return the runner of `callback` for `entity`.
+        """Create the runner of `callback` for `entity`.
 
         Raises:
             TypeError: `on_error` is neither a string nor a function.
@@ -346,7 +345,7 @@ class Callbacks:
 
 
 class _Measured:
-    """An async callback: measures the longest stretch between two awaits."""
+    """An async callback; measures the longest stretch between two awaits."""
 
     __slots__ = ("_awaitable", "_runner")
 
@@ -355,7 +354,7 @@ class _Measured:
         self._awaitable: Any = awaitable  # None once started
 
     def __del__(self) -> None:
-        # The task was cancelled before it got here, so this is never awaited.
+        # The task was cancelled first, so this was never awaited.
         awaitable = self._awaitable
         if awaitable is not None:
             give_up = getattr(awaitable, "close", None) or getattr(awaitable, "cancel", None)
@@ -429,8 +428,8 @@ class _Offloaded:
     def _call(self) -> Any:
         """Call the callback, in the thread.
 
-        A future takes no StopIteration (before Python 3.13 the wait for it would never end), so it
-        becomes a RuntimeError, as Python has it for coroutines.
+        A future cannot hold a StopIteration (before Python 3.13 waiting for it would never end), so
+        it becomes a RuntimeError, as in coroutines.
         """
         try:
             return self._runner.callback(*self._args)
@@ -449,16 +448,16 @@ def is_unfinished(entered: object) -> bool:
 def consume(
     message_queue: MessageQueue[T],
     handle: Callable[[int, T], Coroutine[Any, Any, None] | None],
-    concurrent: bool | int,  # an int is a number of callbacks, not a truth value
+    concurrent: bool | int,  # an int is a number of callbacks, not a bool
     *,
     inline: bool = False,
 ) -> Coroutine[Any, Any, None]:
-    """Return what hands everything that arrives in `message_queue` to `handle`, until cancelled.
+    """Return a coroutine that passes all items of `message_queue` to `handle`, until cancelled.
 
-    `handle` runs what can run at once and returns what is left to await, if anything. With
-    `concurrent` that runs beside the next items in a TaskGroup, any number at once or at most the
-    given number, while the others stay queued. Without it, `inline` lets items
-    bypass the queue while it is empty, see `MessageQueue`; not for coroutine functions.
+    `handle` runs what can run at once and returns the rest to await, if any. With `concurrent` the
+    rest runs in a TaskGroup alongside the next items, any number at once or at most the given
+    number, while further items stay queued. Without it, `inline` lets items bypass the queue while
+    it is empty (see `MessageQueue`); not for coroutine functions.
     """
     if concurrent is False:
         return message_queue.consume(handle, inline=inline)
@@ -493,11 +492,11 @@ async def _consume_concurrently(
 
 
 def advice(took_ns: int, ran_ns: int | None) -> str:
-    """Return what a report of a slow callback says of its time, and what helps.
+    """Return the advice in a report of a slow callback: where its time went, and what helps.
 
     Args:
         took_ns: How long the callback blocked the loop.
-        ran_ns: For how long its thread ran meanwhile, None if unknown.
+        ran_ns: How long its thread ran meanwhile; None if unknown.
     """
     move = (
         "Move the work off the loop: offload=True runs a sync callback in a thread, a coroutine "
@@ -524,7 +523,7 @@ def _is_async(callback: Callable[..., Any]) -> bool:
 
 
 def callback_name(callback: Callable[..., Any]) -> str:
-    """Return the name of what a callback calls in the program: behind a partial, or a filter."""
+    """Return the name of the program's function, looking through partials and filters."""
     if isinstance(callback, functools.partial):
         return callback_name(callback.func)
     owner = getattr(callback, "__self__", None)
@@ -536,14 +535,14 @@ def callback_name(callback: Callable[..., Any]) -> str:
 
 
 def accepts(callback: Callable[..., Any], *counts: int, subject: str, wanted: str) -> int:
-    """Return the first of `counts` positional arguments that `callback` can be called with.
+    """Return the first number in `counts` of positional arguments that `callback` accepts.
 
     Raises:
         TypeError: `callback` is not callable.
-        CallbackSignatureError: it takes another number of arguments; the text names `wanted`.
+        CallbackSignatureError: it takes a different number of arguments; the text names `wanted`.
     """
     if not callable(callback):
-        raise TypeError(f"{subject}: {brief(callback)} cannot be called; give a function {wanted}")
+        raise TypeError(f"{subject}: {brief(callback)} is not callable; pass a function {wanted}")
     try:
         signature = inspect.signature(callback)
     except ValueError:  # a builtin without a signature

@@ -1,4 +1,4 @@
-"""How and why a node ended."""
+"""The record of how and why a node ended."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class NodeEnd:
         reason: ``"destroyed"``: `destroy_node` was called, its context was shut down, or the body
             of ``async with`` ended. ``"failed"``: a callback, or that body, raised an exception.
             ``"cancelled"``: the task that ran the node was cancelled.
-        error: The exception from ``async with`` or `run` if the node failed, else None.
+        error: The exception raised by ``async with`` or `run` if the node failed, else None.
     """
 
     reason: Literal["destroyed", "failed", "cancelled"]
@@ -33,7 +33,7 @@ class NodeEnd:
 
 
 def short_text(error: BaseException) -> str:
-    """Return the type and text of an exception in one line; for a group, those of its members."""
+    """Format the type and text of an exception in one line; for a group, those of its members."""
     if isinstance(error, BaseExceptionGroup):
         return "; ".join(short_text(part) for part in error.exceptions)
     text = " ".join(str(error).split())
@@ -41,7 +41,7 @@ def short_text(error: BaseException) -> str:
 
 
 def failure_text(error: BaseException) -> str:
-    """Return what `short_text` does, with the callback of each exception."""
+    """Format an exception like `short_text`, with the callback of each exception."""
     if isinstance(error, BaseExceptionGroup):
         return "; ".join(failure_text(part) for part in error.exceptions)
     return ", ".join([short_text(error), *getattr(error, "__notes__", ())])
@@ -61,14 +61,14 @@ class EndRecord:
         self._runs_in = asyncio.current_task()
 
     def note(self, end: NodeEnd) -> None:
-        """Record the end and wake those waiting for it; only the first call counts."""
+        """Record the end and wake the tasks waiting for it; only the first call counts."""
         if self._end is None:
             self._end = end
             self._known.set()
 
     @contextlib.contextmanager
     def recorded(self, body: BaseException | None) -> Iterator[None]:
-        """Record the end of the node from how the ``with`` block ends, which shuts it down.
+        """Record the node's end according to how the ``with`` block, which shuts it down, ends.
 
         Args:
             body: The exception from the body of the node's ``async with``, if any.

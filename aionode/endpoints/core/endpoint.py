@@ -19,11 +19,10 @@ __all__ = ["Endpoint", "EndpointSetup", "report_heavy"]
 
 
 class EndpointSetup(NamedTuple):
-    """The parts of a node that an endpoint uses.
+    """What an endpoint uses of its node.
 
     Attributes:
-        endpoint: The endpoint as the graph is to know it.
-        graph: The graph.
+        endpoint: The endpoint's entry in the graph. graph: The graph.
         callbacks: How the node runs callbacks.
         affinity: The event loop that the node runs in.
         queue_bytes: How many bytes of messages or requests may wait for its callback.
@@ -37,17 +36,17 @@ class EndpointSetup(NamedTuple):
 
 
 def report_heavy(setup: EndpointSetup, what: str) -> None:
-    """Log that messages or requests were dropped or refused since they have too many bytes."""
-    what = f"{what}, and only counted from now on, in stats.dropped"
+    """Log that messages or requests were dropped or refused for taking too many bytes."""
+    what = f"{what} (logged once; see stats.dropped)"
     setup.callbacks.logger.warning(heavy_text(setup.endpoint.name, setup.queue_bytes, what))
 
 
 class Endpoint(Entity):
-    """An entity that others find in the graph, and that is matched with those of the opposite kind.
+    """An entity that others discover in the graph, and that is matched with its opposite kind.
 
     Args:
         subject: What it is, for errors and logs, such as ``publisher of /chatter``.
-        setup: What its node gives to it.
+        setup: What it uses of its node.
         stage: When it is destroyed as its node ends.
 
     Attributes:
@@ -64,33 +63,33 @@ class Endpoint(Entity):
         self._unreported: AbstractSet[str] = frozenset()
 
     def _leave_unreported(self, aspects: AbstractSet[str]) -> None:
-        """Have no warning logged for these mismatches, as a `Mismatch` calls them."""
+        """Suppress warnings for these mismatches, which are aspects of `Mismatch`."""
         self._unreported = aspects
 
     def _watch(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
-        """Call `watcher` with each opposite endpoint of its name, and whether it is present.
+        """Call `watcher` with each opposite endpoint of its name and whether it is present.
 
-        Until the endpoint is destroyed; what is known already comes at once.
+        Lasts until the endpoint is destroyed; known endpoints are reported at once.
         """
         if not self.destroyed:
             opposite = self._endpoint.kind.opposite
             self._unwatch.append(self._graph.watch(opposite, self._endpoint.name, watcher))
 
     def _enter_graph(self) -> None:
-        """Add the endpoint to the graph. Called once it is announced to the transports."""
+        """Add the endpoint to the graph; called once it is announced to the transports."""
         if self._unreported:
             self._graph.unreported[self._endpoint] = self._unreported
         self._graph.add_endpoint(self._endpoint)
 
     def _leave_graph(self) -> None:
-        """Remove the endpoint from the graph, which ends every `_until`. Part of `_close`."""
+        """Remove the endpoint from the graph, which ends every `_until`; part of `_close`."""
         for unwatch in self._unwatch:
             unwatch()
         self._unwatch.clear()
         self._graph.remove_endpoint(self._endpoint)
 
     def _matched(self) -> list[EndpointInfo]:
-        """Return the endpoints of the opposite kind that this one reaches; none when destroyed."""
+        """Return the opposite endpoints that this one reaches; none when destroyed."""
         if self.destroyed:
             return []
         opposite = self._endpoint.kind.opposite
@@ -101,7 +100,7 @@ class Endpoint(Entity):
         ]
 
     def _count_matched(self) -> int:
-        """Return how many endpoints of the opposite kind are in the graph and fit."""
+        """Count the compatible opposite endpoints in the graph."""
         opposite = self._endpoint.kind.opposite
         return sum(
             self._endpoint.matches(other)

@@ -1,6 +1,6 @@
 """The base of all entities of a node: an owner, a task, and an end.
 
-Names with an underscore are for the node and for subclasses; users see the rest.
+Names with an underscore are for the node and subclasses; the rest is for users.
 """
 
 from __future__ import annotations
@@ -25,9 +25,10 @@ class EndStage(IntEnum):
     """The steps in which a node ends; in each, its entities are destroyed, newest first.
 
     Attributes:
-        CALLBACKS: Entities with callbacks, which are cancelled; the next step waits for their end.
+        CALLBACKS: Entities with callbacks, which are cancelled; the next step waits for them to
+            end.
         GOALS: Entities that cancel goals; the next step waits for the servers' answers.
-        LAST: What callbacks may use until they have ended: publishers, clients, rates.
+        LAST: What callbacks may use until their end: publishers, clients, rates.
     """
 
     CALLBACKS = 0
@@ -38,7 +39,7 @@ class EndStage(IntEnum):
 class Entity:
     """Base of everything that a node creates.
 
-    The node starts `_run` in its TaskGroup, at once if the node is running, or when it starts.
+    The node starts `_run` in its TaskGroup: at once if it is running, otherwise when it starts.
     Destroying an entity cancels that task and removes the entity from its node.
 
     Args:
@@ -61,23 +62,23 @@ class Entity:
     def _adopt(
         self, on_destroy: Callable[[Entity], None], affinity: LoopAffinity, node_tasks: NodeTasks
     ) -> None:
-        """Set what is called when the entity is destroyed, and where. Called once, by the node.
+        """Set what is called on destruction, and in which loop; the node calls this once.
 
-        `node_tasks` says which tasks are the node's own.
+        `node_tasks` knows which tasks are the node's own.
         """
         self._on_destroy = on_destroy
         self._node_affinity = affinity
         self._node_tasks = node_tasks
 
     def _start(self, tasks: asyncio.TaskGroup) -> asyncio.Task[None] | None:
-        """Start `_run` as a task of `tasks`; return it, or None if there is no work."""
+        """Start `_run` as a task of `tasks`; return the task, or None if there is no work."""
         work = self._run()
         if work is not None:
             context = None if self._node_tasks is None else self._node_tasks.context()
             try:
                 self._task = tasks.create_task(work, name=self._subject, context=context)
             except RuntimeError:
-                # The node is failing already; it will destroy the entity in a moment.
+                # The node is already failing; it is about to destroy the entity.
                 work.close()
                 raise
             if self._node_tasks is not None:
@@ -101,8 +102,8 @@ class Entity:
             affinity.wait_for(self.destroy)
             return
         self.destroyed = True
-        # A failed callback has already cancelled the others; cancelling again would interrupt what
-        # they do in `finally`.
+        # A failed callback has already cancelled the others; cancelling again would interrupt their
+        # `finally` blocks.
         if self._task is not None and not self._task.cancelling():
             self._task.cancel()
         self._close()
@@ -110,19 +111,19 @@ class Entity:
             self._on_destroy(self)
 
     def _end_lease(self, refusal: Callable[[], Exception]) -> None:
-        """Send the stop of an open lease, whose `publish` raises what `refusal` returns."""
+        """Send the stop of an open lease; its `publish` then raises what `refusal` returns."""
 
     def _close(self) -> None:
         """Release what the entity holds; called once, by `destroy`."""
 
     def _end_of_wait(self) -> asyncio.CancelledError | EntityDestroyedError:
-        """Return what the current task raises whose wait has ended because of `destroy`."""
+        """Return the exception for the current task, whose wait was ended by `destroy`."""
         if self._node_tasks is None:
             return EntityDestroyedError(self._subject)
         return self._node_tasks.end_of_wait(self._subject)
 
     def _destroyed_error(self, action: str = "") -> EntityDestroyedError:
-        """Return the error of those who use a destroyed entity; its cause is that of the node."""
+        """Return the error for uses of the destroyed entity, caused by the node's error if any."""
         error = EntityDestroyedError(self._subject, action)
         if self._node_tasks is not None:
             error.__cause__ = self._node_tasks.error

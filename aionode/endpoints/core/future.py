@@ -1,4 +1,4 @@
-"""The futures that rclpy's ``*_async`` methods return, for the result of an entity's work."""
+"""The futures that rclpy's ``*_async`` methods return for the results of an entity's work."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ T = TypeVar("T")
 class Futures:
     """Runs work of one entity in tasks of its node, and returns the results as futures.
 
-    Work submitted before the node runs starts with the node. `close` ends what is unfinished, as
-    the waits of the tasks that asked for it end.
+    Work submitted before the node runs starts with the node. `close` ends unfinished work like a
+    wait of the task that submitted it.
 
     Args:
         entity: The entity.
@@ -33,16 +33,16 @@ class Futures:
         self._subject = entity._subject
         self._tasks: asyncio.TaskGroup | None = None
         self._closed = False
-        # The unfinished futures, each with its work until that is started.
+        # Unfinished futures, with their work until it is started.
         self._open: dict[asyncio.Future[Any], Coroutine[Any, Any, Any] | None] = {}
-        # Those of them that the node's own tasks asked for.
+        # Those among them that the node's own tasks asked for.
         self._own: set[asyncio.Future[Any]] = set()
 
     def begin(self, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
-        """Return the result of `work` as a future; cancelling the future cancels the work.
+        """Return a future for the result of `work`; cancelling the future cancels the work.
 
         Raises:
-            RuntimeError: no event loop is running, so nothing could complete the future.
+            RuntimeError: no event loop is running that could complete the future.
         """
         try:
             future: asyncio.Future[T] = asyncio.get_running_loop().create_future()
@@ -65,24 +65,24 @@ class Futures:
         return future
 
     def start(self, tasks: asyncio.TaskGroup) -> None:
-        """Start all submitted work; from now on work starts at once. Called when the node runs."""
+        """Start all submitted work, and from now on new work at once; called when the node runs."""
         self._tasks = tasks
         for future in list(self._open):
             self._start(future)
 
     def close(self) -> None:
-        """End all unfinished work; from now on work ends at once."""
+        """End all unfinished work, and from now on new work at once."""
         self._closed = True
         for future in list(self._open):
             self._end(future)
 
     def _end(self, future: asyncio.Future[Any]) -> None:
-        """Cancel `future`, or set the error that its entity was destroyed; either ends its work."""
+        """Cancel `future`, or set EntityDestroyedError on it; either ends its work."""
         if future in self._own:
             future.cancel(f"{self._subject}: destroyed")
         elif not future.done():
             future.set_exception(self._entity._destroyed_error())
-            future.exception()  # retrieved, as nobody may await it any more
+            future.exception()  # mark it retrieved: perhaps nobody awaits it any more
 
     def _start(self, future: asyncio.Future[Any]) -> None:
         work = self._open[future]
@@ -92,7 +92,7 @@ class Futures:
         outcome = self._complete(future, work)
         try:
             task = self._tasks.create_task(outcome, name=f"{self._subject}: future")
-        except RuntimeError:  # the node is failing already
+        except RuntimeError:  # the node is already failing
             outcome.close()
             work.close()
             self._end(future)
@@ -106,7 +106,7 @@ class Futures:
         except asyncio.CancelledError:
             self._end(future)  # the node is failing, unless the future was cancelled
             raise
-        except Exception as error:  # noqa: BLE001  # raised to those who await the future
+        except Exception as error:  # noqa: BLE001  # raised where the future is awaited
             if not future.done():
                 future.set_exception(error)
         else:
@@ -121,10 +121,10 @@ class Futures:
 
 
 class Unasked(Coroutine[Any, Any, T]):
-    """A coroutine that returns a truth value, and that raises if it is tested without an await.
+    """A coroutine returning a bool that raises if its truth is tested without an await.
 
     Programs for rclpy contain ``while not client.wait_for_service(timeout_sec=1.0):``. A plain
-    coroutine is true, so that loop would end at once, as if the service were available.
+    coroutine is truthy, so that loop would end at once, as if the service were available.
     """
 
     __slots__ = ("_name", "_work")
@@ -137,7 +137,7 @@ class Unasked(Coroutine[Any, Any, T]):
         return f"<{self._name}(), not awaited>"
 
     def __bool__(self) -> bool:
-        """Refuse: the await is missing.
+        """Raise an error, as the await is missing.
 
         Raises:
             TypeError: always.
@@ -169,7 +169,7 @@ class Unasked(Coroutine[Any, Any, T]):
 def asks(
     method: Callable[P, Coroutine[Any, Any, T]],
 ) -> Callable[P, Coroutine[Any, Any, T]]:
-    """Make testing the coroutine of `method` without an await raise; see `Unasked`."""
+    """Make the coroutine of `method` raise if tested without an await; see `Unasked`."""
 
     @wraps(method)
     def asking(*args: P.args, **kwargs: P.kwargs) -> Coroutine[Any, Any, T]:

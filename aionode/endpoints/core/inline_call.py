@@ -1,4 +1,4 @@
-"""Callbacks that run within the event that asks for them, without waking a task."""
+"""Run callbacks within the loop event that triggers them, without waking a task."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ __all__ = ["InlineCall"]
 
 
 class InlineCall:
-    """Runs callbacks within an event of the loop, while the task that would run them waits.
+    """Runs callbacks within an event of the loop while the task that would run them waits.
 
-    What a callback leaves, an exception or something to await, goes to that task: `after` takes it.
+    Anything left over, an exception or something to await, goes to that task through `after`.
     """
 
     __slots__ = ("_context", "_error", "_rest")
@@ -26,7 +26,7 @@ class InlineCall:
         self._rest: Coroutine[object, object, None] | None = None
 
     def prepare(self) -> None:
-        """Let callbacks run in the context of the current task, as if it called them."""
+        """Make callbacks run in the context of the current task, as if it called them."""
         if self._context is None:
             self._context = copy_context()
 
@@ -44,7 +44,7 @@ class InlineCall:
         return self._rest is None and self._error is None
 
     async def after(self, event: Awaitable[None]) -> None:
-        """Wait for `event`, then finish what `run` left; its caller sets the event in that case.
+        """Wait for `event`, which is set if `run` left something over, then finish that.
 
         Raises:
             BaseException: what a callback raised.
@@ -60,13 +60,13 @@ class InlineCall:
             await rest
 
     def abandon(self) -> None:
-        """Await nothing of what `run` left: the task was cancelled."""
+        """Drop what `run` left over, as the task was cancelled."""
         if self._rest is not None:
             self._rest.close()
             self._rest = None
 
     def take_rest(self) -> Coroutine[object, object, None] | None:
-        """Return what `run` left to await, if anything.
+        """Return what `run` left over to await, if anything.
 
         Raises:
             BaseException: what a callback raised.

@@ -1,4 +1,4 @@
-"""The thread that sends the stops of leases when the event loop does not."""
+"""The thread that sends the stops of leases if the event loop does not."""
 
 from __future__ import annotations
 
@@ -15,59 +15,61 @@ from aionode.clock import perf_ns
 __all__ = ["REPEAT_S", "LeaseWatch", "Watched", "watch"]
 
 GRACE_NS: Final = 30_000_000
-"""Time for which the thread, after it has noticed the end of a time to live, leaves the stop to the
-loop: the loop may only be late, because the process was frozen or the machine is busy."""
+"""How long the thread leaves the stop to the loop after a time to live has run out: the loop may
+only be late, because the process was frozen or the machine is busy.
+"""
 
 POLL_S: Final = 0.05
-"""Longest time between two looks at the leases: a clock may have been set, the host suspended, or a
-stop may have to be sent again."""
+"""Maximum time between two checks of the leases: a clock may have been set, the host suspended, or
+a stop may have to be sent again.
+"""
 
 AGAIN_S: Final = 0.01
-"""Time between two looks while a time to live is over."""
+"""Time between two checks while a time to live has run out."""
 
 REPEAT_S: Final = 0.2
-"""Time for which a stop is sent again while the loop does not take over."""
+"""How long a stop is sent again and again if the loop does not take over."""
 
-STOPPED: Final = "the process was about to end or to be suspended"
+STOPPED: Final = "the process was about to end or be suspended"
 
 
 class Watched(Protocol):
-    """An open lease, as the thread sees it. Each method may be called in any thread."""
+    """An open lease, as seen by the thread. Each method may be called in any thread."""
 
     @property
     def is_sent(self) -> bool:
-        """Whether its stop was sent past the loop, which has not taken over yet."""
+        """Whether its stop was sent past the loop, which has not yet taken over."""
 
     @property
     def is_orphaned(self) -> bool:
         """Whether its loop is closed."""
 
     def left_ns(self) -> int | None:
-        """Return how much of its time to live is left, in nanoseconds; None if none runs."""
+        """Return the rest of its time to live in nanoseconds; None if it is not running."""
 
     def send_past_loop(self, reason: str) -> bool:
-        """Send the stop, unless another thread does.
+        """Send the stop, unless another thread is doing so.
 
         Args:
-            reason: Why, if the time to live is not over. Then it is sent even between two steps of
-                a command that is being published, and once more after that.
+            reason: The reason, if the time to live is not over. In that case the stop is sent even
+                in the middle of publishing a command, and once more after that.
 
         Returns:
             Whether the stop was sent by this call.
         """
 
     def repeat(self) -> None:
-        """Put the stop again."""
+        """Send the stop again."""
 
     def leave_to_parent(self) -> None:
-        """Send nothing any more, in a forked child."""
+        """Stop sending, in a forked child."""
 
 
 class Record:
-    """One lease, as the thread knows it.
+    """The thread's record of one lease.
 
     Attributes:
-        noticed_ns: When it was seen to be over, by `perf_ns`; 0 while it is not.
+        noticed_ns: When its end was noticed, by `perf_ns`; 0 before.
         sent_ns: When its stop was sent; 0 before.
     """
 
@@ -78,10 +80,10 @@ class Record:
 
 
 class LeaseWatch:
-    """Watches the open leases of a process, in a thread that exists only while there is one.
+    """Watches the open leases of a process, in a thread that exists only while there are any.
 
-    A handler of signals may interrupt any step of other threads, so stops are sent without a lock
-    of this, and the thread is woken by a SimpleQueue, whose `put` is reentrant.
+    A signal handler may interrupt the main thread anywhere, so stops are sent without taking a lock
+    of this class, and the thread is woken through a SimpleQueue, whose `put` is reentrant.
     """
 
     def __init__(self) -> None:
@@ -90,7 +92,7 @@ class LeaseWatch:
     def _reset(self) -> None:
         self._leases: dict[Watched, Record] = {}
         self._wakes: SimpleQueue[None] = SimpleQueue()
-        self._guard = threading.Lock()  # held to start the thread, and to let it end
+        self._guard = threading.Lock()  # held while the thread is started or ends
         self._thread: threading.Thread | None = None
 
     def add(self, lease: Watched) -> None:
@@ -103,24 +105,24 @@ class LeaseWatch:
             self._thread = threading.Thread(target=self._run, name="aionode-lease", daemon=True)
             try:
                 self._thread.start()
-            except RuntimeError:  # the interpreter is shutting down: the loop is alone
+            except RuntimeError:  # the interpreter is shutting down; only the loop is left
                 self._thread = None
 
     def remove(self, lease: Watched) -> None:
-        """Watch a lease no more."""
+        """Stop watching a lease."""
         if self._leases.pop(lease, None) is not None and not self._leases:
             suspension.remove()
-            self.wake()  # to its end
+            self.wake()  # so that it ends
 
     def wake(self) -> None:
-        """Have the thread look now: a time to live has begun."""
+        """Make the thread check now, as a time to live has started."""
         self._wakes.put(None)
 
     def stop_all(self) -> bool:
-        """Send all stops, in the calling thread; return whether there was one to send.
+        """Send all stops in the calling thread; return whether there were any.
 
-        A handler of signals may call it: it takes no lock but those of the leases, which the thread
-        has that the handler interrupts, or which are free in a moment.
+        Signal handlers may call it: it takes only the locks of the leases, which are either held by
+        the interrupted thread itself or released in a moment.
         """
         leases = [item for item in list(self._leases.items()) if not item[0].is_sent]
         for lease, record in leases:
@@ -129,7 +131,7 @@ class LeaseWatch:
         return bool(leases)
 
     def after_fork(self) -> None:
-        """Leave all leases to the parent process; in a forked child, which has no thread."""
+        """Leave all leases to the parent; called in a forked child, which has no such thread."""
         leases = list(self._leases)
         self._reset()
         for lease in leases:
@@ -149,7 +151,7 @@ class LeaseWatch:
                 self._look(lease, record)
 
     def _wait(self) -> None:
-        """Wait until there may be something to do."""
+        """Wait until something may have to be done."""
         timeout_s = POLL_S
         for lease, record in list(self._leases.items()):
             left_ns = lease.left_ns()
@@ -163,13 +165,13 @@ class LeaseWatch:
             self._wakes.get(timeout=timeout_s)
 
     def _look(self, lease: Watched, record: Record) -> None:
-        """Do for one lease what is due."""
+        """Do what is due for one lease."""
         now_ns = perf_ns()
         left_ns = lease.left_ns()
         if lease.is_sent:
             if now_ns - record.sent_ns < REPEAT_S * 1e9:
                 lease.repeat()
-            elif lease.is_orphaned:  # nobody takes over
+            elif lease.is_orphaned:  # nobody will take over
                 self.remove(lease)
         elif lease.is_orphaned:
             self._send(lease, record, "its event loop has ended")
@@ -186,7 +188,7 @@ class LeaseWatch:
 
 
 watch = LeaseWatch()
-"""That of this process."""
+"""This process's lease watch."""
 
 STOPS.append(watch.stop_all)
 

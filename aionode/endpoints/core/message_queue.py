@@ -20,7 +20,7 @@ __all__ = ["MessageQueue"]
 T = TypeVar("T")
 
 UNWEIGHED: Final = 2
-"""So many items are queued before their bytes count: a queue that keeps up has no more."""
+"""Bytes are counted only from this many queued items on; a queue that keeps up has fewer."""
 
 UNLIMITED_BYTES: Final = 1 << 62
 
@@ -30,27 +30,26 @@ class MessageQueue(InlineCall, Generic[T]):
 
     With KEEP_LAST a full queue drops its oldest items, with KEEP_ALL it refuses the newest; both
     are counted in `stats.dropped`. Putting never waits and needs no running loop. A queue is full
-    by its depth, or by the bytes of its items; a single item always fits.
+    when it reaches its depth or its limit of bytes; a single item always fits.
 
     Items may also bypass it: while `consume` waits, `take_inline` handles an item within the event
-    that brought it. Waking the consumer instead takes one more iteration of the loop and a
-    step of a task, which is much of the cost of a message. The order stays: once an item is queued
-    or the consumer has been woken, nothing bypasses the queue, and the consumer finishes what an
-    inline callback left before it takes the next item. This is part of the queue, and not an object
-    of its own, because there is a queue for each subscription.
+    that brought it. Waking the consumer instead takes another iteration of the loop and a step of a
+    task, which is much of the cost of a message. Order is preserved: once an item is queued or the
+    consumer has been woken, nothing bypasses the queue, and the consumer finishes what an inline
+    callback left over before it takes the next item. This is part of the queue rather than a
+    separate object because every subscription has a queue.
 
     Attributes:
-        depth: How many items it holds at most.
+        depth: Maximum number of items.
         keep_all: Whether it refuses the newest item when full.
         stats: Where dropped items are counted.
-        slice_ns: For how long `consume` goes on before others get their turn; of the time base.
-        limit_bytes: How many bytes its items have at most, if they are weighed.
-        weighed_from: From how many items on `make_room` decides whether one more fits.
+        slice_ns: How long `consume` goes on before others get a turn; from the time base.
+        limit_bytes: Maximum total size of the items, if they are weighed.
+        weighed_from: Number of items from which on `make_room` decides whether one more fits.
         own_from: The same for messages of this process, of which a busy program makes many: the
-            whole queue if the newest that was weighed is so small that a full queue is within the
-            limit.
-        items: What is queued, with the `perf_ns` of its arrival. Read only, but for a subscription
-            that drops messages when they expire: it puts a deque there that does.
+            depth, if the last weighed message is so small that a full queue stays within the limit.
+        items: The queued items, with the `perf_ns` of their arrival. Read-only, except that a
+            subscription which drops expired messages replaces it with a deque that does so.
     """
 
     __slots__ = (
@@ -86,19 +85,19 @@ class MessageQueue(InlineCall, Generic[T]):
         self.stats = stats
         self.slice_ns = slice_ns
         self.items: deque[tuple[int, T]] = deque()
-        # The sizes of the newest items, as many as were weighed, and their sum. What was taken from
-        # the queue is found out when the next one is weighed: taking costs nothing.
+        # The sizes of the newest items, as many as were weighed, and their sum. Removals are
+        # accounted for when the next item is weighed, so that taking items costs nothing.
         self._sizes: deque[int] = deque()
         self._bytes = 0
         self._size_of: Callable[[T], int] | None = None
         self._on_heavy: Callable[[], None] | None = None
         self.limit_bytes = UNLIMITED_BYTES
         self.weighed_from = self.own_from = depth
-        # Those that wait for an item and for room; emptied when they are woken.
+        # Waiters for an item and for room; emptied when they are woken.
         self._readers: list[asyncio.Future[None]] = []
         self._writers: list[asyncio.Future[None]] = []
-        # `consume` waits for the waiter; inline calls handle items meanwhile. It is None while the
-        # consumer does not wait, and during an inline callback.
+        # `consume` waits for this waiter while inline calls handle items. It is None while the
+        # consumer is not waiting, and during an inline callback.
         self._inline_waiter: asyncio.Future[None] | None = None
         self._handle: Callable[[int, T], Coroutine[object, object, None] | None] | None = None
 
@@ -112,13 +111,13 @@ class MessageQueue(InlineCall, Generic[T]):
         on_heavy: Callable[[], None],
         unweighed: int = UNWEIGHED,
     ) -> None:
-        """Limit the bytes of its items as well.
+        """Limit the total size of the items as well.
 
         Args:
-            size_of: Returns about how many bytes an item has.
+            size_of: Returns the approximate size of an item in bytes.
             limit_bytes: The limit.
-            on_heavy: Called when it is met for the first time.
-            unweighed: So many items are queued before their bytes count.
+            on_heavy: Called when the limit is first reached.
+            unweighed: How many items are queued before bytes are counted.
         """
         self._size_of = size_of
         self._on_heavy = on_heavy
@@ -139,7 +138,7 @@ class MessageQueue(InlineCall, Generic[T]):
         return True
 
     def make_room(self, item: T) -> bool:
-        """Drop the oldest items until one more fits; return whether it does, and count what not."""
+        """Drop and count the oldest items until one more fits; return whether it does."""
         queue, sizes = self.items, self._sizes
         count = len(queue)
         if self._size_of is None:
@@ -168,35 +167,35 @@ class MessageQueue(InlineCall, Generic[T]):
         return True
 
     def _weight(self) -> int:
-        """Return how many bytes the items have that were weighed and are still here."""
+        """Return the total size of the weighed items that are still queued."""
         sizes, count = self._sizes, len(self.items)
         while len(sizes) > count:
             self._bytes -= sizes.popleft()
         return self._bytes
 
     def pop(self) -> tuple[int, T]:
-        """Take the oldest item, with the `perf_ns` of its arrival; IndexError when empty."""
+        """Pop the oldest item, with the `perf_ns` of its arrival; IndexError if empty."""
         entry = self.items.popleft()
         if self._writers:
             _wake(self._writers)
         return entry
 
     def has_room(self) -> bool:
-        """Return whether an item can be added without losing one that should be kept."""
+        """Return whether an item can be added without dropping one that must be kept."""
         return not self.keep_all or (
             len(self.items) < self.depth and (not self.items or self._weight() < self.limit_bytes)
         )
 
     @property
     def waiting(self) -> int:
-        """The number of items that wait."""
+        """The number of queued items."""
         return len(self.items)
 
     async def wait(self, waiter: asyncio.Future[None] | None = None) -> None:
         """Wait for an item, or for `wake`. Cancelling loses nothing.
 
         Args:
-            waiter: What else ends the wait when it is done; an item or `wake` makes it so.
+            waiter: A future that ends the wait when done; an item or `wake` sets it.
         """
         if not self.items:
             waiter = waiter or asyncio.get_running_loop().create_future()
@@ -219,27 +218,27 @@ class MessageQueue(InlineCall, Generic[T]):
                     self._writers.remove(waiter)
 
     def when_room(self, callback: Callable[[], None]) -> None:
-        """Call `callback` soon after the next item was taken, or after `wake`."""
+        """Call `callback` soon after the next item is taken, or after `wake`."""
         waiter = asyncio.get_running_loop().create_future()
         waiter.add_done_callback(lambda _: callback())
         self._writers.append(waiter)
 
     def discard(self) -> list[T]:
-        """Remove and count what was not taken, and return it."""
+        """Remove, count and return the remaining items."""
         unread = [item for _, item in self.items]
         self.stats.dropped += len(unread)
         self.items.clear()
         return unread
 
     def wake_readers(self) -> None:
-        """Wake what waits for an item."""
+        """Wake tasks that wait for an item."""
         for waiter in self._readers:
             if not waiter.done():
                 waiter.set_result(None)
         self._readers.clear()
 
     def wake_writers(self) -> None:
-        """Wake what waits for room: some items were dropped."""
+        """Wake tasks that wait for room, as some items were dropped."""
         _wake(self._writers)
 
     def wake(self) -> None:
@@ -255,10 +254,10 @@ class MessageQueue(InlineCall, Generic[T]):
         *,
         inline: bool = False,
     ) -> None:
-        """Hand each item to `handle`, one after the other, until cancelled.
+        """Pass each item to `handle`, one at a time, until cancelled.
 
         Args:
-            handle: Runs what can run at once, and returns what is left to await, if anything.
+            handle: Runs what can run at once, and returns the rest to await, if any.
             inline: Whether `take_inline` may call it.
 
         Raises:
@@ -286,10 +285,10 @@ class MessageQueue(InlineCall, Generic[T]):
         handle: Callable[[int, T], Coroutine[object, object, None] | None],
         turn_ends_ns: int,  # noqa: ARG002  # for subclasses
     ) -> Coroutine[object, object, None] | None:
-        """Hand the oldest item to `handle`, and return what that returns.
+        """Pass the oldest item to `handle`, and return its result.
 
-        A subclass may go on to the next items while there is nothing to await, until `turn_ends_ns`
-        on the clock of `perf_ns`.
+        A subclass may continue with further items while there is nothing to await, until
+        `turn_ends_ns` on the clock of `perf_ns`.
 
         Raises:
             BaseException: what `handle` raised.
@@ -297,7 +296,7 @@ class MessageQueue(InlineCall, Generic[T]):
         return handle(*self.pop())
 
     async def _wait_for_rest(self, *, inline: bool) -> Coroutine[object, object, None] | None:
-        """Wait for an item; return what an inline call has left to await, or raise its error."""
+        """Wait for an item; return what an inline call left over to await, or raise its error."""
         waiter = asyncio.get_running_loop().create_future()
         self._readers.append(waiter)
         if inline:
@@ -317,7 +316,7 @@ class MessageQueue(InlineCall, Generic[T]):
     # Past the queue
 
     def take_inline(self, item: T, inline_deadline_ns: int) -> bool:
-        """Handle `item` now, if that is possible before `inline_deadline_ns`; else return False."""
+        """Handle `item` now if possible before `inline_deadline_ns`; otherwise return False."""
         waiter = self._inline_waiter
         if waiter is None or waiter.done():
             return False

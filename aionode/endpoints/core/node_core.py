@@ -1,4 +1,4 @@
-"""The core of a node: its names and arguments, its tasks, the entities it owns, and its end."""
+"""The core of a node: its names and arguments, tasks, entities, and end."""
 
 from __future__ import annotations
 
@@ -36,10 +36,9 @@ MethodT = TypeVar("MethodT", bound="Callable[..., Any]")
 
 
 class HasCore(Protocol):
-    """A node, whose core is the one attribute that aionode keeps on it.
+    """A node; its core is the only attribute that aionode keeps on it.
 
-    A subclass of a user may have any other name, also one that Python mangles: this one is that of
-    no class.
+    A user's subclass may use any other name, even a mangled one, as this one belongs to no class.
     """
 
     _aionode__core: NodeCore
@@ -51,29 +50,29 @@ def core_of(node: HasCore) -> NodeCore:
 
 
 def is_named(node: object) -> bool:
-    """Return whether the constructor of a node has come as far as its name, and so to a core."""
+    """Return whether the constructor of a node got as far as naming it and creating its core."""
     return hasattr(node, "_aionode__core")
 
 
 class NodeCore:
-    """What a node has, and how it begins and ends; the methods of `aionode.Node` use it.
+    """A node's state, start and end, which the methods of `aionode.Node` use.
 
     Args:
         node: The node, whose `destroy_node` a subclass may have replaced.
         node_name: Its name, before it is remapped.
         namespace: Its namespace, before it is remapped.
         context: The context that it joins.
-        cli_args: Arguments for this node alone.
-        use_global_arguments: Whether those of the context apply to it too.
+        cli_args: Arguments for this node only. use_global_arguments: Whether those of the context
+            apply to it too.
         callback_budget_ms: How long a callback may block the event loop.
         parameter_overrides: Values that take precedence over those of arguments.
         allow_undeclared_parameters: Whether parameters can be set without being declared.
 
     Attributes:
         context: The context.
-        info: The node as the graph is to know it.
-        own_arguments: Those of `cli_args`.
-        shared_arguments: Those of the context, or none.
+        info: The node's entry in the graph.
+        own_arguments: The arguments in `cli_args`.
+        shared_arguments: The context's arguments, or none.
         uses_global_arguments: As given.
         usages: Which of these arguments had an effect.
         parameters: The parameters.
@@ -81,15 +80,16 @@ class NodeCore:
         logger: The logger of the node.
         callbacks: How the node runs callbacks.
         affinity: The event loop that the node runs in.
-        tasks: Which tasks are the node's own.
+        tasks: The node's own tasks.
         shutdown: Ends the node in stages.
         record: How and why the node ended.
-        entities: What the node owns, in order of creation; what is destroyed leaves it.
+        entities: What the node owns, in order of creation; destroyed entities are removed.
         running: Whether the node calls callbacks.
         ending: Set once the node is destroyed.
-        constructed: Whether the built-in services exist; the program's own entities come then.
-        warned_about: Kinds of timers' third argument that the log has named.
-        at_end: Called as the node leaves the graph.
+        constructed: Whether the built-in services exist, so that further entities are the
+            program's.
+        warned_about: Kinds of third arguments of timers that were already logged.
+        at_end: Called when the node leaves the graph.
     """
 
     def __init__(
@@ -107,8 +107,8 @@ class NodeCore:
     ) -> None:
         self._node = node
         self.context = context
-        # The node's own arguments take precedence over the shared ones: of remap rules the first
-        # match wins, of parameters the last value.
+        # The node's own arguments take precedence over the shared ones: the first matching remap
+        # rule wins, and the last value of a parameter.
         own = parse_arguments(cli_args or ())
         own.refuse_unknown()
         shared = context.arguments if use_global_arguments else Arguments()
@@ -130,7 +130,7 @@ class NodeCore:
         self.entities: dict[Entity, None] = {}
         self.tasks = NodeTasks(self.end_leases)
         self.tasks.enter_constructor()
-        self._group: asyncio.TaskGroup | None = None  # of the entities, once the node has started
+        self._group: asyncio.TaskGroup | None = None  # for the entities, once the node has started
         self.running = False
         self.ending = asyncio.Event()
         self.record = EndRecord(f"node {full_name}")
@@ -148,7 +148,7 @@ class NodeCore:
         self.affinity = context._affinity
         self.shutdown = Shutdown(self.entities, self.callbacks, self._leave)
         self.at_end: list[Callable[[], None]] = []
-        self._registrations: list[Registration] = []  # of the node itself, one for each transport
+        self._registrations: list[Registration] = []  # the node's own, one per transport
         self.info = context._describe_node(
             node_name, namespace, enclave=own.enclave or shared.enclave or "/"
         )
@@ -183,7 +183,7 @@ class NodeCore:
         self.context.graph.add_node(self.info)
 
     async def start(self) -> None:
-        """Open the context and begin to call callbacks.
+        """Open the context and start calling callbacks.
 
         Raises:
             RuntimeError: the node is already running, or was destroyed.
@@ -242,18 +242,18 @@ class NodeCore:
                 await to_the_end(self.context._release(), raising)
 
     def destroy(self) -> None:
-        """End the node: at once if it does not run, otherwise as `finish` waits for it."""
+        """End the node: at once if it is not running; otherwise `finish` waits for the end."""
         if self.ending.is_set():
             return
         if self.affinity.is_other_thread():
             self.affinity.call(self._node.destroy_node)
             return
         self.ending.set()
-        self.end_leases()  # at once: callbacks may take seconds to unwind
+        self.end_leases()  # first, as callbacks may take seconds to unwind
         self.shutdown.begin()
 
     def end_leases(self) -> None:
-        """Send the stops of the leases that the publishers of this node are held by."""
+        """Send the stops of open leases on this node's publishers."""
         for entity in self.entities:
             entity._end_lease(lambda: EntityDestroyedError(self.subject))
 
@@ -270,7 +270,7 @@ class NodeCore:
             self.record.note(NodeEnd("destroyed"))
 
     def _abandon(self) -> None:
-        """Mark the node destroyed without closing anything, as the parent process still uses it.
+        """Mark the node destroyed without closing anything that the parent process still uses.
 
         Called by the context in a forked child.
         """
@@ -281,7 +281,7 @@ class NodeCore:
             entity.destroyed = True
 
     def refuse_if_destroyed(self, wanted: str) -> None:
-        """Raise EntityDestroyedError, since `wanted` cannot be created, once it is destroyed."""
+        """Raise EntityDestroyedError if the node is destroyed and `wanted` cannot be created."""
         if self.ending.is_set():
             raise EntityDestroyedError(self.subject, f"create {wanted}")
 
@@ -302,9 +302,9 @@ class NodeCore:
     # Entities
 
     def add(self, entity: EntityT) -> EntityT:
-        """Own `entity`: enter it into the graph, start it if the node runs, destroy it at the end.
+        """Own `entity`: add it to the graph, start it if the node runs, destroy it at the end.
 
-        An action server or client, made of other entities, adds itself here.
+        Action servers and clients, which are composed of other entities, add themselves here.
         """
         if self.affinity.is_other_thread():
             return self.affinity.wait_for(partial(self.add, entity))
@@ -317,7 +317,7 @@ class NodeCore:
         return entity
 
     def _start_entity(self, entity: Entity, group: asyncio.TaskGroup) -> None:
-        """Start `entity`; the end of the node waits for those that run callbacks."""
+        """Start `entity`; the shutdown of the node waits for those that run callbacks."""
         task = entity._start(group)
         if task is not None and entity._stage is EndStage.CALLBACKS:
             self.shutdown.watch(task)
@@ -338,7 +338,7 @@ class NodeCore:
 
 
 def parameters_from(values: Mapping[str, object]) -> list[Parameter]:
-    """Return plain values as parameters."""
+    """Convert plain values to parameters."""
     return [Parameter(name, value=value) for name, value in values.items()]
 
 
@@ -346,9 +346,9 @@ def parameters_from(values: Mapping[str, object]) -> list[Parameter]:
 
 
 def in_loop_thread(method: MethodT) -> MethodT:
-    """Have a method of a node run in the thread of the node's loop, and its caller wait for it.
+    """Make a method of a node run in the thread of the node's loop while its caller waits.
 
-    Entities are created there, as the graph, the transports and Zenoh's session know no locks.
+    Entities are created there, since the graph, the transports and Zenoh's session are not locked.
     """
 
     @wraps(method)
@@ -362,7 +362,7 @@ def in_loop_thread(method: MethodT) -> MethodT:
 
 
 def in_thread_of_node(constructor: MethodT) -> MethodT:
-    """Have a constructor, whose first argument is a node, run in the thread of the node's loop."""
+    """Make a constructor whose first argument is a node run in the thread of the node's loop."""
 
     @wraps(constructor)
     def construct(self: Any, node: HasCore, *args: Any, **options: Any) -> None:

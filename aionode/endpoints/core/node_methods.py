@@ -1,4 +1,4 @@
-"""The node as what is made of its public methods sees it: actions, built-in services."""
+"""The public methods of a node, as used by actions and built-in services."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ __all__ = ["NodeMethods"]
 
 
 class NodeMethods(HasCore, Protocol):
-    """Methods of an `aionode.Node`. A protocol, as `Node` imports what calls them."""
+    """Methods of `aionode.Node`; a protocol, because `Node` imports their callers."""
 
     context: Context
 
     @property
     def graph(self) -> Graph:
-        """The nodes and endpoints known now."""
+        """The currently known nodes and endpoints."""
 
     def get_clock(self) -> Clock:
         """Return the node's clock."""
@@ -35,12 +35,12 @@ class NodeMethods(HasCore, Protocol):
         """Return the full name of a topic."""
 
     def create_publisher(self, msg_type: Any, topic: str, qos_profile: Any) -> Any:
-        """Return a publisher."""
+        """Create a publisher."""
 
     def create_subscription(
         self, msg_type: Any, topic: str, callback: Any, qos_profile: Any
     ) -> Any:
-        """Return a subscription."""
+        """Create a subscription."""
 
     def create_service(
         self,
@@ -52,10 +52,10 @@ class NodeMethods(HasCore, Protocol):
         concurrent: Any = ...,
         on_error: Any = ...,
     ) -> Any:
-        """Return a service server."""
+        """Create a service server."""
 
     def create_client(self, srv_type: Any, srv_name: str, *, qos_profile: Any = ...) -> Any:
-        """Return a client."""
+        """Create a client."""
 
     # Entities
 
@@ -87,7 +87,7 @@ class NodeMethods(HasCore, Protocol):
         """Declare a parameter and return it."""
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Check changes with `callback`."""
+        """Add a callback that checks changes."""
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Call `callback` after a change."""
+        """Add a callback that runs after each change."""

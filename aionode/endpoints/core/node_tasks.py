@@ -1,4 +1,4 @@
-"""The tasks of a node, and the end of a wait whose entity is destroyed."""
+"""The tasks of a node, and the exception for waits whose entity is destroyed."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ __all__ = ["OWNER", "NodeTasks", "create_own_task"]
 T = TypeVar("T")
 
 OWNER: ContextVar[ref[NodeTasks] | None] = ContextVar("aionode_owner", default=None)
-"""The node whose callback or constructor runs, also in the tasks that these start.
+"""The node whose callback or constructor is running, inherited by the tasks that these start.
 
-It is weak, as a context may outlive a node.
+A weak reference, as a context may outlive a node.
 """
 
 
 class NodeTasks:
     """The tasks of one node: those of its callbacks, and the body of its ``async with``.
 
-    A task that a callback or the constructor starts is the node's as well, such as those of
-    `asyncio.gather`, of `asyncio.shield` and of a TaskGroup in the callback. A task that the body
-    starts is not: it may belong to a TaskGroup around the node, which would drop a cancellation
-    without a word.
+    A task started by a callback or the constructor is the node's own as well, such as those of
+    `asyncio.gather`, `asyncio.shield` or a TaskGroup inside the callback. A task started by the
+    body is not: it may belong to a TaskGroup around the node, which would silently drop a
+    cancellation.
 
     Args:
         on_failure: Called as soon as the node fails.
@@ -45,7 +45,7 @@ class NodeTasks:
         self._ref = ref(self)
 
     def enter_constructor(self) -> None:
-        """Count the tasks that are started from here on among the node's own."""
+        """Count tasks started from here on as the node's own."""
         OWNER.set(self._ref)
 
     def enter_body(self) -> None:
@@ -53,13 +53,13 @@ class NodeTasks:
         self._body = asyncio.current_task()
 
     def context(self) -> Context:
-        """Return a context for a task of the node's own, and for the tasks that it starts."""
+        """Return a context for one of the node's own tasks and the tasks that it starts."""
         context = copy_context()
         context.run(OWNER.set, self._ref)
         return context
 
     def add(self, task: asyncio.Task[Any]) -> None:
-        """Take `task` for one whose failure is that of the node."""
+        """Register a task whose failure is the node's failure."""
         task.add_done_callback(self._note_end)
 
     def _note_end(self, task: asyncio.Task[Any]) -> None:
@@ -67,7 +67,7 @@ class NodeTasks:
             self.note_error(task.exception())
 
     def note_error(self, error: BaseException | None) -> None:
-        """Record the exception that the node fails with; only the first one counts."""
+        """Record the exception that the node failed with; only the first one counts."""
         if self.error is not None or isinstance(error, asyncio.CancelledError):
             return
         while isinstance(error, BaseExceptionGroup) and len(error.exceptions) == 1:
@@ -83,10 +83,10 @@ class NodeTasks:
         return self._body is not None and asyncio.current_task() is self._body
 
     def end_of_wait(self, subject: str) -> asyncio.CancelledError | EntityDestroyedError:
-        """Return what the current task raises when a wait ends because `subject` was destroyed.
+        """Return the exception for the current task, whose wait ended as `subject` was destroyed.
 
-        A task of the node ends with it, so it is cancelled. Nobody has cancelled any other task: a
-        CancelledError there would end it without a word, or confuse the TaskGroup around it.
+        The node's own tasks end with it, so they are cancelled. Nobody has cancelled any other
+        task: there, a CancelledError would end it silently or confuse the TaskGroup around it.
         """
         if self.own_current_task():
             return asyncio.CancelledError(f"{subject}: destroyed")
@@ -98,7 +98,7 @@ class NodeTasks:
 def create_own_task(
     tasks: asyncio.TaskGroup, work: Coroutine[Any, Any, T], name: str | None = None
 ) -> asyncio.Task[T]:
-    """Return a new task of `tasks`, whose failure is that of the node of the current task."""
+    """Create a task in `tasks` whose failure is the failure of the current task's node."""
     task = tasks.create_task(work, name=name)
     reference = OWNER.get()
     owner = None if reference is None else reference()

@@ -1,4 +1,4 @@
-"""The end of a node, step by step: callbacks first, and last what they may still need."""
+"""The staged shutdown of a node: callbacks first, and last what they may still need."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ if TYPE_CHECKING:
 __all__ = ["Shutdown"]
 
 NOTICE_S = 0.3
-"""After how long the log says what the end of a node waits for, in seconds of real time."""
+"""After how long the log says what a shutdown is waiting for, in seconds of real time."""
 
 CALLBACKS_S = 5.0
-"""Time for which the end of a node waits for its callbacks."""
+"""How long the shutdown of a node waits for its callbacks."""
 
 ANSWERS_S = 1.0
-"""Time for which the end of a node waits for the servers whose goals it cancels."""
+"""How long the shutdown of a node waits for the servers whose goals it cancels."""
 
 
 class Shutdown:
     """Ends a node so that its callbacks can clean up.
 
-    Entities with callbacks are destroyed at once, and their callbacks are cancelled. Publishers,
-    clients and the clock stay until these have ended: a robot is stopped in ``finally``.
+    Entities with callbacks are destroyed at once, and their callbacks cancelled. Publishers,
+    clients and the clock stay until the callbacks have ended, so that ``finally`` can stop a robot.
 
     Args:
-        entities: The entities of the node, oldest first; it removes those that are destroyed.
-        callbacks: How the node runs callbacks; knows those that have not ended.
+        entities: The entities of the node, oldest first; destroyed ones are removed.
+        callbacks: How the node runs callbacks; knows those still running.
         leave: Called when everything is destroyed; ends the node itself.
     """
 
@@ -45,22 +45,22 @@ class Shutdown:
         self._leave = leave
         self._stage = 0
         self._begun = False
-        # Tasks that run callbacks, and answers to cancel requests: each until it is done.
+        # Pending tasks that run callbacks, and pending answers to cancel requests.
         self._running: set[asyncio.Future[Any]] = set()
         self._answers: set[asyncio.Future[Any]] = set()
 
     def watch(self, task: asyncio.Task[None]) -> None:
-        """Let the first step last until `task` is done: it runs callbacks."""
+        """Make the first step wait for `task`, which runs callbacks."""
         self._hold(task, self._running)
 
     def postpone(self, entity: Entity, stage: EndStage) -> None:
-        """Destroy `entity` in `stage`, which comes after its own; the first step does not wait."""
+        """Destroy `entity` in `stage`, later than its own; the first step does not wait for it."""
         entity._stage = stage
         if entity._task is not None:
             self._running.discard(entity._task)
 
     def expect(self, answer: asyncio.Future[Any]) -> None:
-        """Keep the clients until `answer`, to a cancel request, is done."""
+        """Keep the clients until `answer` to a cancel request is done."""
         self._hold(answer, self._answers)
 
     def _hold(self, future: asyncio.Future[Any], among: set[asyncio.Future[Any]]) -> None:
@@ -72,7 +72,7 @@ class Shutdown:
         future.add_done_callback(done)
 
     def begin(self) -> None:
-        """Destroy the entities with callbacks; the others follow in their turn."""
+        """Destroy the entities with callbacks; the others follow in later stages."""
         self._begun = True
         self._destroy(EndStage.CALLBACKS)
         self._go_on()
@@ -93,9 +93,9 @@ class Shutdown:
             self._leave()
 
     async def wait(self) -> None:
-        """Return when everything has ended, after `CALLBACKS_S` and `ANSWERS_S` at most.
+        """Wait until everything has ended, at most `CALLBACKS_S` plus `ANSWERS_S`.
 
-        Callbacks that take long to end are named in the log. Those that still run after the limit
+        Callbacks that take long to end are named in the log. Those still running after the limit
         are cancelled once more, and lose their publishers and clients.
         """
         logger = self._callbacks.logger

@@ -1,16 +1,16 @@
-"""A subscription that notices when its topic falls silent, and has what it drives stopped.
+"""Detects that a subscription's topic has fallen silent, so that whatever it drives can stop.
 
-What holds, whatever happens in whichever order:
+Invariants, whatever happens in whichever order:
 
-1. `on_silence` is called once for each silence: after a message was handed to the callback, when
-   nothing has arrived for `silence_sec`, or when nobody is left who has published.
-2. When it is called, no callback of the subscription runs any more, and nothing is queued.
-3. A message that was published before `on_silence` is called is never handed to the callback after
-   that. It may come late for any reason: it waited in a queue or a socket, here or there, or is
-   sent again. Nor is one that a transient local publisher has kept for `silence_sec` or longer.
-4. Nothing that was queued is handed to the callback while `on_silence` is due. So the time is
-   compared whenever a message arrives or is taken from the queue, not only when the alarm rings:
-   an event loop that stood still finds queue, socket and alarm in any order.
+1. `on_silence` is called once per silence: after a message was passed to the callback, when nothing
+   has arrived for `silence_sec` or all who published have left.
+2. When it is called, no callback of the subscription is running and nothing is queued.
+3. A message published before `on_silence` was called is never passed to the callback afterwards,
+   whatever delayed it: a queue or a socket at either end, or a retransmission. Nor is one that a
+   transient local publisher has kept for `silence_sec` or longer.
+4. Nothing queued is passed to the callback while `on_silence` is due. So the time is checked
+   whenever a message arrives or leaves the queue, not only when the alarm fires: an event loop that
+   was blocked handles queue, socket and alarm in any order.
 """
 
 from __future__ import annotations
@@ -41,29 +41,29 @@ if TYPE_CHECKING:
 __all__ = ["SILENCE_SEC", "Silence", "SilenceWatch"]
 
 SILENCE_SEC = 0.3
-"""The longest silence of a topic, if a program does not say: three commands at 10 Hz."""
+"""Default for the longest silence of a topic: three commands at 10 Hz."""
 
 REMEMBERED_PUBLISHERS = 1024
-"""Of how many publishers it is remembered when they were last heard."""
+"""For how many publishers the time of the last message is remembered."""
 
 NOTICE_S = 0.3
-"""After how long the log names a cancelled callback that keeps `on_silence` waiting."""
+"""After how long a cancelled callback that delays `on_silence` is named in the log."""
 
 MOMENT_S = 0.05
-"""Time after the end of a publisher until it is clear whether its whole process has gone."""
+"""Time after a publisher leaves until it is clear whether its whole process has gone."""
 
 RETURN_S = 1.0
-"""Time within which a process may return whose connection was lost: the recovery cuts some.
+"""Time within which a process with a lost connection may return, since recovery cuts some.
 
-Zenoh makes a connection anew within some tenths of a second, and declares in some milliseconds.
+Zenoh reconnects within some tenths of a second, and declares within milliseconds.
 """
 
 ROUTER_S = 2.0
-"""A process that goes so shortly before or after a router may only be out of reach."""
+"""A process that leaves this shortly before or after a router may only be unreachable."""
 
 
 class Silence(NamedTuple):
-    """A program's wishes for a topic that falls silent.
+    """A program's settings for a topic that falls silent.
 
     Attributes:
         on_silence: Called without arguments, sync or async.
@@ -85,12 +85,12 @@ class Silence(NamedTuple):
         *,
         has_callback: bool,
     ) -> Silence | None:
-        """Return what the arguments say; None if nothing is to be called.
+        """Parse the arguments; return None if there is nothing to call.
 
         Raises:
             CallbackSignatureError: `on_silence` takes arguments (a TypeError).
-            TypeError: an argument has the wrong type; there is no callback; or the arguments say
-                when to call nothing: then a robot would not be stopped.
+            TypeError: an argument has the wrong type; there is no callback; or there are settings
+                without `on_silence`, so that a robot would not be stopped.
             ValueError: `silence_sec` is not positive, or not finite.
         """
         if on_silence is None:
@@ -115,16 +115,16 @@ class Silence(NamedTuple):
 
 
 class SilenceWatch:
-    """Watches the publishers and messages of one subscription, and hands its messages on.
+    """Watches the publishers and messages of one subscription, and passes its messages on.
 
     Args:
         entity: The subscription.
         reader: Its queue.
         runner: Runs its callback.
         make_runner: Makes the runner of `on_silence`.
-        silence: What the program wants.
-        time_base: The time.
-        is_linked: Returns whether a publisher is connected by a link: None if it never was.
+        silence: The program's settings.
+        time_base: The source of time.
+        is_linked: Returns whether a publisher is connected by a link; None if it never was.
     """
 
     def __init__(
@@ -153,17 +153,17 @@ class SilenceWatch:
         self._times = PublicationTimes()
         self._enabled = True
         self._runs = False
-        # Whether a message was handed to the callback since the last silence.
+        # Whether a message was passed to the callback since the last silence.
         self._handed = False
-        # The publisher of the newest message since the last silence, and when each was heard that
-        # has not gone, the last one last.
+        # The publisher of the newest message since the last silence, and when each publisher that
+        # has not left was last heard, the latest last.
         self._newest = b""
         self._newest_ns = 0
         self._heard: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
-        # Whether a silence was noticed, and when `on_silence` was called last.
+        # Whether a silence was detected, and when `on_silence` was last called.
         self._due = False
         self._called_ns: int | None = None
-        # Callbacks that were started and have not ended.
+        # Callbacks that are in progress.
         self._running: set[asyncio.Task[None]] = set()
         self._timers: set[asyncio.TimerHandle] = set()  # of `_later`, until they have run
         entity._watch(self._note_publisher)
@@ -171,28 +171,28 @@ class SilenceWatch:
     # Lifetime
 
     def start(self) -> None:
-        """Begin to watch: the node runs now."""
+        """Start watching; the node runs now."""
         self._runs = True
         if self._heard:
-            # A node that has not run could not handle them: they are as new as they can be.
+            # A node that was not running could not handle them, so they count as fresh.
             self._alarm.note()
         self._alarm.start()
 
     def close(self) -> None:
-        """Watch nothing more."""
+        """Stop watching."""
         self._runs = False
         self._due = False
         self._alarm.stop()
         self._forget()
 
     def enable(self, *, enabled: bool) -> None:
-        """Watch, or notice no silence and be as before the first message."""
+        """Start to watch, or stop and return to the state before the first message."""
         self._enabled = enabled
         if not enabled:
             self._forget()
 
     def _forget(self) -> None:
-        """Wait for a message as for the first."""
+        """Return to the state before the first message."""
         self._alarm.forget()
         self._handed = False
         self._newest = b""
@@ -204,8 +204,9 @@ class SilenceWatch:
     # Messages
 
     def admits(self, sample_info: SampleInfo) -> bool:
-        """Take a message that has arrived; return whether it is to be queued."""
-        # In this order: if others take the processor in between, no message seems too old for it.
+        """Record an arrived message; return whether to queue it."""
+        # In this order, so that a message does not look too old if the process is preempted in
+        # between.
         system_ns = self._system_ns()
         now_ns = self._steady_ns()
         system_began_ns = now_ns - system_ns
@@ -234,9 +235,9 @@ class SilenceWatch:
         return True
 
     def _waited_in_time(self, published_ns: int, now_ns: int) -> bool:
-        """Whether a message was there in time and was read late, since the loop was busy.
+        """Whether a message arrived in time but was read late because the loop was busy.
 
-        It was, if neither the silence before it nor its wait was too long.
+        It did if neither the silence before it nor its own wait was too long.
         """
         by_ros_time = self._clock is not None and self._clock.ros_time_is_active
         return (
@@ -246,12 +247,12 @@ class SilenceWatch:
         )
 
     def _is_history(self, published_ns: int, now_ns: int) -> bool:
-        """Whether a message was kept for late readers until its topic was silent."""
+        """Whether a message was kept for late subscriptions until its topic counted as silent."""
         by_ros_time = self._clock is not None and self._clock.ros_time_is_active
         return not by_ros_time and now_ns - published_ns >= self._silence_ns
 
     def _hear(self, gid: bytes, arrived_ns: int) -> None:
-        self._heard.pop(gid, None)  # so that it is the last one to be forgotten
+        self._heard.pop(gid, None)  # so that it is forgotten last
         self._heard.put(gid, arrived_ns)
         self._newest = gid
         self._newest_ns = arrived_ns
@@ -264,7 +265,7 @@ class SilenceWatch:
         return False  # until the next message
 
     def _fire(self) -> None:
-        """Drop and cancel what may still drive, and have `on_silence` called next."""
+        """Drop and cancel whatever may still drive, and schedule `on_silence`."""
         self._forget()
         self._due = True
         self._reader.discard()
@@ -273,7 +274,7 @@ class SilenceWatch:
         self._reader.wake_readers()
 
     def _stop_callbacks(self) -> None:
-        """Cancel the callbacks that run, and say which ones `on_silence` has to wait for."""
+        """Cancel running callbacks, and log those that `on_silence` has to wait for."""
         if not self._running:
             return
         if self._runner.offload:
@@ -295,7 +296,7 @@ class SilenceWatch:
     # Publishers
 
     def _note_publisher(self, publisher: EndpointInfo, present: bool) -> None:
-        """Look into the end of a publisher that was heard."""
+        """Investigate when a publisher that was heard leaves."""
         if present or publisher.gid not in self._heard:
             return
         if publisher.node.participant == self._entity._endpoint.node.participant:
@@ -304,10 +305,10 @@ class SilenceWatch:
             self._look_in(MOMENT_S, publisher, perf_ns())
 
     def _look_in(self, delay_s: float, publisher: EndpointInfo, gone_ns: int) -> None:
-        """Look in a while what has become of a publisher; in real time, as networks have no other.
+        """Check later what became of a publisher; in real time, as networks have no other.
 
-        Of a process that was killed, and of one that was cut off, the same is seen: all its tokens
-        go. A publisher that was destroyed leaves its node behind.
+        A killed process and one that was cut off look alike: all their tokens disappear. A
+        destroyed publisher leaves its node behind.
         """
 
         def look() -> None:
@@ -320,7 +321,7 @@ class SilenceWatch:
             ):
                 self._lose(publisher.gid)
             elif linked:
-                return  # only Zenoh has lost it: its messages come over the link
+                return  # only Zenoh has lost it; its messages arrive over the link
             elif delay_s == MOMENT_S:
                 self._look_in(RETURN_S, publisher, gone_ns)
             elif gone_ns - graph.router_lost_ns > ROUTER_S * S_TO_NS:
@@ -329,7 +330,7 @@ class SilenceWatch:
         self._later(delay_s, look)
 
     def _later(self, delay_s: float, call: Callable[[], None]) -> None:
-        """Call `call` after a delay, unless the watch begins anew before."""
+        """Call `call` after a delay, unless the watch is reset before."""
 
         def run() -> None:
             self._timers.discard(timer)
@@ -343,9 +344,10 @@ class SilenceWatch:
         self._fire_if_deserted()
 
     def _fire_if_deserted(self) -> None:
-        """Fire if the publisher of the newest message has gone, and no other was heard lately.
+        """Fire if the publisher of the newest message has left and no other was heard lately.
 
-        Not before that message was handed to the callback: a publisher may be made for it alone.
+        But not before that message was passed to the callback, as a publisher may be created for a
+        single message.
         """
         if not (self._handed and self._runs and self._newest) or self._newest in self._heard:
             return
@@ -358,13 +360,13 @@ class SilenceWatch:
     async def consume(
         self,
         handle: Callable[[int, Any], Coroutine[Any, Any, None] | None],
-        concurrent: bool | int,  # an int is a number of callbacks, not a truth value
+        concurrent: bool | int,  # an int is a number of callbacks, not a bool
     ) -> None:
-        """Hand each message to `handle`, and call `on_silence` in between, until cancelled.
+        """Pass each message to `handle`, and call `on_silence` in between, until cancelled.
 
         Args:
-            handle: Runs what can run at once, and returns what is left to await, if anything.
-            concurrent: How many of these may run at once, as for `consume` of callbacks.
+            handle: Runs what can run at once, and returns the rest to await, if any.
+            concurrent: How many of these may run at once, as in `consume` of callbacks.
 
         Raises:
             Exception: what a callback raised; in a group, if several may run at once.
@@ -392,7 +394,7 @@ class SilenceWatch:
             if not self._due:
                 await reader.wait()
             if not self._due and self._enabled and self._alarm.periods():
-                self._fire()  # the loop stood still, or the message has waited too long
+                self._fire()  # the loop was blocked, or the message has waited too long
             if self._due:
                 await self._call_on_silence()
                 continue
@@ -405,12 +407,12 @@ class SilenceWatch:
                 turn_ends_ns = perf_ns() + reader.slice_ns
 
     def _go_on(self, tasks: asyncio.TaskGroup, rest: Coroutine[Any, Any, None] | None) -> None:
-        """Have the rest of a callback run, unless the callback has ended the last publisher."""
+        """Run the rest of a callback, unless the callback has ended the last publisher."""
         if rest is None:
             return
         if self._due:
-            # Python 3.12 and newer keep what it would await until `rest` itself goes: nothing else
-            # may refer to it, as garbage is finalized in any order, with a warning for a coroutine.
+            # Python 3.12 and newer keep its awaitable alive until `rest` is freed. Nothing else may
+            # refer to it, since garbage is finalized in any order, with a warning for coroutines.
             rest.close()
             return
         task = create_own_task(tasks, rest)
@@ -423,7 +425,7 @@ class SilenceWatch:
             self._fire_if_deserted()
 
     async def _call_on_silence(self) -> None:
-        """Call it once no callback runs."""
+        """Call `on_silence` once no callback is running."""
         if self._running:
             await asyncio.wait(self._running)
         self._called_ns = self._steady_ns()
@@ -434,7 +436,7 @@ class SilenceWatch:
 
 
 def to_silence_ns(silence_sec: float, subject: str) -> int:
-    """Return the longest silence in nanoseconds.
+    """Convert the longest silence to nanoseconds.
 
     Raises:
         TypeError: it is not a number.

@@ -1,4 +1,4 @@
-"""The entrance of a subscription: transports hand messages to its reader."""
+"""The reader of a subscription, to which transports deliver messages."""
 
 from __future__ import annotations
 
@@ -35,8 +35,9 @@ Parts = bytes | list[bytes | memoryview]
 """A message as CDR bytes, or as a list of parts."""
 
 Take = Callable[[Parts, int, int, int], None]
-"""Takes a message, its number by its publisher, and when it was published and received, in
-nanoseconds since 1970."""
+"""Takes a message, its sequence number, and the times of publication and reception, in nanoseconds
+since 1970.
+"""
 
 
 class MessageInfo(TypedDict):
@@ -53,20 +54,20 @@ class MessageInfo(TypedDict):
 
 
 class Monitor(Protocol):
-    """An observer of publishers: it is told which are alive."""
+    """An observer that is told which publishers are alive."""
 
     def note_alive(self, gid: bytes) -> None:
-        """Take the assertion of a publisher."""
+        """Record that a publisher asserted its liveliness."""
 
     def note_filtered(self, gid: bytes) -> None:
-        """Take a message that is not delivered."""
+        """Record a message that is not delivered."""
 
 
 class Watch(Protocol):
-    """An observer of arriving messages, which may refuse them."""
+    """An observer of arriving messages, which may reject them."""
 
     def admits(self, sample_info: SampleInfo) -> bool:
-        """Take a message that has arrived; return whether it is to be queued."""
+        """Record an arrived message; return whether to queue it."""
 
 
 class SubscriptionReader(MessageQueue[Any]):
@@ -75,17 +76,17 @@ class SubscriptionReader(MessageQueue[Any]):
     Args:
         endpoint: The subscription in the graph.
         stats: Where lost, dropped and invalid messages are counted.
-        time_base: Where the arrival time in a `MessageInfo` comes from.
-        raw: Whether messages come as CDR bytes, or in parts.
-        wants_info: Whether the items are pairs of a message and its `MessageInfo`.
+        time_base: The source of the arrival time in a `MessageInfo`.
+        raw: Whether messages are CDR bytes, possibly in parts. wants_info: Whether the items are
+            pairs of a message and its `MessageInfo`.
 
     Attributes:
-        monitor: Is told which publishers are alive; None without one.
-        on_arrival: Called with each message; returns whether to deliver it. None for all.
-        on_lost: Called with the number of messages that are found missing; None for nothing.
-        runner: Runs the callback; not set without one.
-        watch: Is told which messages arrive, and refuses some; None without one. With one, messages
-            do not bypass the queue.
+        monitor: Is told which publishers are alive, or None.
+        on_arrival: Called with each message; returns whether to deliver it. None delivers all.
+        on_lost: Called with the number of missing messages, or None.
+        runner: Runs the callback; unset without one.
+        watch: Is told of arriving messages, and may reject them, or None. With one, messages do not
+            bypass the queue.
     """
 
     __slots__ = (
@@ -128,11 +129,11 @@ class SubscriptionReader(MessageQueue[Any]):
         self.on_lost: Callable[[int], None] | None = None
         self.runner: CallbackRunner
         self.watch: Watch | None = None
-        # By the gid of the publisher; the one known for longest is first.
+        # By the gid of the publisher; the longest known one is first.
         self._last_sequences: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         self._reception_sequence = 0
 
-    def deliver(  # noqa: C901  # fewer calls for each message, see below
+    def deliver(  # noqa: C901  # inlined for fewer calls per message, see below
         self,
         msg: Any,
         gid: bytes,
@@ -158,12 +159,12 @@ class SubscriptionReader(MessageQueue[Any]):
             and not waiter.done()
             and (began_ns := perf_ns()) < inline_deadline_ns
         ):
-            # `take_inline` and `CallbackRunner.receive` written out: five calls fewer.
+            # `take_inline` and `CallbackRunner.receive` inlined: five calls fewer.
             runner, stats = self.runner, self.stats
             stats.received += 1
             self._inline_waiter = None
             try:
-                outcome = self._context.run(runner.callback, msg)  # type: ignore[union-attr]  # `consume` has set it
+                outcome = self._context.run(runner.callback, msg)  # type: ignore[union-attr]  # set by `consume`
                 took_ns = perf_ns() - began_ns
                 if outcome is None and took_ns <= runner.budget_ns:
                     noted = stats._inline_ns
@@ -174,14 +175,14 @@ class SubscriptionReader(MessageQueue[Any]):
                         runner.thread_time.read(began_ns)
                     return
                 done = self.run(runner.conclude, 0, took_ns, outcome)
-            except BaseException as error:  # noqa: BLE001  # handled as if the task had called
+            except BaseException as error:  # noqa: BLE001  # handled as if the task had made the call
                 done = self.run(runner.conclude, 0, perf_ns() - began_ns, None, error)
             finally:
                 self._inline_waiter = waiter
             if not done and not waiter.done():
                 waiter.set_result(None)
             return
-        # `put` written out; of this process's messages the first one that has to wait is weighed.
+        # `put` inlined; of this process's messages, the first one that has to wait is weighed.
         queue = self.items
         count = len(queue)
         if (
@@ -201,8 +202,8 @@ class SubscriptionReader(MessageQueue[Any]):
     ) -> Coroutine[object, object, None] | None:
         """Call the callback with each message until one leaves something to await.
 
-        `CallbackRunner.receive` written out, with one reading of the clock for the end of a call
-        and the start of the next: half of what a message in a burst costs here.
+        `CallbackRunner.receive` inlined, with one clock reading for the end of a call and the start
+        of the next, which halves the cost of a message in a burst.
         """
         runner, stats = self.runner, self.stats
         if self.wants_info or runner.offload:
@@ -235,7 +236,7 @@ class SubscriptionReader(MessageQueue[Any]):
         return None
 
     def _deliver_with(self, msg: Any, sample_info: SampleInfo, inline_deadline_ns: int) -> None:
-        """Deliver a message to a filter, a monitor, or a callback that takes its info."""
+        """Deliver a message past a filter or monitor, or to a callback that takes its info."""
         if self._accepts is not None:
             if not self._accepts(msg):
                 self.stats.filtered += 1
@@ -255,14 +256,14 @@ class SubscriptionReader(MessageQueue[Any]):
     def weigh_messages(
         self, size_of: Callable[[Any], int], limit_bytes: int, on_heavy: Callable[[], None]
     ) -> None:
-        """Limit the bytes of the messages that wait, as `weigh` does."""
+        """Limit the total size of the queued messages; see `weigh`."""
         of_item = (lambda item: size_of(item[0])) if self.wants_info else size_of
         self.weigh(of_item, limit_bytes, on_heavy)
 
     def set_filter(self, accepts: Callable[[Any], bool] | None) -> None:
-        """Deliver only what `accepts` is true of, or everything.
+        """Deliver only messages that `accepts` returns true for, or all.
 
-        Gaps are not counted with a filter: publishers may leave out what does not pass.
+        With a filter gaps are not counted, as publishers may leave out messages that do not pass.
         """
         self._accepts = accepts
         self._last_sequences.clear()
@@ -271,14 +272,14 @@ class SubscriptionReader(MessageQueue[Any]):
         """Ask `watch` about each message from now on."""
         self.watch = watch
         if self.on_arrival is None:
-            self.on_arrival = admit  # `deliver` looks for this alone
+            self.on_arrival = admit  # `deliver` checks only this
 
     def note_alive(self, gid: bytes) -> None:
-        """Take the assertion of a publisher that it is alive."""
+        """Record that a publisher asserted its liveliness."""
         if self.monitor is not None:
             self.monitor.note_alive(gid)
 
-    def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # the transport has logged it
+    def reject(self, error: DecodeError) -> None:  # noqa: ARG002  # already logged by the transport
         """Count bytes that are not a message of the subscription's type."""
         self.stats.errors += 1
 
@@ -288,7 +289,7 @@ class SubscriptionReader(MessageQueue[Any]):
             await super().wait_for_room()
 
     def close(self, *, discard: bool) -> None:
-        """Take no more messages, wake all that wait, and drop unread messages if `discard`."""
+        """Stop accepting messages, wake all waiters, and drop unread messages if `discard`."""
         self._closed = True
         self._accepts = None
         self.on_arrival = refuse
@@ -298,7 +299,7 @@ class SubscriptionReader(MessageQueue[Any]):
         self.wake()
 
     def _note_sequence(self, gid: bytes, sequence: int) -> None:
-        """Take the number of a message, and count those before it that are missing."""
+        """Record the sequence number of a message, and count missing ones before it."""
         missing = missing_before(self._last_sequences, gid, sequence)
         if missing:
             self.stats.lost += missing
@@ -317,17 +318,17 @@ class SubscriptionReader(MessageQueue[Any]):
 
 
 class DirectReader(SubscriptionReader):
-    """Hands each message on within the event that brings it, past the queue.
+    """Passes each message on within the event that brings it, bypassing the queue.
 
-    For aionode's own subscriptions that only put messages elsewhere: nothing is woken, no call is
+    For aionode's own subscriptions that only store messages elsewhere: no task is woken, no call is
     timed, and the queue stays empty. The event may be the `publish` of another node. There is no
     content filter.
 
     Args:
         endpoint: The subscription in the graph.
         stats: Where lost and invalid messages are counted.
-        time_base: Where the time of arrival comes from.
-        take: Takes the messages; it never waits and never raises.
+        time_base: The source of the arrival time.
+        take: Takes the messages; it must not block or raise.
     """
 
     __slots__ = ("_take",)
@@ -361,10 +362,10 @@ class DirectReader(SubscriptionReader):
 
 
 def admit(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`
-    """Deliver everything, as far as this is concerned."""
+    """Deliver every message."""
     return True
 
 
 def refuse(sample_info: SampleInfo) -> bool:  # noqa: ARG001  # as `on_arrival`
-    """Deliver nothing: the subscription is closed."""
+    """Deliver no message, as the subscription is closed."""
     return False

@@ -1,4 +1,4 @@
-"""The time for which a thread really ran: what a blocked loop did with its wall time."""
+"""The CPU time of a thread, to tell what a blocked loop did with its wall time."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from aionode.clock import perf_ns, thread_ns
 __all__ = ["ThreadTime"]
 
 INTERVAL_NS = 5_000_000
-"""How old a reading may be: a reading costs about a microsecond, too much for each callback."""
+"""Maximum age of a reading: it costs about a microsecond, too much for each callback."""
 
 
 class ThreadTime:
-    """Says for how long the thread of an event loop ran since shortly before a callback.
+    """Measures how long the thread of an event loop ran since shortly before a callback.
 
     The time is read after a callback, never before it, so that no message waits for the reading.
-    The loop sleeps between the reading and the next callback, which takes no thread time.
+    Between the reading and the next callback the loop sleeps, which takes no thread time.
 
     Attributes:
-        due_ns: The `perf_ns` time from which on the next reading is due; compared by the callers,
-            since a call for each callback would cost as much as the reading saves.
+        due_ns: The `perf_ns` time from which the next reading is due; checked by the callers, since
+            a call per callback would cost as much as it saves.
     """
 
     __slots__ = ("_read_ns", "_thread", "due_ns")
@@ -35,9 +35,9 @@ class ThreadTime:
         self.due_ns = now_ns + INTERVAL_NS
 
     def ran_ns(self) -> int | None:
-        """Return for how long the current thread ran since the reading, in nanoseconds.
+        """Return how long the current thread ran since the reading, in nanoseconds.
 
-        None if the reading is of another thread: the node was created there.
+        None if the reading was taken in another thread, where the node was created.
         """
         if threading.get_ident() != self._thread:
             return None

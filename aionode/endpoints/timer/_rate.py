@@ -1,4 +1,4 @@
-"""Rates: a loop on a grid of times."""
+"""Rates, which pace a loop on a fixed grid of times."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ __all__ = ["Rate"]
 
 
 class Rate(Entity):
-    """Paces a loop. Made by `Node.create_rate`.
+    """Paces a loop. Created by `Node.create_rate`.
 
-    Use ``await rate.sleep()`` in the loop, or ``async for _ in rate``. The turns are on a grid
-    that starts with the rate: the first comes one period after its creation. A loop that was too
-    slow gets its next turn at once, and the turns that it missed are skipped. Several tasks may
-    wait for the same turn.
+    Use ``await rate.sleep()`` in the loop, or ``async for _ in rate``. Turns are on a grid that
+    starts with the rate: the first comes one period after its creation. A loop that was too slow
+    gets its next turn at once, and missed turns are skipped. Several tasks may wait for the same
+    turn.
 
     Args:
         frequency: Turns per second.
@@ -49,8 +49,8 @@ class Rate(Entity):
         Cancelling loses nothing.
 
         Raises:
-            EntityDestroyedError: The rate was destroyed, before or during the wait (a
-                RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            EntityDestroyedError: The rate was destroyed before or during the wait (a RuntimeError);
+                its ``__cause__`` is the node's error, if it failed.
             asyncio.CancelledError: It was destroyed during the wait of one of the node's own tasks:
                 a callback, or the body of ``async with node``.
         """
@@ -72,10 +72,10 @@ class Rate(Entity):
         schedule = self._ticker.schedule
         turn = schedule.calls
         if self._ticker.is_ready():
-            await checkpoint()  # a loop that is always late must let others run
+            await checkpoint()  # even a loop that is always late must let others run
         while not self.destroyed:
             if schedule.calls != turn:
-                return True  # another task woke up first, and took the turn for all
+                return True  # another task woke first and took the turn for all
             now_ns = self._ticker.clock.now_ns()
             if schedule.is_ready(now_ns):
                 schedule.call(now_ns)
@@ -89,7 +89,7 @@ class Rate(Entity):
 
 
 def to_rate_period_ns(frequency: float) -> int:
-    """Return the nanoseconds from one turn to the next."""
+    """Return the period in nanoseconds."""
     if not isinstance(frequency, int | float):
         raise TypeError(f"rate: got {brief(frequency)}; a number of turns per second is needed")
     if not 0 < frequency < float("inf"):

@@ -1,4 +1,4 @@
-"""Timers: a callback on a grid of times, which `_schedule.py` computes."""
+"""Timers, which call a callback on a grid of times computed by `engine/rules/schedule.py`."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ __all__ = ["RunnerFactory", "Timer", "TimerCallback", "TimerInfo", "to_period_ns
 
 
 class TimerInfo:
-    """When a call of a timer was planned, and when it was made.
+    """The planned and the actual time of a timer's call.
 
     Attributes:
-        expected_call_time: The point on the timer's grid, by its clock.
+        expected_call_time: The due time on the timer's grid, by its clock.
         actual_call_time: When the call was made, by the same clock.
     """
 
@@ -45,26 +45,26 @@ class TimerInfo:
 
 
 TimerCallback = Callable[[], object] | Callable[[TimerInfo], object]
-"""A function that a timer calls, sync or async; an awaitable that it returns is awaited."""
+"""The callback of a timer, sync or async; an awaitable result is awaited."""
 
 RunnerFactory = Callable[[TimerCallback, "Timer", CallbackStats], "CallbackRunner"]
-"""Makes the runner of a timer's callback, with the options given to `create_timer`."""
+"""Creates the runner of a timer's callback, with the options passed to `create_timer`."""
 
 
 class Timer(Entity):
-    """Calls a function periodically. Made by `Node.create_timer`.
+    """Calls a function periodically. Created by `Node.create_timer`.
 
-    The first call comes one period after the creation, or after the last `reset`; the others follow
-    on a grid from there, without drift. A callback never overlaps itself: if it takes longer than
-    the period, or the loop was blocked, the missed calls are skipped and the next comes on the
-    grid. A timer of period 0 is always ready; on a clock that is set from outside, it is called
-    each time the clock is set.
+    The first call comes one period after the creation or the last `reset`; the others follow on a
+    grid from there, without drift. A callback never overlaps itself: if it takes longer than the
+    period, or the loop was blocked, missed calls are skipped and the next one is on the grid. A
+    timer with period 0 is always ready; on a clock that is set externally, it is called whenever
+    the clock is set.
 
-    Time is that of its clock: a timer on ROS time follows `/clock` while that is in use.
+    Time is that of its clock: a timer on ROS time follows `/clock` while simulated time is in use.
 
     Attributes:
-        stats: How its calls went: `received` counts the calls made, `dropped` those skipped, and
-            `queue_wait` is how late they were by the timer's clock.
+        stats: Statistics of its calls: `received` counts the calls made, `dropped` those skipped,
+            and `queue_wait` is how late they were by the timer's clock.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Timer(Entity):
     def callback(self) -> TimerCallback:
         """The function that is called: without arguments, or with a `TimerInfo` if it requires one.
 
-        A new one is used from the next call on.
+        A new one applies from the next call on.
         """
         return self._runner.callback
 
@@ -115,7 +115,7 @@ class Timer(Entity):
     def timer_period_ns(self) -> int:
         """The period in nanoseconds.
 
-        Changing it does not move the call that is already planned; `reset()` does.
+        Changing it does not move the next call, which is already scheduled; `reset()` does.
         """
         return self._ticker.schedule.period_ns
 
@@ -147,11 +147,11 @@ class Timer(Entity):
         return self._ticker.is_ready()
 
     def time_until_next_call(self) -> int | None:
-        """Return the nanoseconds to the next call, negative if it is late; None if canceled."""
+        """Return the nanoseconds until the next call, negative if late; None if canceled."""
         return self._ticker.schedule.until_next_ns(self.clock.now_ns())
 
     def time_since_last_call(self) -> int:
-        """Return the nanoseconds since the last call; before the first, since the creation."""
+        """Return the nanoseconds since the last call, or since the creation if there was none."""
         return self._ticker.schedule.since_last_ns(self.clock.now_ns())
 
     # Work
@@ -176,13 +176,12 @@ class Timer(Entity):
             if schedule.period_ns == 0:
                 await ticker.wait()
             elif ticker.is_ready():
-                await checkpoint()  # late again: let others run
+                await checkpoint()  # already late again: let others run
 
     def _call_inline(self) -> bool:
-        """Make the call that is due within the alarm's callback; return whether it has finished.
+        """Make the due call within the alarm's callback; return whether it has finished.
 
-        Waking the task of this timer takes another iteration of the loop, which is a third of the
-        cost of a call.
+        Waking this timer's task takes another iteration of the loop, a third of the cost of a call.
         """
         schedule = self._ticker.schedule
         now_ns = self.clock.now_ns()
@@ -215,7 +214,7 @@ class Timer(Entity):
 
 
 def to_period_ns(seconds: float) -> int:
-    """Return a period in nanoseconds, rounded to the nearest.
+    """Convert a period to nanoseconds, rounded to the nearest.
 
     Raises:
         TypeError: `seconds` is not a number.

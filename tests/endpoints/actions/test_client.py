@@ -802,7 +802,7 @@ async def test_a_feedback_callback_is_looked_at_when_the_goal_is_sent(ends: Ends
 
 async def test_something_else_than_an_action_is_refused(ends: Ends) -> None:
     """The text shows what fits."""
-    with pytest.raises(TypeError, match="no action class"):
+    with pytest.raises(TypeError, match="not an action class"):
         ends.asking.create_action_client(String, "fibonacci")  # type: ignore[arg-type]  # the mistake
 
 

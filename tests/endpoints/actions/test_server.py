@@ -118,7 +118,7 @@ async def test_a_goal_callback_that_answers_nonsense_rejects(
     serve(goal_callback=lambda _goal: True)
 
     assert not (await client.send()).accepted
-    assert "goal_callback returned True, no GoalResponse" in caplog.text
+    assert "goal_callback returned True, not a GoalResponse" in caplog.text
 
 
 async def test_a_failing_goal_callback_tells_the_client(serve: Serve, client: PlainClient) -> None:
@@ -1056,7 +1056,7 @@ async def test_goals_wait_for_the_node_to_run() -> None:
 @pytest.mark.parametrize("wrong", [String, 3, None])
 async def test_something_else_than_an_action_is_refused(node: Node, wrong: Any) -> None:
     """The text shows what fits."""
-    with pytest.raises(TypeError, match=r"no action class; use one such as aionode\.interfaces"):
+    with pytest.raises(TypeError, match=r"not an action class; use one such as aionode\.interfaces"):
         node.create_action_server(wrong, "fibonacci", lambda _goal: None)
 
 

@@ -766,7 +766,7 @@ def test_a_silence_has_a_length(node: Node, silence_sec: float) -> None:
         ({"silence_sec": "1"}, "silence_sec='1'; a number of seconds"),
         ({"silence_sec": True}, "silence_sec=True; a number of seconds"),
         ({"clock": 3}, "clock is 3; give a clock"),
-        ({"on_silence": 3}, "on_silence: 3 cannot be called"),
+        ({"on_silence": 3}, "on_silence: 3 is not callable"),
         ({"on_silence": None, "silence_sec": 1}, "there is no on_silence"),
         ({"on_silence": None, "clock": SteadyClock()}, "there is no on_silence"),
         ({"callback": None}, "there is no callback"),

@@ -365,7 +365,7 @@ def test_a_callback_that_does_not_fit_is_refused_at_once(callback: Callable[...,
 
 def test_what_is_no_function_is_refused() -> None:
     """A TypeError where it is given."""
-    with pytest.raises(TypeError, match="cannot be called"):
+    with pytest.raises(TypeError, match="is not callable"):
         Timer(5, MS, ROSClock(), make_runner)  # type: ignore[arg-type]
 
 
