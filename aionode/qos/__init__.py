@@ -1,11 +1,11 @@
 """Quality of service: policies, profiles, and which profiles are compatible.
 
 A publisher *offers* and a subscription *requests* a profile; the pair communicates if the offer is
-at least as strong as the request. `mismatch` returns the reason if it is not, in the words that
-logs and the command line use.
+at least as strong as the request. `mismatch` returns the reason if it is not, as logs and the
+command line show it.
 
-SYSTEM_DEFAULT leaves the choice of a policy to aionode: `QoSProfile.resolved` makes it as rmw_zenoh
-does. A duration of zero means "not limited", as in rclpy.
+SYSTEM_DEFAULT leaves the choice to aionode: `QoSProfile.resolved` chooses like rmw_zenoh. A
+duration of zero means "not limited", as in rclpy.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ class Incompatibility(NamedTuple):
 
 
 def incompatibilities(offered: QoSProfile, requested: QoSProfile) -> list[Incompatibility]:
-    """Return each policy in which `offered` (a publisher's) is weaker than `requested`."""
+    """Return the policies in which `offered` (by a publisher) is weaker than `requested`."""
     offer, request = offered.resolved(), requested.resolved()
     refusals = []
     for name, kind, weak, strong in (
@@ -76,7 +76,7 @@ def incompatibilities(offered: QoSProfile, requested: QoSProfile) -> list[Incomp
             refusals.append(Incompatibility(kind, reason))
     for name, kind in (
         ("deadline", QoSPolicyKind.DEADLINE),
-        ("liveliness_lease_duration", QoSPolicyKind.LIVELINESS),  # rmw knows no kind of its own
+        ("liveliness_lease_duration", QoSPolicyKind.LIVELINESS),  # rmw has no separate kind
     ):
         slow, fast = getattr(offer, name), getattr(request, name)
         if slow > fast and DeadlineBestAvailable not in {slow, fast}:
@@ -121,7 +121,7 @@ def qos_check_compatible(
 ) -> tuple[QoSCompatibility, str]:
     """Return whether two profiles are compatible, with the reasons for a warning or an error.
 
-    WARNING means that a policy is left to the system or unknown, so the result depends on the
+    WARNING means that a policy is left to the system or unknown, so the outcome depends on the
     implementation at the other end.
     """
     decided = [
@@ -173,7 +173,7 @@ def is_doubtful(
 def best_available_for_subscription(
     profile: QoSProfile, publishers: Iterable[QoSProfile]
 ) -> QoSProfile:
-    """Return `profile` with BEST_AVAILABLE replaced by the strongest policies all publishers offer.
+    """Replace BEST_AVAILABLE by the strongest policies that all publishers offer.
 
     Without publishers these are the strongest policies that exist.
     """
@@ -192,7 +192,7 @@ def best_available_for_subscription(
 def best_available_for_publisher(
     profile: QoSProfile, subscriptions: Iterable[QoSProfile]
 ) -> QoSProfile:
-    """Return `profile` with BEST_AVAILABLE replaced by policies that satisfy all subscriptions.
+    """Replace BEST_AVAILABLE by policies that satisfy all subscriptions.
 
     A publisher can always be reliable and transient local. It offers manual liveliness, a deadline
     or a lease duration only if a subscription requests it.
@@ -216,7 +216,7 @@ def resolve_best_available(
     limit: Callable[[list[Duration]], Duration],
     others: list[QoSProfile],
 ) -> QoSProfile:
-    """Return `profile` with BEST_AVAILABLE replaced by what `pick` and `limit` choose."""
+    """Replace BEST_AVAILABLE by what `pick` and `limit` choose."""
     changes: dict[str, object] = {}
     for name, strong, weak in (
         ("reliability", ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT),

@@ -83,7 +83,7 @@ class QoSPolicyEnum(IntEnum):
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """The messages that are kept for a slow subscription: the newest `depth`, or all."""
+    """Which messages are kept for a slow subscription: the newest `depth`, or all."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -102,7 +102,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether a late subscription receives the newest of the messages published before."""
+    """Whether a late subscription receives the newest of the earlier messages."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -154,7 +154,7 @@ def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
 
 
 def policy(name: str, kind: type[PolicyT]) -> Callable[[object], PolicyT]:
-    """Return the validation function of a policy field."""
+    """Create the validation function of a policy field."""
     fits = ", ".join(f"{member.short_key} ({member.value})" for member in kind)
 
     def check(value: object) -> PolicyT:
@@ -173,7 +173,7 @@ def policy(name: str, kind: type[PolicyT]) -> Callable[[object], PolicyT]:
 
 
 def duration(name: str) -> Callable[[object], Duration]:
-    """Return the validation function of a duration field."""
+    """Create the validation function of a duration field."""
 
     def check(value: object) -> Duration:
         if not isinstance(value, Duration):
@@ -362,7 +362,7 @@ class QoSProfile:
         return hash(tuple(getattr(self, name) for name in CHECKS))
 
     def __repr__(self) -> str:
-        """Return an expression of an equal profile: the depth and all values not at the default."""
+        """Return an expression for an equal profile: the depth and all non-default values."""
         shown = []
         for name, default in DEFAULTS.items():
             value = getattr(self, name)
@@ -438,7 +438,7 @@ qos_profile_default = QoSProfile(depth=10)
 """Ten messages, reliable, volatile."""
 
 qos_profile_sensor_data = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""For data that is soon outdated: a short queue, and lost messages are not sent again."""
+"""For data that is soon outdated: a short queue, and no retransmission of lost messages."""
 
 qos_profile_services_default = QoSProfile(depth=10)
 """For services and their clients."""
@@ -515,7 +515,7 @@ class QoSPresetProfiles(Enum):
 
 
 KEEP_ALL_DEPTH = 10_000
-"""Smallest queue size of an endpoint with KEEP_ALL, in messages."""
+"""Minimum queue size of a KEEP_ALL endpoint, in messages."""
 
 
 def depth_of(qos: QoSProfile) -> int:
