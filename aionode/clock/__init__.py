@@ -1,6 +1,6 @@
-"""Points in time, durations, and the clocks that show and await them.
+"""Points in time, durations, and clocks that can be read and awaited.
 
-No other package reads the clocks of the machine.
+No other package reads the machine's clocks.
 """
 
 from aionode.clock._clocks import (

@@ -1,4 +1,4 @@
-"""Clocks, which show the time and can be awaited, and callbacks for their jumps."""
+"""Clocks, which can be read and awaited, and callbacks for their jumps."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class TimeJump:
 
 
 class JumpThreshold:
-    """The jumps that call the callbacks.
+    """Which jumps trigger the callbacks.
 
     Args:
         min_forward: The shortest jump forward to report, a positive duration, or None for none.
@@ -95,7 +95,7 @@ class JumpThreshold:
         self.on_clock_change = on_clock_change
 
     def is_met_by(self, jump: TimeJump) -> bool:
-        """Whether `jump` is to be reported."""
+        """Return whether `jump` has to be reported."""
         if jump.clock_change in SWITCHES:
             return self.on_clock_change
         if jump.delta.nanoseconds > 0:
@@ -165,7 +165,7 @@ class Jumps:
         self._handles.pop(handle, None)
 
     def make(self, change: ClockChange, delta_ns: int, move: Callable[[], None]) -> None:
-        """Jump: call the pre callbacks concerned, `move` the clock, call the post callbacks.
+        """Jump: call the matching pre callbacks, `move` the clock, call the post callbacks.
 
         An exception in a callback propagates, and the callbacks after it are not called.
         """
@@ -187,15 +187,14 @@ MACHINE_TIME = MachineTime()
 
 
 class Clock:
-    """Shows the time, and can be awaited.
+    """A clock that can be read and awaited.
 
     A clock of type ROS_TIME follows the system clock until ROS time is switched on. From then on it
-    stands still except when it is set, which a node with `use_sim_time` does for each `/clock`
-    message.
+    moves only when it is set, as a node with `use_sim_time` does for each `/clock` message.
 
     Args:
-        clock_type: Which time it shows. With ROS_TIME a `ROSClock` is created.
-        time_base: Where the time comes from; by default the machine's clocks.
+        clock_type: The kind of time. With ROS_TIME a `ROSClock` is created.
+        time_base: The source of time; by default the machine's clocks.
 
     Raises:
         TypeError: `clock_type` is not a `ClockType`.
@@ -208,7 +207,7 @@ class Clock:
         *,
         time_base: TimeBase | None = None,  # noqa: ARG004  # for __init__
     ) -> Clock:
-        """Create a `ROSClock` for ROS time, as rclpy does."""
+        """Create a `ROSClock` for ROS time, like rclpy."""
         return super().__new__(ROSClock if clock_type is ClockType.ROS_TIME else cls)
 
     def __init__(
@@ -229,9 +228,9 @@ class Clock:
         self._override_ns = 0
         self._timer_heap = TimerHeap()  # alarms while ROS time is switched on
         self._jumps = Jumps()
-        # In order of arrival; each gets True when its time has come, False from `destroy`.
+        # Sleeps in order of arrival; each is set to True when due, or to False by `destroy`.
         self._sleepers: dict[asyncio.Future[bool], None] = {}
-        # Returns what a sleep raises that `destroy` ends; a node tells its own tasks from others.
+        # Creates the exception for sleeps ended by `destroy`; a node's own tasks get another one.
         self._end_of_wait: Callable[[str], BaseException] = EntityDestroyedError
 
     @property
@@ -255,12 +254,12 @@ class Clock:
     async def sleep(self, duration_sec: float) -> None:
         """Wait until `duration_sec` seconds have passed on this clock, never less.
 
-        Zero or less waits for one turn of the event loop. While ROS time is switched on, time
+        Zero or less waits for one iteration of the event loop. While ROS time is switched on, time
         passes only when the clock is set. Setting the machine's clock has no effect.
 
         Raises:
-            EntityDestroyedError: The clock was destroyed with its node, before or during the sleep
-                (a RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            EntityDestroyedError: The clock was destroyed with its node before or during the sleep
+                (a RuntimeError); its ``__cause__`` is the node's error, if it failed.
             asyncio.CancelledError: It was destroyed during a sleep of one of the node's own tasks:
                 a callback, or the body of ``async with node``.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
@@ -270,19 +269,19 @@ class Clock:
         if duration_sec <= 0:
             await checkpoint()
             return
-        duration_ns = round(duration_sec * S_TO_NS)  # truncating would make it too short
+        duration_ns = round(duration_sec * S_TO_NS)  # truncating would sleep too short
         if self._active:
             await self._sleep(self._override_ns + duration_ns, self._timer_heap.add)
         else:
             await self._sleep(self._base.steady_ns() + duration_ns, self._base.call_at)
 
     async def sleep_until(self, until: Time) -> None:
-        """Wait until this clock shows `until` or later; at least one turn of the event loop.
+        """Wait until this clock shows `until` or later; at least one iteration of the event loop.
 
         Raises:
             ValueError: `until` belongs to another type of clock.
-            EntityDestroyedError: The clock was destroyed with its node, before or during the sleep
-                (a RuntimeError); its ``__cause__`` is the error of the node, if that failed.
+            EntityDestroyedError: The clock was destroyed with its node before or during the sleep
+                (a RuntimeError); its ``__cause__`` is the node's error, if it failed.
             asyncio.CancelledError: It was destroyed during a sleep of one of the node's own tasks:
                 a callback, or the body of ``async with node``.
             TimeSourceChangedError: ROS time was switched on or off meanwhile.
@@ -295,7 +294,7 @@ class Clock:
             )
         if self._read() >= until.nanoseconds:
             await checkpoint()
-        while self._read() < until.nanoseconds:  # again if the machine's clock was set back
+        while self._read() < until.nanoseconds:  # repeats if the machine's clock was set back
             await self._sleep(until.nanoseconds, self.call_at)
 
     async def _sleep(
@@ -318,15 +317,15 @@ class Clock:
 
     @property
     def follows_machine(self) -> bool:
-        """Whether alarms fire by themselves, and not because the time is set."""
+        """Whether alarms fire by themselves rather than when the time is set."""
         return not self._active and isinstance(self._base, MachineTime)
 
     def call_at(self, when_ns: int, callback: Callable[[], None]) -> Alarm:
         """Call `callback` when this clock shows `when_ns`.
 
-        For timers, which then read the clock again, as it shows less if the machine's clock was set
-        back meanwhile. An alarm stays with its source of time, so it must be set again when ROS
-        time is switched on or off.
+        For timers, which must read the clock again in the callback, in case the machine's clock was
+        set back meanwhile. An alarm stays with its source of time, so it must be scheduled again
+        when ROS time is switched on or off.
         """
         if self._active:
             return self._timer_heap.add(when_ns, callback)
@@ -340,8 +339,8 @@ class Clock:
     ) -> Alarm | None:
         """Call `callback` when this clock shows `when_ns`, and then after each `period_ns`.
 
-        As with `call_at`, it reads the clock again. None if only `call_at` is available: the time
-        is not the machine's, or the system has no such alarms, or none left.
+        As with `call_at`, the callback must read the clock again. Returns None if only `call_at` is
+        available: the time is not the machine's, or the system has no such alarms, or none left.
         """
         if not self.follows_machine:
             return None
@@ -356,11 +355,11 @@ class Clock:
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether ROS time is switched on: the time is set from outside, as in a simulation."""
+        """Whether ROS time is switched on: the time is set externally, as in a simulation."""
         return self._active
 
     def set_ros_time_active(self, enabled: bool) -> None:
-        """Switch ROS time on or off; the node calls it for `use_sim_time`.
+        """Switch ROS time on or off; called by the node for `use_sim_time`.
 
         While on, the clock shows the time it was last set to, or 0 if it never was. A switch raises
         TimeSourceChangedError in pending sleeps. Without a change it does nothing.
@@ -382,13 +381,13 @@ class Clock:
             if not sleeper.done():
                 sleeper.set_exception(TimeSourceChangedError(active=enabled))
 
-    # rclpy's name, for code that drives a clock without a node
+    # rclpy's API, for code that drives a clock without a node
     _set_ros_time_is_active = set_ros_time_active
 
     def set_ros_time_override(self, time: Time) -> None:
         """Set the time that this clock shows while ROS time is switched on.
 
-        Wakes sleeps and timers that are due then.
+        This wakes sleeps and timers that are due then.
 
         Raises:
             TypeError: `time` is not a `Time`, or this clock is not of type ROS_TIME.
@@ -456,7 +455,7 @@ class ROSClock(Clock):
 
 
 class SteadyClock(Clock):
-    """A clock that never goes back, with an arbitrary zero: for durations, not for stamps."""
+    """A monotonic clock with an arbitrary zero: for durations, not for stamps."""
 
     def __init__(
         self, clock_type: ClockType = ClockType.STEADY_TIME, *, time_base: TimeBase | None = None

@@ -1,4 +1,4 @@
-"""Noticing that something has been silent for too long."""
+"""Detect that something has been silent for too long."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ __all__ = ["SilenceAlarm"]
 
 
 class SilenceAlarm:
-    """Tells how many whole periods have passed since the last sign, from the first sign on.
+    """Counts the whole periods since the last sign of life, from the first one on.
 
-    A sign costs one reading of the clock: the alarm is set again only when it rings.
+    A sign costs only one clock reading: the alarm is rescheduled only when it fires.
 
-    With a `clock` that shows ROS time, a period is over when the clock has gone forward by so much
-    since the last sign, or has stood still for so long on the steady clock, as it does when its
-    publisher is lost. A jump back takes nothing from what has passed. Any other clock counts as the
-    steady one.
+    With a `clock` on ROS time, a period is over when that clock has advanced by a period since the
+    last sign, or has stood still for a period of steady time, as it does when its publisher is
+    lost. A jump back does not undo time that has passed. Any other clock is treated as the steady
+    one.
 
     Args:
-        time_base: Whose steady clock counts.
+        time_base: Provides the steady clock.
         period_ns: The longest silence.
-        on_silence: Called with the number of periods that are over since the last sign or call;
-            returns whether to go on counting without another sign.
-        clock: What the period is measured with, if not with the steady clock.
+        on_silence: Called with the number of periods since the last sign or call; returns whether
+            to go on counting without another sign.
+        clock: The clock that measures the period, if not the steady clock.
     """
 
     __slots__ = (
@@ -57,36 +57,36 @@ class SilenceAlarm:
         self._steady_ns = time_base.steady_ns
         self._period_ns = period_ns
         self._on_silence = on_silence
-        # The last sign, or the end of the last silent period, or the last movement of the clock.
+        # The last sign, the end of the last silent period, or the last movement of the clock.
         self._since_ns: int | None = None
-        self._passed_ns = 0  # by how much the clock has gone forward since the last sign
+        self._passed_ns = 0  # how far the clock has advanced since the last sign
         self._alarm: Alarm | None = None
         self._runs = False
         self._jumps: JumpHandle | None = None
         if clock is not None and clock.clock_type is ClockType.ROS_TIME:
-            from aionode.clock._clocks import JumpThreshold  # few silences go by such a clock
+            from aionode.clock._clocks import JumpThreshold  # rarely needed
 
             shortest = Duration(nanoseconds=1)
             every = JumpThreshold(min_forward=shortest, min_backward=-shortest)
             self._jumps = clock.create_jump_callback(every, post_callback=self._on_jump)
 
     def start(self) -> None:
-        """Begin to ring: an event loop runs now. Signs count before that, too."""
+        """Start the alarm, as an event loop is running now; earlier signs count as well."""
         self._runs = True
         if self._alarm is None and self._since_ns is not None:
             self._set()
 
     def note(self, at_ns: int | None = None) -> None:
-        """Take a sign, of now or of a time of the steady clock."""
+        """Record a sign, at the current time or at a given steady time."""
         self._since_ns = self._steady_ns() if at_ns is None else at_ns
         self._passed_ns = 0
         if self._alarm is None and self._runs:
             self._set()
 
     def left_ns(self) -> int | None:
-        """Return how much of the first period is left at most, 0 or less when it is over.
+        """Return at most how much of the first period is left; 0 or less when it is over.
 
-        None before the first sign. Any thread may ask.
+        None before the first sign. May be called from any thread.
         """
         since_ns = self._since_ns
         if since_ns is None:
@@ -96,27 +96,27 @@ class SilenceAlarm:
         return since_ns + self._period_ns - self._steady_ns()
 
     def periods(self) -> int:
-        """Return how many whole periods are over since the last sign; 0 before the first."""
+        """Return the number of whole periods since the last sign; 0 before the first sign."""
         if self._since_ns is None:
             return 0
         return max(self._steady_ns() - self._since_ns, self._passed_ns) // self._period_ns
 
     def forget(self) -> None:
-        """Wait for a sign as at first."""
+        """Return to the state before the first sign."""
         self._since_ns = None
         self._cancel()
 
     def stop(self) -> None:
-        """Ring no more."""
+        """Stop the alarm."""
         self._runs = False
         self._cancel()
         if self._jumps is not None:
             self._jumps.unregister()
 
     def _on_jump(self, jump: TimeJump) -> None:
-        """Record that the clock has moved: ROS time is set from outside, never by itself."""
+        """Record that the clock has moved; ROS time moves only when it is set."""
         if self._since_ns is None or not jump.delta.nanoseconds:
-            return  # without a sign, or a change of the source: then the clock has not moved
+            return  # no sign yet, or a change of the source, which does not move the clock
         self._since_ns = self._steady_ns()
         self._passed_ns += max(jump.delta.nanoseconds, 0)
         if self._passed_ns >= self._period_ns and self._alarm is not None:
@@ -133,14 +133,14 @@ class SilenceAlarm:
             self._alarm = None
 
     def _ring(self) -> None:
-        # After a stall of the loop, what came in time may still wait to be read: that takes a turn
-        # of the loop, and what it wakes another one.
+        # After a stall of the loop, signs that arrived in time may not be read yet: reading takes
+        # one iteration of the loop, and whatever it wakes another one.
         loop = asyncio.get_running_loop()
         loop.call_soon(loop.call_soon, self._judge, self._alarm)
 
     def _judge(self, rung: Alarm | None) -> None:
         if rung is not self._alarm or self._since_ns is None:
-            return  # it was stopped meanwhile, or has been judged already
+            return  # stopped meanwhile, or already judged
         periods = self.periods()
         if periods > 0:
             if self._jumps is None:

@@ -1,7 +1,7 @@
-"""The source of time: the machine, or a test that advances it by hand.
+"""The source of time: the machine, or a test that advances it manually.
 
-Everything in aionode that reads the time or waits for it does so through a `TimeBase`, so that a
-test can replace the machine's.
+Everything in aionode that reads time or waits for it does so through a `TimeBase`, so that tests
+can replace it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
 
 __all__ = ["Alarm", "MachineTime", "TimeBase", "perf_ns", "thread_ns"]
 
-perf_ns = time.perf_counter_ns  # for statistics only: a manual clock does not drive it
-thread_ns = time.thread_time_ns  # likewise; the time for which the current thread has run
+perf_ns = time.perf_counter_ns  # for statistics only; not driven by a manual clock
+thread_ns = time.thread_time_ns  # likewise; the CPU time of the current thread
 
-# uvloop rounds a wait to the nearest millisecond, so half of them end early; selector loops are
-# early by at most the 1 ns they add for rounding. The rest is spent in turns of the loop if it is
-# shorter than SPIN_S, and otherwise in a sleep that is too long for uvloop to round to zero.
+# uvloop rounds waits to the nearest millisecond, so half of them end early; selector loops are
+# early by at most the 1 ns they add for rounding. A remainder below SPIN_S is spent in iterations
+# of the loop, a longer one in another sleep, which is too long for uvloop to round to zero.
 SPIN_S = 50e-6
 SHORTEST_SLEEP_S = 1e-3
 
@@ -44,25 +44,25 @@ class TimeBase(ABC):
     """A source of time, and of callbacks at a certain time.
 
     Attributes:
-        slice_ns: For how long a queue is drained before others get their turn, by `perf_ns`; 0 for
-            one item a turn, so that the order of callbacks does not depend on their speed.
+        slice_ns: How long a queue is drained before others get a turn, by `perf_ns`; 0 for one item
+            per turn, so that the order of callbacks does not depend on their speed.
     """
 
     slice_ns = SLICE_NS
 
     @abstractmethod
     def system_ns(self) -> int:
-        """Return nanoseconds since the epoch of the system clock, which may be set back."""
+        """Return the nanoseconds since the epoch on the system clock, which may be set back."""
 
     @abstractmethod
     def steady_ns(self) -> int:
-        """Return nanoseconds of a clock that never goes back."""
+        """Return the nanoseconds of a monotonic clock."""
 
     def through_suspend(self) -> TimeBase:
-        """Return the time base whose steady clock goes on while the host is suspended.
+        """Return a time base whose steady clock keeps running while the host is suspended.
 
-        For limits that protect people: a machine that wakes up has been silent meanwhile. It is
-        this one where the time is no machine's.
+        For limits that protect people: a machine that wakes up was silent meanwhile. Returns itself
+        if the time is not the machine's.
         """
         return self
 
@@ -70,19 +70,20 @@ class TimeBase(ABC):
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule `callback` in the running loop for `steady_ns`, never earlier.
 
-        For a time in the past it is called in one of the next turns of the loop, never at once.
+        For a time in the past it is called in one of the next iterations of the loop, never at
+        once.
         """
 
 
 class MachineTime(TimeBase):
     """The clocks of the machine: UTC, and a monotonic clock with an arbitrary zero."""
 
-    # Python's functions themselves: every message is stamped, and a method would double the cost.
+    # Python's own functions, since every message is stamped and a method would double the cost.
     system_ns = staticmethod(time.time_ns)
     steady_ns = staticmethod(time.monotonic_ns)
 
     def through_suspend(self) -> TimeBase:
-        """Return the time base that counts with CLOCK_BOOTTIME, where the system has it."""
+        """Return the time base that uses CLOCK_BOOTTIME, if the system has it."""
         return BOOT_TIME
 
     def call_at(self, steady_ns: int, callback: Callable[[], None]) -> Alarm:
@@ -93,7 +94,7 @@ class MachineTime(TimeBase):
         loop = asyncio.get_running_loop()
         alarms = self._kernel_alarms(loop)
         if alarms is not None:
-            with suppress(OSError):  # too many open files just now
+            with suppress(OSError):  # too many open files at the moment
                 return alarms.add(steady_ns, callback)
         return LoopAlarm(loop, steady_ns, callback, self.steady_ns)
 
@@ -102,9 +103,9 @@ class MachineTime(TimeBase):
 
 
 class BootTime(MachineTime):
-    """The clocks of the machine, with a steady clock that goes on while the host is suspended."""
+    """The machine's clocks, with a steady clock that keeps running while the host is suspended."""
 
-    # macOS has no CLOCK_BOOTTIME, and its clocks need not agree on a suspended host.
+    # macOS has no CLOCK_BOOTTIME, and its clocks may differ on a suspended host.
     if hasattr(time, "CLOCK_BOOTTIME"):
         steady_ns = staticmethod(partial(time.clock_gettime_ns, time.CLOCK_BOOTTIME))
 

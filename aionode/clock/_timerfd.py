@@ -1,8 +1,8 @@
-"""Alarms that are at most 0.1 ms late, from a timer of the kernel (Linux).
+"""Alarms that are at most 0.1 ms late, using kernel timers (Linux).
 
-Event loops count in milliseconds: uvloop is up to 1 ms late, and asyncio up to 2 ms, as it rounds
-up before `epoll` rounds up again, so a timer of 1 kHz would lose ticks. A `timerfd` is a file that
-becomes readable at a time given in nanoseconds, and loops wait for files without rounding.
+Event loops have millisecond resolution: uvloop is up to 1 ms late, and asyncio up to 2 ms, as it
+rounds up before `epoll` rounds up again, so a 1 kHz timer would lose ticks. A `timerfd` is a file
+that becomes readable at a time given in nanoseconds, and loops wait for files without rounding.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ TFD_TIMER_CANCEL_ON_SET = 2
 class KernelAlarms(TimerHeap):
     """The alarms of one event loop, all on one `timerfd`.
 
-    The file is open only while an alarm is pending, so the process is left with no open file.
+    The file is open only while an alarm is pending, so that no open file is left behind.
 
     Args:
         loop: The event loop.
-        clock: The clock that they are set by.
+        clock: The kernel clock that they use.
 
     Raises:
         OSError: The system has no `timerfd`, or the process has too many open files.
@@ -52,9 +52,9 @@ class KernelAlarms(TimerHeap):
     def __init__(self, loop: asyncio.AbstractEventLoop, clock: int = CLOCK_MONOTONIC) -> None:
         super().__init__()
         self._clock = clock
-        self._loop = weakref.ref(loop)  # weak: the registry of loops holds this object
+        self._loop = weakref.ref(loop)  # weak, as the registry of loops holds this object
         self._fd = -1
-        self._set_ns = 0  # when the file becomes readable; 0 if never
+        self._set_ns = 0  # time when the file becomes readable; 0 for never
         self._spec = itimerspec()
         self._open(loop)
 
@@ -89,11 +89,11 @@ class KernelAlarms(TimerHeap):
             set_timer(self._fd, self._set_ns, self._spec)
 
     def _expired(self) -> None:
-        """Call what is due, as the file became readable."""
+        """Call due callbacks, as the file became readable."""
         try:
-            os.read(self._fd, 8)  # a count, which must be read before it can wait again
+            os.read(self._fd, 8)  # a counter, which must be read to rearm the file
         except BlockingIOError:
-            return  # it was set to an earlier time just as it expired, and expires again
+            return  # rescheduled to an earlier time just as it expired; it expires again
         self._set_ns = 0
         try:
             self.fire(time.clock_gettime_ns(self._clock))
@@ -105,7 +105,7 @@ class KernelAlarms(TimerHeap):
                 self._set_for(next_ns)
 
     def _close_soon(self) -> None:
-        """Close the file in the next turn, unless a callback of this one sets an alarm."""
+        """Close the file in the next iteration, unless a callback of this one sets an alarm."""
         loop = self._loop()
         if loop is None or loop.is_closed():
             self._close()
@@ -122,17 +122,17 @@ class KernelAlarms(TimerHeap):
             os.close(self._fd)
             self._fd = -1
 
-    __del__ = _close  # for a loop that is closed with an alarm pending
+    __del__ = _close  # for a loop that is closed while an alarm is pending
 
 
 MAX_PERIODIC = 64
-"""Most alarms that have a timer of the kernel, and so an open file, of their own."""
+"""Maximum number of alarms with their own kernel timer, and thus an open file."""
 
 
 class PeriodicAlarm:
-    """An alarm that rings again and again without being set: a `timerfd` of its own.
+    """An alarm that repeats without being rescheduled, with its own `timerfd`.
 
-    See `Clock.call_every`. It rings once more whenever the system clock is set.
+    See `Clock.call_every`. It fires once more whenever the system clock is set.
 
     Raises:
         OSError: The system has no `timerfd`, or the process has too many open files.
@@ -152,7 +152,7 @@ class PeriodicAlarm:
         self._loop = asyncio.get_running_loop()
         self._process = os.getpid()
         self._callback = callback
-        # On the system clock itself, as the distance between the two clocks changes all the time.
+        # On the system clock itself, as its offset from the steady clock keeps changing.
         fd = open_timer(CLOCK_REALTIME if system else CLOCK_MONOTONIC)
         try:
             spec = itimerspec()
@@ -167,7 +167,7 @@ class PeriodicAlarm:
 
     def _expired(self) -> None:
         try:
-            os.read(self._fd, 8)  # a count, which must be read before it can ring again
+            os.read(self._fd, 8)  # a counter, which must be read to rearm the file
         except BlockingIOError:
             return
         except OSError as error:
@@ -176,21 +176,21 @@ class PeriodicAlarm:
         self._callback()
 
     def cancel(self) -> None:
-        """Ring no more; calling it again has no effect."""
+        """Cancel the alarm; calling it again has no effect."""
         fd, self._fd = self._fd, -1
         if fd >= 0:
             PeriodicAlarm.count -= 1
-            # A forked child shares the parent's `epoll`, and would silence its timers.
+            # A forked child shares the parent's `epoll` and would silence its timers.
             if not self._loop.is_closed() and self._process == os.getpid():
                 self._loop.remove_reader(fd)
             os.close(fd)
 
-    __del__ = cancel  # for a loop that is closed with an alarm pending
+    __del__ = cancel  # for a loop that is closed while an alarm is pending
 
 
 @cache
 def libc() -> Any:
-    """Return the C library; Python has these functions itself from 3.13 on."""
+    """Return the C library, as Python has these functions only from 3.13 on."""
     if sys.platform != "linux" or sys.maxsize < 2**32:
         raise OSError(errno.ENOSYS, "timerfd: only used on 64-bit Linux")
     import ctypes
@@ -199,7 +199,7 @@ def libc() -> Any:
 
 
 def open_timer(clock: int = CLOCK_MONOTONIC) -> int:
-    """Return the file descriptor of a new `timerfd`."""
+    """Create a `timerfd`, and return its file descriptor."""
     fd: int = libc().timerfd_create(clock, os.O_NONBLOCK | os.O_CLOEXEC)
     if fd < 0:
         import ctypes

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["CONST_INFINITE_NS", "S_TO_NS", "ClockType", "Duration", "Infinite", "Time"]
 
 S_TO_NS = 1_000_000_000
-CONST_INFINITE_NS = 2**63 - 1  # what ROS treats as infinite: the largest int64
+CONST_INFINITE_NS = 2**63 - 1  # the largest int64, which ROS treats as infinite
 
 
 def expect_clock_type(value: object, subject: str) -> None:
@@ -24,7 +24,7 @@ def expect_clock_type(value: object, subject: str) -> None:
 
 
 def total_ns(seconds: float, nanoseconds: float) -> int:
-    """Return the sum in nanoseconds; fractions are truncated, as in rclpy."""
+    """Return the sum in nanoseconds, truncating fractions like rclpy."""
     return int(seconds * S_TO_NS) + int(nanoseconds)
 
 
@@ -268,7 +268,7 @@ class Time:
 
 
 def time_at(ns: int, clock_type: ClockType) -> Time:
-    """Return a `Time` without checking the value, for clocks, whose values always fit."""
+    """Create a `Time` without checking the value; for clocks, whose values always fit."""
     time = Time.__new__(Time)
     time._ns = ns
     time._clock_type = clock_type

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Entry", "TimerHeap"]
 
-SMALL = 64  # up to this many cancelled entries are not worth removing
+SMALL = 64  # below this many cancelled entries, removal is not worth it
 
 
 class Entry:
@@ -21,7 +21,7 @@ class Entry:
     __slots__ = ("callback", "heap")
 
     def __init__(self, heap: TimerHeap, callback: Callable[[], None]) -> None:
-        self.heap: TimerHeap | None = heap  # None once it has left the heap
+        self.heap: TimerHeap | None = heap  # None once removed from the heap
         self.callback: Callable[[], None] | None = callback
 
     def cancel(self) -> None:
@@ -33,7 +33,7 @@ class Entry:
 
 
 class TimerHeap:
-    """Pending callbacks: earliest first, and in order of arrival at the same time."""
+    """Pending callbacks: earliest first, and in order of arrival for equal times."""
 
     __slots__ = ("_cancelled", "_heap", "_order")
 
@@ -62,9 +62,9 @@ class TimerHeap:
         return None
 
     def fire(self, now_ns: int) -> None:
-        """Call everything due at `now_ns`; entries added meanwhile wait for the next call.
+        """Call all callbacks due at `now_ns`; entries added meanwhile wait for the next call.
 
-        An exception in a callback propagates; the remaining ones are called the next time.
+        An exception in a callback propagates; the remaining ones are called next time.
         """
         heap = self._heap
         due: deque[Entry] = deque()
