@@ -1,8 +1,8 @@
 """Messages, services and actions as Python classes.
 
-This package has the annotations for fields, the base classes `Message`, `ServiceType` and
-`ActionType`, and functions that describe, validate, copy and convert messages. The only public
-attributes of a message class are its fields and constants, as those may have any name.
+This package provides field annotations, the base classes `Message`, `ServiceType` and `ActionType`,
+and functions that describe, validate, copy and convert messages. The only public attributes of a
+message class are its fields and constants, since those may have any name.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""A workaround: FastAPI has no hook for values in responses that no annotation describes.
+"""A workaround: FastAPI has no hook for response values that no annotation describes.
 
-Its `jsonable_encoder` writes Pydantic's models and dataclasses, and then the classes in a dict of
-its own; it does not ask for `__pydantic_serializer__` or `__get_pydantic_core_schema__`, by which
-Pydantic writes a message. `tests/message/test_fastapi_defect.py` fails when it does, and then this
-module can go.
+Its `jsonable_encoder` handles Pydantic models, dataclasses, and then the classes in its own dict;
+it does not use `__pydantic_serializer__` or `__get_pydantic_core_schema__`, with which Pydantic
+serializes a message. Once it does, `tests/message/test_fastapi_defect.py` fails, and this module
+can be removed.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ __all__ = ["NoDataclass"]
 
 
 class NoDataclass:
-    """What every dataclass has, and a message has not.
+    """An attribute that every dataclass has, and messages do not.
 
-    `jsonable_encoder` asks each value for it before it looks into its dict. By then FastAPI is
-    imported, and gets the function that writes messages.
+    `jsonable_encoder` asks each value for it before it looks into its dict. FastAPI is imported by
+    then, so this registers the function that serializes messages.
 
     Args:
-        write: Returns a message as builtin types that JSON has.
+        write: Converts a message to builtin types that JSON supports.
     """
 
     def __init__(self, write: Callable[[Any], Any]) -> None:
         self._write = write
 
     def __set_name__(self, owner: type, _name: str) -> None:
-        """Note the class whose instances are written."""
+        """Record the class whose instances are serialized."""
         self._cls = owner
 
     def __get__(self, _message: object, _cls: type) -> Any:

@@ -48,7 +48,7 @@ INT_RANGES: dict[str, tuple[int, int]] = {
     **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
     "char": (0, 255),
 }
-"""Smallest and largest value of each integer type; `char` is an unsigned byte in ROS 2."""
+"""Minimum and maximum of each integer type; `char` is an unsigned byte in ROS 2."""
 
 DTYPES: dict[str, str] = {
     **{kind: kind for kind in (*INT_RANGES, "float32", "float64", "bool")},
@@ -88,7 +88,7 @@ class FieldType:
 
     @property
     def element(self) -> FieldType:
-        """The type of one element; of the value itself if it is a single one."""
+        """The type of one element, or of a single value itself."""
         return FieldType(self.kind, self.nested, self.string_bound)
 
     def __str__(self) -> str:
@@ -111,8 +111,8 @@ class Field:
     Attributes:
         name: Its name, in ROS and in Python.
         type: Its type.
-        default: Its default value (a tuple for arrays and sequences), or None if that is the zero
-            of the type.
+        default: Its default value (a tuple for arrays and sequences), or None for the type's zero
+            value.
     """
 
     name: str
@@ -173,11 +173,11 @@ def field_type(annotation: object) -> FieldType:
 def contained(
     annotation: object, container: Literal["array", "bounded", "unbounded"], size: object = 0
 ) -> object:
-    """Return the annotation of an array or sequence of `annotation`."""
+    """Return the annotation for an array or sequence of `annotation`."""
     element = field_type(annotation)
     if element.container != "single":
         msg = (
-            f"{element}: ROS has no arrays of arrays; put the inner array into a message of its own"
+            f"{element}: ROS has no arrays of arrays; put the inner array into its own message"
         )
         raise TypeError(msg)
     count = 0 if container == "unbounded" else checked_size(element, size)

@@ -1,7 +1,8 @@
 """JSON Schema of messages, for tools, OpenAPI and Pydantic.
 
-Pydantic is optional. With it, and so with FastAPI, messages can be used as types of fields, bodies
-and responses: Pydantic gets `pydantic_core_schema` and `pydantic_json_schema` from a message class.
+Pydantic is optional. With it, and thus with FastAPI, messages can be used as types of fields,
+bodies and responses: Pydantic gets `pydantic_core_schema` and `pydantic_json_schema` from a message
+class.
 """
 
 from __future__ import annotations
@@ -40,10 +41,9 @@ NUMBER_OR_WORD: Schema = {
 def json_schema(cls: type[Message]) -> dict[str, Any]:
     """Return the JSON Schema of what `from_json` and `from_builtins` accept for a message class.
 
-    It is a self-contained ``object`` without references, as tools of language models expect it,
-    with the descriptions from the docstring of the class, the ranges of numbers, and the defaults.
-    No field is required, as each has a default. For a service or an action, use its ``Request`` or
-    ``Goal``.
+    It is a self-contained ``object`` without references, as tools of language models expect, with
+    the descriptions from the class's docstring, the ranges of numbers, and the defaults. No field
+    is required, as each has a default. For a service or an action, use its ``Request`` or ``Goal``.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -117,7 +117,7 @@ def with_notes(field: Field, text: str | None, schema: Schema) -> Schema:
         notes["default"] = default[0] if isinstance(default, bytes) else default
     elif field.default is not None:
         notes["default"] = list(field.default)  # type: ignore[call-overload]  # a tuple
-    if "$ref" in schema and notes:  # older OpenAPI tools ignore what stands beside a reference
+    if "$ref" in schema and notes:  # older OpenAPI tools ignore siblings of a reference
         return {"allOf": [schema], **notes}
     return {**schema, **notes}
 
@@ -143,7 +143,7 @@ def documentation(cls: type[object]) -> tuple[str, dict[str, str]]:
 
 
 def pydantic_core_schema(cls: type[Message]) -> CoreSchema:
-    """Return the Pydantic schema that reads and writes as `from_builtins` and `to_json` do."""
+    """Return the Pydantic schema that parses like `from_builtins` and serializes like `to_json`."""
     from pydantic_core import core_schema
 
     return core_schema.no_info_plain_validator_function(
@@ -154,7 +154,7 @@ def pydantic_core_schema(cls: type[Message]) -> CoreSchema:
 
 
 def validated(cls: type[Message], value: object) -> Message:
-    """Return `value` as a message of `cls`; raise MessageError, a ValueError, if it is invalid."""
+    """Convert `value` to a message of `cls`; raise MessageError, a ValueError, if it is invalid."""
     from aionode.message.conversion import from_builtins
 
     if isinstance(value, cls):
@@ -163,14 +163,14 @@ def validated(cls: type[Message], value: object) -> Message:
 
 
 def serialized(message: Message, info: SerializationInfo) -> dict[str, Any]:
-    """Return a message as builtin types, only with values that JSON has in its JSON mode."""
+    """Convert a message to builtin types; in JSON mode, with only values that JSON supports."""
     from aionode.message.conversion import to_builtins
 
     return in_json(message) if info.mode == "json" else to_builtins(message)
 
 
 def in_json(message: Message) -> dict[str, Any]:
-    """Return a message as builtin types, only with values that JSON has."""
+    """Convert a message to builtin types, with only values that JSON supports."""
     from aionode.message._snapshot import snapshot
     from aionode.message.conversion import Form, json_float, plain
 
@@ -178,7 +178,7 @@ def in_json(message: Message) -> dict[str, Any]:
 
 
 def pydantic_serializer(cls: type[Message]) -> Any:
-    """Return what Pydantic writes messages of a class with.
+    """Return Pydantic's serializer for a message class.
 
     Raises:
         AttributeError: Pydantic is not installed.

@@ -1,7 +1,7 @@
-"""Classes whose messages stay in their encoded form, for programs with other message classes.
+"""Classes whose messages stay encoded, for programs with other message classes.
 
-A transport carries such a message without looking into it: encoding returns its bytes, and decoding
-keeps them.
+A transport carries such a message without looking at its contents: encoding returns its bytes, and
+decoding keeps them.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ class SerializedMessage:
 
 @cache
 def serialized(cls: Any) -> Any:
-    """Return the class of serialized messages of a message class, or of a service's two halves.
+    """Return the serialized counterpart of a message class, or of a service's two halves.
 
     Endpoints of the result communicate with those of `cls`: name, hash and description of the type
-    are the same. The bytes are not checked when they are sent; what is received is as it came.
+    are the same. The bytes are neither checked when sent nor when received.
 
     Raises:
         TypeError: `cls` is not a message or service class.

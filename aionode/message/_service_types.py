@@ -43,7 +43,7 @@ def name_halves(cls: type, typename: str, halves: tuple[str, ...], *, by_name: b
 
 
 def make_event(cls: type[ServiceType]) -> type[Message]:
-    """Return the service event message, which reports one request or response of a service."""
+    """Create the service event message, which reports one request or response of a service."""
     # Imported on first use, as generated modules import this one.
     from aionode.interfaces.service_msgs.msg import ServiceEventInfo
 
@@ -53,8 +53,8 @@ def make_event(cls: type[ServiceType]) -> type[Message]:
         "__doc__": f"A request to or a response of {cls.__name__}, with its client and time.",
         "__annotations__": {
             "info": ServiceEventInfo,
-            "request": Sequence[cls.Request, 1],  # type: ignore[attr-defined] # nested classes
-            "response": Sequence[cls.Response, 1],  # type: ignore[attr-defined] # nested classes
+            "request": Sequence[cls.Request, 1],  # type: ignore[attr-defined] # declared by subclasses
+            "response": Sequence[cls.Response, 1],  # type: ignore[attr-defined] # declared by subclasses
         },
     }
     name = f"{cls.__ros_type__}_Event"
@@ -86,7 +86,7 @@ class ServiceType:
 
 
 def make_impl(cls: type[ActionType]) -> type:
-    """Return the class of services and messages that implement an action."""
+    """Create the class of the services and messages that implement an action."""
     # Imported on first use, as generated modules import this one.
     from aionode.interfaces.action_msgs.msg import GoalStatusArray
     from aionode.interfaces.action_msgs.srv import CancelGoal
@@ -173,8 +173,8 @@ class ServiceClass(Protocol[Request_co, Response_co]):
     """For type checkers: a service type, with its request and response types.
 
     ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` infers both types
-    from ``AddTwoInts``. The nested classes are declared as functions that return a message, because
-    both mypy and pyright understand that form.
+    from ``AddTwoInts``. The declared by subclasses are declared as functions that return a message,
+    which both mypy and pyright understand.
     """
 
     def Request(self, *args: Any, **values: Any) -> Request_co:  # noqa: N802 (a class)

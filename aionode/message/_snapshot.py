@@ -1,6 +1,6 @@
 """Validates and copies messages, with code generated once for each message type.
 
-The generated function handles the usual values of each field in one line and passes all others to
+The generated function handles the usual values of each field in one line, and passes all others to
 `fit`. Nested messages are inlined, so a Twist costs one call. The code is generated from the
 description of a message class, whose names were validated when the class was created.
 """
@@ -62,7 +62,7 @@ def snapshotter(cls: type[MessageT]) -> Callable[[MessageT], MessageT]:
 
 
 def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
-    """Return a function that validates as that of `snapshotter` does, without a copy.
+    """Return a function that validates like that of `snapshotter`, without a copy.
 
     Raises:
         TypeError: `cls` is not a message class, or has no ROS name.
@@ -74,7 +74,7 @@ def checker(cls: type[MessageT]) -> Callable[[MessageT], None]:
 
 
 def expecting(cls: type[Any]) -> Callable[[Any], Any]:
-    """Return a function that returns a serialized message, whose bytes never change, as it is."""
+    """Return a function that returns a serialized message as is, since its bytes never change."""
 
     def take(message: Any) -> Any:
         if message.__class__ is not cls:
@@ -85,7 +85,7 @@ def expecting(cls: type[Any]) -> Callable[[Any], Any]:
 
 
 def snapshot(message: MessageT) -> MessageT:
-    """Return a validated copy of a message, as `snapshotter` does."""
+    """Return a validated copy of a message; see `snapshotter`."""
     return snapshotter(type(message))(message)
 
 
@@ -131,7 +131,7 @@ class Unrolling:
         return function
 
     def name(self, value: object, prefix: str) -> str:
-        """Return a new name for a value that the code refers to."""
+        """Create a name for a value that the code refers to."""
         name = f"{prefix}{len(self.names)}"
         self.names[name] = value
         return name
@@ -173,7 +173,7 @@ class Unrolling:
             if type_.form == "bytes" and type_.container == "unbounded":
                 line = f"if {value}.__class__ is not bytes: {line}"
             elif not self.copying and type_.container != "array":
-                # An empty tuple always fits, and numpy need not be imported to see that.
+                # An empty tuple always fits, which needs no import of numpy.
                 line = f"if {value}.__class__ is not tuple or {value}: {line}"
             self.lines.append(line)
         return value
@@ -210,7 +210,7 @@ def refuse(cls: type[Message], value: object, path: str) -> None:
 
 
 def given_type(value: object) -> str:
-    """Return how an error describes an object: ROS name of a message, or value and type."""
+    """Describe an object for an error: the ROS name of a message, or value and type."""
     return getattr(type(value), "__ros_type__", "") or given(value)
 
 
@@ -231,7 +231,7 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
     """Return a copy of a list of strings."""
     if values.__class__ is list and type_.string_bound is None:
         try:
-            usual = "".join(values).isascii()  # fast, and raises TypeError for other types
+            usual = "".join(values).isascii()  # fast; raises TypeError for other types
         except TypeError:
             usual = False
         if usual:
@@ -244,7 +244,7 @@ def strings(type_: FieldType, values: Any, path: str, field: str) -> list[str]:
 def numpy_for(kind: str) -> tuple[Any, Any, Any]:
     """Return ``ndarray``, ``frombuffer`` and the dtype of an element type.
 
-    Numpy is imported on first use, and looking for it each time would cost as much as a copy.
+    Numpy is imported on first use; looking it up each time would cost as much as a copy.
     """
     import numpy as np
 
@@ -252,10 +252,10 @@ def numpy_for(kind: str) -> tuple[Any, Any, Any]:
 
 
 def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
-    """Return the array of a field if it is read-only, else a read-only copy.
+    """Return the array of a field if read-only, else a read-only copy.
 
-    Bytes are copied and then read in place, as that takes a third of the time of copying an array
-    and marking it. Subclasses, such as masked arrays, know more than their bytes.
+    The bytes are copied and then viewed as an array, which takes a third of the time of copying an
+    array and marking it read-only. Subclasses such as masked arrays hold more than their bytes.
     """
     ndarray, frombuffer, dtype = numpy_for(type_.kind)
     if value.__class__ is ndarray and value.dtype is dtype and value.ndim == 1:
@@ -266,7 +266,7 @@ def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
         array = fit_array(type_, value, path + field)
     if not array.flags.writeable:
         return array
-    if array.__class__ is ndarray and len(array):  # there is no buffer of no bytes
+    if array.__class__ is ndarray and len(array):  # an empty buffer cannot be viewed
         return frombuffer(array.tobytes(), dtype)
     array = array.copy()
     array.flags.writeable = False
@@ -274,7 +274,7 @@ def frozen_array(type_: FieldType, value: Any, path: str, field: str) -> Any:
 
 
 def fixed_bytes(value: bytes | bytearray | memoryview) -> bytes | memoryview:
-    """Return bytes as they are if they are read-only, else a copy."""
+    """Return bytes as is if they are read-only, else a copy."""
     if isinstance(value, bytearray) or (isinstance(value, memoryview) and not value.readonly):
         return bytes(value)
     return value

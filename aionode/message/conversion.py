@@ -26,7 +26,7 @@ from aionode.message.validation import fit, given, listed
 __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
 
 LONGEST_FIELD = 100
-"""Of longer names no field is meant: to compare a name takes time with its length."""
+"""Longer names get no suggestion, as comparing names takes time with their length."""
 
 MessageT = TypeVar("MessageT", bound=Message)
 
@@ -35,21 +35,21 @@ FLOAT_STRINGS = re.compile(r"NaN|-?Infinity|[-+]?\d+[eE][-+]?\d+")
 
 
 def elements_of(values: Any) -> list[Any]:
-    """Return the elements of an array, with Python's own numbers."""
+    """Return the elements of an array as Python numbers."""
     return values.tolist() if hasattr(values, "tolist") else list(values)
 
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """How values are written that have more than one form.
+    """How to write values that have more than one form.
 
     Attributes:
         as_float: Returns a float.
         as_byte: Returns a `byte`, given as its number.
         elements: Returns the elements of an array.
-        truncate: Most elements of an array and characters of a string; None for all.
-        no_arr: Whether arrays are described, by type and length.
-        no_str: Whether strings are described, by their length.
+        truncate: Maximum elements of an array and characters of a string; None for all.
+        no_arr: Whether to replace arrays by their type and length.
+        no_str: Whether to replace strings by their length.
     """
 
     as_float: Callable[[float], object] = float
@@ -60,7 +60,7 @@ class Form:
     no_str: bool = False
 
     def converter(self, type_: FieldType) -> Callable[[Any], object] | None:
-        """Return what converts each value of a type; None for those that have one form."""
+        """Return the converter of values of a type; None for types with a single form."""
         if type_.nested is not None:
             return lambda message: plain(message, self)
         if type_.kind in {"float32", "float64"}:
@@ -70,7 +70,7 @@ class Form:
         return self.string if type_.kind in {"string", "wstring"} else None
 
     def string(self, text: str) -> str:
-        """Return a string, with ``...`` in place of the characters beyond the limit."""
+        """Return a string, with ``...`` replacing the characters beyond the limit."""
         if self.no_str:
             return f"<string length: <{len(text)}>>"
         if self.truncate is None or len(text) <= self.truncate:
@@ -79,12 +79,12 @@ class Form:
 
 
 def to_builtins(message: Message, *, truncate: int | None = None) -> dict[str, Any]:
-    """Return a message as dicts, lists, numbers, bools and strings, in the order of its fields.
+    """Convert a message to dicts, lists, numbers, bools and strings, in the order of its fields.
 
     Args:
         message: The message.
-        truncate: Most elements of an array and characters of a string; ``...`` stands for the rest,
-            as in ``ros2 topic echo``, which shows 128. By default nothing is left out.
+        truncate: Maximum elements of an array and characters of a string; ``...`` stands for the
+            rest, as in ``ros2 topic echo``, which shows 128. By default nothing is cut.
 
     Raises:
         MessageError: A value does not fit its field.
@@ -96,7 +96,7 @@ def to_builtins(message: Message, *, truncate: int | None = None) -> dict[str, A
 
 
 def from_builtins(cls: type[MessageT], data: object) -> MessageT:
-    """Return a message made from builtin types; omitted fields have their default.
+    """Create a message from builtin types; omitted fields have their default.
 
     Arrays and bytes-like objects are accepted as well as lists.
 
@@ -107,7 +107,7 @@ def from_builtins(cls: type[MessageT], data: object) -> MessageT:
 
 
 def to_json(message: Message) -> str:
-    """Return a message as one line of JSON.
+    """Convert a message to one line of JSON.
 
     Raises:
         MessageError: A value does not fit its field.
@@ -116,7 +116,7 @@ def to_json(message: Message) -> str:
 
 
 def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
-    """Return a message made from JSON; see `from_builtins`.
+    """Create a message from JSON; see `from_builtins`.
 
     Raises:
         MessageError: The text is not valid JSON, or does not describe such a message.
@@ -125,7 +125,7 @@ def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
 
 
 def to_yaml(message: Message, *, flow_style: bool = False) -> str:
-    """Return a message as YAML, formatted as ``ros2 topic echo`` prints it.
+    """Convert a message to YAML in the format of ``ros2 topic echo``.
 
     Args:
         message: The message.
@@ -148,7 +148,7 @@ def to_yaml(message: Message, *, flow_style: bool = False) -> str:
 
 
 def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
-    """Return a message made from YAML, such as ``{linear: {x: 1.5}}``.
+    """Create a message from YAML, such as ``{linear: {x: 1.5}}``.
 
     An empty text gives a message of defaults. See `from_builtins`.
 
@@ -169,7 +169,7 @@ def validated(message: Message) -> Message:
 def decoded(
     cls: type[Message], decode: Callable[[str | bytes], Any], text: str | bytes, form: str
 ) -> Any:
-    """Return a text in JSON or YAML as builtin types."""
+    """Decode JSON or YAML to builtin types."""
     try:
         return decode(text)
     except (msgspec.DecodeError, ValueError, RecursionError) as error:
@@ -177,14 +177,14 @@ def decoded(
 
 
 def json_float(number: float) -> float | str:
-    """Return a float, or the string for one that JSON does not have."""
+    """Return a float, or the string for one that JSON does not support."""
     if math.isfinite(number):
         return number
     return "NaN" if math.isnan(number) else "Infinity" if number > 0 else "-Infinity"
 
 
 def plain(message: Message, form: Form) -> dict[str, Any]:
-    """Return a valid message as builtin types."""
+    """Convert a valid message to builtin types."""
     return {
         field.name: plain_value(field.type, getattr(message, field.name), form)
         for field in message.__ros_fields__
@@ -192,7 +192,7 @@ def plain(message: Message, form: Form) -> dict[str, Any]:
 
 
 def plain_value(type_: FieldType, value: Any, form: Form) -> object:
-    """Return the valid value of a field as builtin types."""
+    """Convert the valid value of a field to builtin types."""
     convert = form.converter(type_)
     if type_.container == "single":
         return value if convert is None else convert(value[0] if type_.kind == "byte" else value)
@@ -226,7 +226,7 @@ def described(type_: FieldType, value: Any) -> str:
 
 
 def message_from(cls: type[Message], data: object, path: str) -> Message:
-    """Return a message made from builtin types; `path` is its place, for error texts."""
+    """Create a message from builtin types; `path` locates it in error texts."""
     if not isinstance(data, Mapping):
         raise MessageError(path, f"{given(data)}, needs a mapping from field names to values")
     types = {field.name: field.type for field in cls.__ros_fields__}
@@ -266,8 +266,7 @@ def value_from(type_: FieldType, value: object, path: str) -> object:
 def scalar_from(type_: FieldType, value: object, path: str) -> object:
     """Return a single value.
 
-    For a `byte`, a number or a string of one character is accepted, and for special floats a
-    string.
+    A `byte` may be a number or a string of one character, and special floats a string.
     """
     if type_.kind == "byte" and isinstance(value, str) and len(value) == 1 and ord(value) < 256:
         return bytes((ord(value),))

@@ -1,4 +1,4 @@
-"""The approximate memory of a message, which a queue of messages adds up."""
+"""The approximate memory of messages, for the byte limits of queues."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
 __all__ = ["memory_size"]
 
 OBJECT_BYTES: Final = 100
-"""About what an object of Python takes, a message as well as a text or an array."""
+"""The approximate size of a Python object: a message, a string or an array."""
 
 NUMBER_BYTES: Final = 8
-"""The most that a number takes in an array."""
+"""The maximum size of a number in an array."""
 
 Size: TypeAlias = Callable[[Any], int]
 
 
 @cache
 def memory_size(cls: Any) -> Size | None:
-    """Return what tells about how many bytes a message of a class takes.
+    """Return a function that estimates how many bytes a message of a class takes.
 
-    None if all take about the same, since no field of theirs has a variable size. What is returned
-    looks at lengths only, except into sequences of messages whose own size varies.
+    Returns None if all take about the same, as no field has a variable size. The function looks
+    only at lengths, except inside sequences of messages whose own size varies.
     """
     parts = [part for field in fields(cls) if (part := size_of_field(field.name, field.type))]
     if not parts:
@@ -41,7 +41,7 @@ def memory_size(cls: Any) -> Size | None:
 
 
 def size_of_field(name: str, kind: FieldType) -> Size | None:
-    """Return what tells the variable size of a field; None if it has none."""
+    """Return a function for the variable size of a field; None if it has a fixed size."""
     value = attrgetter(name)
     if kind.container == "single":
         if kind.nested is None:
@@ -62,7 +62,7 @@ def size_of_field(name: str, kind: FieldType) -> Size | None:
 
 @cache
 def fixed_size(cls: Any) -> int:
-    """Return about what a message takes without what varies."""
+    """Estimate the fixed part of a message's size."""
     return OBJECT_BYTES + sum(
         max(field.type.size if field.type.container == "array" else 1, 1)
         * (NUMBER_BYTES if field.type.nested is None else fixed_size(field.type.nested))

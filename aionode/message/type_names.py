@@ -1,4 +1,4 @@
-"""The ROS names of types, and the classes that a program has defined under them."""
+"""The ROS names of types, and the program's classes for them."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ TYPE_NAME: Final = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Z][A-Za-z0-9
 TYPES_BY_NAME: Final[WeakValueDictionary[str, type[Any]]] = WeakValueDictionary()
 """The newest message, service or action class of each ROS name that this program has defined.
 
-Classes made from the descriptions of other nodes are not among them: a peer must not decide what a
+Classes made from descriptions sent by other nodes are not included: a peer must not decide what a
 name means here.
 """
 

@@ -1,8 +1,8 @@
 """Validates, creates, compares and prints the values of message fields.
 
-`fit` accepts every value that a user may reasonably assign to a field and returns it in the form
-that subscribers receive; a value already in that form is returned without a copy. Nested messages
-are handled by `aionode.message._snapshot`.
+`fit` accepts every value that a user may reasonably assign to a field, and returns it in the form
+that subscribers receive; a value already in that form is not copied. Nested messages are handled by
+`aionode.message._snapshot`.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ __all__ = [
 
 
 def fit(type_: FieldType, value: object, path: str) -> Any:
-    """Return `value` in the form in which subscribers receive a field of this type.
+    """Convert `value` to the form in which subscribers receive a field of this type.
 
     Raises:
         MessageError: It does not fit; the error names `path`, with an index for an element.
@@ -57,7 +57,7 @@ def fit(type_: FieldType, value: object, path: str) -> Any:
 
 
 def fit_element(type_: FieldType, value: object, path: str) -> Any:
-    """Return a single value, or one element of a sequence, validated as by `fit`."""
+    """Validate a single value, or one element of a sequence, like `fit`."""
     return ELEMENTS[type_.kind](type_, value, path)
 
 
@@ -67,18 +67,18 @@ HUGE_BITS = 14_000
 
 
 def given(value: object) -> str:
-    """Return a value and its type for the text of an error."""
+    """Format a value and its type for an error text."""
     return f"{short(value)} ({type(value).__name__})"
 
 
 def short(value: object) -> str:
-    """Return a value, shortened, for the text of an error."""
+    """Format a value, shortened, for an error text."""
     # Python refuses to convert ints of more than 4300 digits to text.
     if isinstance(value, int) and value.bit_length() > HUGE_BITS:
         return HUGE
     try:
         return reprlib.repr(value)
-    except ValueError:  # such an int inside a list
+    except ValueError:  # such an int is inside a list
         return HUGE
 
 
@@ -97,7 +97,7 @@ def fit_int(type_: FieldType, value: object, path: str) -> int:
 
 
 def fit_float(type_: FieldType, value: object, path: str) -> float:
-    """Return a float; for a float32 it may be rounded, but must not overflow to infinity."""
+    """Return a float; a float32 may be rounded, but must not overflow to infinity."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise MessageError(path, f"{given(value)}, needs a float")
     try:
@@ -111,7 +111,7 @@ def fit_float(type_: FieldType, value: object, path: str) -> float:
 
 
 def fit_bool(_: FieldType, value: object, path: str) -> bool:
-    """Return a bool; one of numpy is converted."""
+    """Return a bool; a numpy bool is converted."""
     if isinstance(value, bool):
         return value
     kind = type(value)
@@ -242,7 +242,7 @@ def bytes_view(value: object, path: str) -> bytes | memoryview:
 
 
 def fit_array(type_: FieldType, value: object, path: str) -> npt.NDArray[Any]:
-    """Return a one-dimensional array of the field's dtype; a newly created one is read-only."""
+    """Return a one-dimensional array of the field's dtype; if newly created, it is read-only."""
     import numpy as np
 
     dtype = dtype_of(type_.kind)
@@ -290,7 +290,7 @@ def array_of_items(
         try:
             return frozen(np.array(items, dtype))
         except OverflowError:
-            pass  # the invalid element is found below
+            pass  # the invalid element is named below
     fitted = [fit_element(type_, item, f"{path}[{i}]") for i, item in enumerate(items)]
     return frozen(np.array(fitted, dtype))
 
@@ -352,7 +352,7 @@ def plain_default(type_: FieldType, given_: object, path: str) -> object:
 
 
 def default_value(type_: FieldType, default: object) -> Any:
-    """Return the default in the form that msgspec expects, a factory for mutable values."""
+    """Return the default in the form that msgspec expects: a factory for mutable values."""
     if type_.form == "value" and type_.nested is None:
         return zero(type_.kind) if default is None else default
     if type_.form == "bytes":
@@ -403,7 +403,7 @@ def zeros(dtype: str, size: int) -> npt.NDArray[Any]:
 
 @cache
 def empty(dtype: str) -> npt.NDArray[Any]:
-    """Return the empty array of a dtype; it can be shared, as it has no elements."""
+    """Return the empty array of a dtype, which can be shared as it has no elements."""
     import numpy as np
 
     array = np.empty(0, dtype)
@@ -447,7 +447,7 @@ def same_numbers(value: Any, other: Any) -> bool:
 
 
 def shown(type_: FieldType, value: Any) -> str:
-    """Return a value as rclpy prints it: sequences of numbers as lists, arrays as in numpy."""
+    """Format a value like rclpy: sequences of numbers as lists, arrays like numpy."""
     if type_.container == "array" or type_.form in {"value", "list"}:
         return repr(value)
     if len(value) > SHOWN_ELEMENTS:
