@@ -31,10 +31,10 @@ from aionode.message import (
 __all__ = ["Builder", "define"]
 
 DEEPEST = 50
-"""Largest depth of types in types."""
+"""Maximum nesting depth of types."""
 
 MOST_MEMBERS = 10_000
-"""Most fields and constants of a type, with those of all that it uses."""
+"""Maximum fields and constants of a type, including those of all types it uses."""
 
 BASES: dict[str, type[Interface]] = {"msg": Message, "srv": ServiceType, "action": ActionType}
 
@@ -49,7 +49,7 @@ def define(
     encoding: str = "ros2msg",
     recorded: bool = False,
 ) -> type[Any]:
-    r"""Return the class that a definition describes.
+    r"""Create the class that a definition describes.
 
     ::
 
@@ -61,12 +61,12 @@ def define(
         types: Message classes that it may use besides those of aionode.interfaces, by ROS name.
         uses: Definitions of messages that it may use, by ROS name, in place of those of
             aionode.interfaces.
-        reuse: Whether a type of aionode.interfaces that has the same definition is returned, and
-            used, in place of a new one.
+        reuse: Whether to use, instead of a new class, a type of aionode.interfaces with the same
+            definition.
         encoding: The format of the text: ``ros2msg``, or ``ros2idl``, whose other structures may be
-            used, too.
-        recorded: Whether names may be others than ROS allows, as in recordings. A field that has
-            the name of a keyword of Python gets an underscore after it: ``from_``.
+            used too.
+        recorded: Whether to accept names that ROS does not allow, as found in recordings. A field
+            named like a Python keyword gets a trailing underscore: ``from_``.
 
     Raises:
         IdlError: The text is not valid, or uses an unknown type.
@@ -125,7 +125,7 @@ class Builder:
         return self.built[typename]
 
     def existing(self, typename: str, built: type[Interface]) -> type[Interface] | None:
-        """Return the class that is there already and has the same definition."""
+        """Return the existing class that has the same definition."""
         return existing(typename, built)
 
     def make(self, text: InterfaceText) -> type[Interface]:
@@ -212,9 +212,9 @@ def full_name(type_: TypeText, package: str) -> str:
 
 
 def existing(typename: str, built: type[Interface]) -> type[Interface] | None:
-    """Return the class of this name in aionode.interfaces, if its definition is the same.
+    """Return the class of this name in aionode.interfaces if its definition is the same.
 
-    So a workspace with its own std_msgs can be used together with the shipped one.
+    That way a workspace with its own std_msgs can be used together with the shipped one.
     """
     package, kind, name = split_type_name(typename)
     known = types_of(package, kind).get(name)

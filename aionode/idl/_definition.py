@@ -1,4 +1,4 @@
-"""Parsed definitions, before the names of types in them are resolved."""
+"""Parsed definitions, before type names in them are resolved."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ __all__ = [
 ]
 
 RECORDED_TYPE_NAME = re.compile(r"[A-Za-z]\w*/(msg|srv|action)/[A-Za-z]\w*", re.ASCII)
-"""Names in recordings, whose letters ROS 2 allows only in its own spelling."""
+"""Names in recordings, whose spelling ROS 2 would not allow."""
 
 HALVES: dict[str, tuple[str, ...]] = {
     "msg": ("",),
     "srv": ("Request", "Response"),
     "action": ("Goal", "Result", "Feedback"),
 }
-"""The nested messages of each kind of interface; the message of a ``.msg`` has no own name."""
+"""The nested messages of each kind of interface; that of a ``.msg`` has no name of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class InterfaceText:
 
 
 class LineError(Exception):
-    """A definition cannot be parsed: what is wrong, and at which offset in the line or text."""
+    """A definition cannot be parsed; has the problem and its offset in the line or text."""
 
     def __init__(self, offset: int, problem: str) -> None:
         self.offset = offset
@@ -114,7 +114,7 @@ class LineError(Exception):
 
 
 def split_type_name(typename: str) -> tuple[str, str, str]:
-    """Return package, kind (``msg``, ``srv`` or ``action``) and name of an interface.
+    """Split an interface name into package, kind (``msg``, ``srv`` or ``action``) and name.
 
     Raises:
         TypeError: It is not a valid name of an interface.

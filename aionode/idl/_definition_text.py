@@ -1,4 +1,4 @@
-"""Writes the definition of a class as text."""
+"""Formats the definition of a class as text."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from aionode.message import (
 __all__ = ["definition_text"]
 
 WIDTH = 96
-"""The longest line of a comment, in characters."""
+"""Maximum length of a comment line, in characters."""
 
 STAND_IN = re.compile(
     r"The (request|response|goal|result|feedback) of \w+\.|\S+, as (in \S+|a node describes it)\."
@@ -36,7 +36,7 @@ STAND_IN = re.compile(
 """The docstring of classes whose definition has no comment."""
 
 OWN_COMMENTS = "# Comments: aionode's own; a sourced ROS 2 has those of its files.\n\n"
-"""Above comments that `ros2 interface show` does not print."""
+"""The header above comments that `ros2 interface show` does not print."""
 
 CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]")
 
@@ -55,11 +55,11 @@ def definition_text(
 
     Args:
         cls: A message, service or action class.
-        nested: Show the fields of nested messages below each field, indented by tabs, as
-            ``ros2 interface show`` does. Such text is for reading only and cannot be parsed.
-        comments: Which comments to show: those of the file of the sourced ROS 2 that defines the
-            type, or else what the class says of itself and its fields. A line at the top tells
-            where those of a shipped type are from.
+        nested: Show the fields of nested messages below each field, indented by tabs, like ``ros2
+            interface show``. Such text is for reading only and cannot be parsed.
+        comments: Which comments to show: those in the sourced ROS 2's file of the type, or else
+            those from the class's docstring. A line at the top says where those of a shipped type
+            are from.
 
     Raises:
         TypeError: `cls` is not such a class, or has no ROS name.
@@ -103,9 +103,9 @@ def lines(
 
 
 def summary(cls: type[Message | ServiceType | ActionType], *, alone: bool = False) -> Iterator[str]:
-    """Yield what a class says of itself, and an empty line unless it stands `alone`.
+    """Yield the docstring of a class, followed by an empty line unless it is `alone`.
 
-    Standard types have their units there: "A point in space: coordinates in m."
+    Standard types state their units there: "A point in space: coordinates in m."
     """
     text = documentation(cls)[0]
     if text and STAND_IN.fullmatch(text) is None:
@@ -115,7 +115,7 @@ def summary(cls: type[Message | ServiceType | ActionType], *, alone: bool = Fals
 
 
 def comment(text: str) -> Iterator[str]:
-    """Yield a text of a docstring as lines of a comment."""
+    """Yield docstring text as comment lines."""
     for line in textwrap.wrap(text.replace("``", "`"), WIDTH):
         yield f"# {line}"
 
@@ -137,10 +137,10 @@ def nested_lines(field: Field, comments: Comments) -> Iterator[str]:
 
 
 def source_parts(cls: type[Message | ServiceType | ActionType]) -> list[list[str]] | None:
-    """Return the lines of the file that defines a class, in its parts; None without."""
+    """Return the lines of the file that defines a class, split into parts; None without a file."""
     typename = type_name(cls)
     file = NAMED.file_of(typename, cls) or installed_file(typename)
-    if file is None or file.suffix == ".idl":  # which does not look like this text
+    if file is None or file.suffix == ".idl":  # which has another format
         return None
     parts: list[list[str]] = [[]]
     for line in read(file).splitlines():
@@ -154,7 +154,7 @@ def source_parts(cls: type[Message | ServiceType | ActionType]) -> list[list[str
 def source_lines(
     part: list[str], cls: type[Message], *, nested: bool, comments: Comments
 ) -> Iterator[str]:
-    """Yield the lines of a file, and after each field those of its nested message."""
+    """Yield the lines of a file, each field followed by those of its nested message."""
     by_name = {field.name: field for field in fields(cls)}
     for line in part:
         yield line

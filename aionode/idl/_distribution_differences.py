@@ -1,4 +1,4 @@
-"""The interfaces with other fields in other distributions of ROS 2, known without a sourced ROS 2.
+"""The interfaces that differ between ROS 2 distributions, known without a sourced ROS 2.
 
 `_installed.py` uses them for the distribution that ROS_DISTRO names.
 """
@@ -13,19 +13,19 @@ __all__ = ["differences"]
 
 FOLDER = Path(__file__).with_name("distributions")
 SAME = {"rolling": "lyrical"}
-"""Distributions whose interfaces are those of another one."""
+"""Distributions that have the same interfaces as another one."""
 
 HEAD = "== "
-"""Begins the line before each definition, which ends with the name of the type."""
+"""The start of the line before each definition, which ends with the name of the type."""
 
 
 @cache
 def differences(distribution: str) -> Mapping[str, str]:
-    """Return what differs from the shipped types in a distribution: definitions by type name.
+    """Return a distribution's definitions that differ from the shipped types, by type name.
 
-    They are those of types with other fields, of types that contain one of those, and of types that
-    only this distribution has. There are none for the distribution of the shipped types, and for
-    one that is not known.
+    They are of types with other fields, types that contain one of those, and types that only this
+    distribution has. There are none for the distribution of the shipped types, nor for an unknown
+    one.
     """
     file = FOLDER / f"{SAME.get(distribution, distribution)}.txt"
     if not distribution.isidentifier() or not file.is_file():

@@ -69,17 +69,17 @@ class Interfaces(Mapping[str, type[Any]]):
 
 
 def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
-    """Return the interfaces of a folder as classes, without a build step.
+    """Load the interfaces of a folder as classes, without a build step.
 
     The folder is a package with ``msg``, ``srv`` or ``action`` folders, or contains packages at any
-    depth, like a workspace or ``share``. Types that they use are taken from the folder first, then
-    from aionode.interfaces. Afterwards new packages can be imported as
+    depth, like a workspace or ``share``. Types that they use are looked up in the folder first,
+    then in aionode.interfaces. Afterwards new packages can be imported as
     ``aionode.interfaces.my_msgs.msg``, and `aionode.interfaces.get_interface` finds them.
 
     Args:
         path: The folder.
-        reuse: Return the existing class for a type with the same definition, so that its messages
-            are accepted wherever either is; otherwise every class is new.
+        reuse: Return the existing class for a type with the same definition, so that either's
+            messages are accepted everywhere; otherwise every class is new.
 
     Raises:
         IdlError: A definition is not valid; the error names file, line and column.
@@ -94,7 +94,7 @@ def load_interfaces(path: str | Path, *, reuse: bool = True) -> Interfaces:
 
 
 class FileTexts(Mapping[str, InterfaceText]):
-    """Definitions by the names of their types, each parsed when it is first asked for."""
+    """Definitions by type name, each parsed on first use."""
 
     def __init__(self, files: Mapping[str, Path]) -> None:
         self._files = files
@@ -118,7 +118,7 @@ class FileTexts(Mapping[str, InterfaceText]):
 
 
 def read_folder(path: str | Path) -> Mapping[str, InterfaceText]:
-    """Return the parsed definitions of a folder, by type name.
+    """Parse the definitions of a folder; return them by type name.
 
     Raises:
         IdlError: A definition is not valid, or two definitions of the same type differ.
@@ -129,7 +129,7 @@ def read_folder(path: str | Path) -> Mapping[str, InterfaceText]:
 
 
 def definition_files(path: str | Path) -> dict[str, Path]:
-    """Return the files with the definitions of a folder, by type name.
+    """Find the definition files of a folder; return them by type name.
 
     Raises:
         IdlError: A name is not valid, or two definitions of the same type differ.
@@ -139,7 +139,7 @@ def definition_files(path: str | Path) -> dict[str, Path]:
     if not root.is_dir():
         raise FileNotFoundError(f"{path}: no such folder")
     files: dict[str, Path] = {}
-    # One that is generated from another file of the same type comes after it.
+    # A file generated from another one of the same type comes after it.
     for kind, ending in [*((kind, kind) for kind in HALVES), *((kind, "idl") for kind in HALVES)]:
         for file in sorted(root.rglob(f"*.{ending}")):
             if file.parent.name != kind:
@@ -151,16 +151,16 @@ def definition_files(path: str | Path) -> dict[str, Path]:
 
 def expect_same(typename: str, first: Path, file: Path) -> None:
     """Raise `IdlError` if two files define one type differently."""
-    # A workspace may have its source and an installed copy.
+    # A workspace may have both the source and an installed copy.
     if first is not file and first.suffix == file.suffix and read(first) != read(file):
         raise IdlError(str(file), 0, 0, f"{typename} is defined differently in {first}")
 
 
 def read(file: Path) -> str:
-    """Return the text of a file.
+    """Read the text of a file.
 
     Raises:
-        IdlError: It is not UTF-8, too large, or no file.
+        IdlError: It is not UTF-8, too large, or not a file.
     """
     try:
         data = read_file(file)
@@ -176,7 +176,7 @@ def read(file: Path) -> str:
 
 
 def package_of(file: Path) -> str:
-    """Return the package that a file belongs to: from package.xml if it exists, else its folder."""
+    """Return the package of a file: from package.xml if it exists, else from its folder."""
     folder = file.parent.parent
     manifest = folder / "package.xml"
     name = folder.name
@@ -190,7 +190,7 @@ def package_of(file: Path) -> str:
 
 
 def checked_stem(file: Path) -> str:
-    """Return the type name that a file name stands for."""
+    """Return the type name in a file name."""
     if not TYPE_NAME.fullmatch(file.stem):
         problem = f"{file.stem!r} is not a valid type name; use letters and digits, a capital first"
         raise IdlError(str(file), 0, 0, problem)
@@ -198,7 +198,7 @@ def checked_stem(file: Path) -> str:
 
 
 def make_importable(package: str, loaded: Interfaces) -> None:
-    """Make a loaded package importable, unless aionode ships one of that name and release."""
+    """Make a loaded package importable, unless aionode ships that package in that release."""
     name = f"aionode.interfaces.{package}"
     if package in aionode.interfaces.shipped_packages() - aionode.interfaces.VERSIONED:
         return

@@ -1,7 +1,7 @@
 """Generates typed Python modules from interfaces.
 
-Each package becomes a folder with ``msg.py``, ``srv.py`` and ``action.py``, formatted as ruff does.
-Docstrings are the comments at the top of the definitions; where there are none, the docstrings of
+Each package becomes a folder with ``msg.py``, ``srv.py`` and ``action.py``, in ruff's format.
+Docstrings are the comments at the top of the definitions; where there are none, docstrings of
 existing modules are kept, so they can be edited.
 """
 
@@ -49,19 +49,19 @@ Generated from its definitions by `aionode interface generate`, which keeps the 
 
 
 def generate(path: str | Path, out_dir: str | Path) -> list[Path]:
-    """Write the interfaces of a folder as Python modules and return the files written.
+    """Write the interfaces of a folder as Python modules; return the written files.
 
     A package ``my_msgs`` becomes ``my_msgs/msg.py`` and so on in `out_dir`. If that folder is a
     Python package (has an ``__init__.py``), the modules import each other as parts of it; otherwise
-    as top-level packages, with `out_dir` on the path. Types of other packages are imported from
-    aionode.interfaces.
+    as top-level packages, which requires `out_dir` on the path. Types of other packages are
+    imported from aionode.interfaces.
 
     Args:
         path: A package with ``msg``, ``srv`` or ``action`` folders, or a folder of packages.
         out_dir: Folder to write to; missing folders are created.
 
     Raises:
-        IdlError: A definition is not valid; nothing is written then.
+        IdlError: A definition is not valid; nothing is written in that case.
         FileNotFoundError: The folder `path` does not exist.
     """
     texts = read_folder(path)
@@ -70,7 +70,7 @@ def generate(path: str | Path, out_dir: str | Path) -> list[Path]:
     groups: dict[tuple[str, str], list[InterfaceText]] = {}
     for typename in sorted(texts):
         builder.build(typename)
-    for typename in builder.built:  # each after those it uses
+    for typename in builder.built:  # each after the types it uses
         package, kind, _ = split_type_name(typename)
         groups.setdefault((package, kind), []).append(texts[typename])
     module_of_interfaces = {
@@ -260,7 +260,7 @@ class Module:
         return self.classes[typename]
 
     def helper(self, name: str) -> str:
-        """Return the local name of a name of aionode.message."""
+        """Import a name from aionode.message; return its local name."""
         return self.outside("aionode.message", name)
 
     def builtin(self, name: str) -> str:
@@ -268,7 +268,7 @@ class Module:
         return self.outside("builtins", name) if name in self.taken else name
 
     def outside(self, module: str, name: str) -> str:
-        """Return the local name of an imported name, which ends in ``_`` if the name is taken."""
+        """Import a name; return its local name, which ends in ``_`` if the name is taken."""
         here = f"{name}_" if name in self.taken else name
         self.need(module, name, here)
         return here

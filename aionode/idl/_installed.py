@@ -1,9 +1,9 @@
-"""Interfaces of the ROS 2 that is sourced: the definitions under AMENT_PREFIX_PATH.
+"""Interfaces of the sourced ROS 2: the definitions under AMENT_PREFIX_PATH.
 
-They are read when a package is first imported, and not before. A package that aionode does not ship
-comes from there as a whole. Of a shipped one, the types that are defined differently there do, so
-that their type hashes are those of the nodes of that system. Without a sourced ROS 2, ROS_DISTRO
-names the distribution whose differences `_distribution_differences.py` knows.
+They are read when a package is first imported. A package that aionode does not ship comes from
+there as a whole. Of a shipped package only the types that are defined differently there do, so that
+type hashes match the nodes of that system. Without a sourced ROS 2, ROS_DISTRO names the
+distribution, whose differences `_distribution_differences.py` knows.
 
 `aionode.interfaces` calls this module while it imports a package.
 """
@@ -34,7 +34,7 @@ __all__ = [
 
 
 def installed_file(typename: str) -> Path | None:
-    """Return the file with the definition of a type in the sourced ROS 2, if it has one."""
+    """Return the sourced ROS 2's definition file of a type, if it has one."""
     package, kind, name = split_type_name(typename)
     for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
         file = Path(prefix, "share", package, kind, f"{name}.{kind}")
@@ -69,7 +69,7 @@ def installed_names(package: str, kind: str) -> Iterator[str]:
 
 
 class InstalledTexts(Mapping[str, InterfaceText]):
-    """The definitions of one package, each parsed when it is first asked for."""
+    """The definitions of one package, each parsed on first use."""
 
     def __init__(self, package: str, kind: str) -> None:
         self._names = dict.fromkeys(installed_names(package, kind))
@@ -92,7 +92,7 @@ class InstalledTexts(Mapping[str, InterfaceText]):
 
 
 def packages() -> frozenset[str]:
-    """Return the names of the packages with interfaces of the sourced ROS 2."""
+    """Return the names of the sourced ROS 2's packages with interfaces."""
     return frozenset(
         folder.parent.name
         for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
@@ -104,20 +104,20 @@ def packages() -> frozenset[str]:
 
 
 def has_package(package: str) -> bool:
-    """Whether the sourced ROS 2 has a package with interfaces."""
+    """Return whether the sourced ROS 2 has this package, with interfaces."""
     return any(has_types(package, kind) for kind in HALVES)
 
 
 def has_types(package: str, kind: str) -> bool:
-    """Whether the sourced ROS 2 has types of one kind in a package."""
+    """Return whether the sourced ROS 2 has types of one kind in a package."""
     return any(True for _ in installed_names(package, kind))
 
 
 def replaced_types(package: str, kind: str, shipped: Mapping[str, Any]) -> dict[str, type[Any]]:
-    """Return the installed classes that differ from the shipped ones or are not shipped, by name.
+    """Return, by name, the installed classes that differ from the shipped ones or are not shipped.
 
-    A definition that is not valid is left out with a warning: one broken file must not keep
-    a program from the rest of its package.
+    An invalid definition is left out with a warning, so that one broken file does not make the rest
+    of its package unusable.
     """
     builder = Builder(texts := InstalledTexts(package, kind), reuse=True)
     classes: dict[str, type[Any]] = {}

@@ -1,7 +1,7 @@
-"""Parses definitions in OMG's IDL, as ``.idl`` files and recordings have them.
+"""Parses definitions in OMG's IDL, as found in ``.idl`` files and recordings.
 
-Of the language there is what rosidl takes: modules, structures, constants, ``typedef`` and
-annotations. Directives such as ``#include`` are passed over: types are found by their names.
+The language is the subset that rosidl accepts: modules, structures, constants, ``typedef`` and
+annotations. Directives such as ``#include`` are skipped, as types are found by name.
 """
 
 from __future__ import annotations
@@ -51,22 +51,22 @@ KINDS: Final = {
     "unsigned long long": "uint64",
     **{f"{sign}int{bits}": f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)},
 }
-"""The types of ROS by those of IDL."""
+"""The ROS types by IDL type."""
 
 PLACEHOLDER: Final = "structure_needs_at_least_one_member"
-"""The member of a structure without any, which IDL does not allow."""
+"""The member of an empty structure, which IDL does not allow."""
 
 CONSTANTS: Final = "_Constants"
-"""How the module with the constants of a structure is named after it."""
+"""The suffix of the module that holds the constants of a structure."""
 
 DEEPEST: Final = 10
-"""Modules in modules: two are usual."""
+"""Maximum nesting of modules; two levels are usual."""
 
 LONGEST_NUMBER: Final = 400
 
 
 class Token(NamedTuple):
-    """A word of the text, and where it stands."""
+    """A token of the text, and its position."""
 
     kind: str
     text: str
@@ -81,7 +81,7 @@ class Structure(NamedTuple):
 
 
 def parse_idl(typename: str, text: str, file: str = "") -> InterfaceText:
-    """Return the parsed definition of one type; other types in the text are left out.
+    """Parse the definition of one type; other types in the text are ignored.
 
     Args:
         typename: The type that it defines, such as ``std_msgs/msg/String``.
@@ -105,12 +105,12 @@ def parse_idl(typename: str, text: str, file: str = "") -> InterfaceText:
 
 
 def messages_in(text: str, file: str, *, recorded: bool) -> dict[str, MessageText]:
-    """Return the structures in a text, by the names that messages have.
+    """Parse all structures in a text; return them by message name.
 
     Args:
         text: The text of one or more ``.idl`` files.
         file: Where it comes from, for errors.
-        recorded: Whether names may be others than ROS allows.
+        recorded: Whether to accept names that ROS does not allow.
 
     Raises:
         IdlError: The text is not valid; the error names line and column.
@@ -134,13 +134,13 @@ def messages_in(text: str, file: str, *, recorded: bool) -> dict[str, MessageTex
 
 
 def named(scope: tuple[str, ...]) -> str:
-    """Return the name of the message that a structure is; parts of services are messages, too."""
+    """Return the message name of a structure; parts of services are messages, too."""
     package, *kind, name = ("", *scope)[-3:]
     return f"{package}/msg/{name if kind == ['msg'] else name.replace('_', '')}"
 
 
 class Reader:
-    """Reads the words of a text one after another.
+    """Reads the tokens of a text one after another.
 
     Attributes:
         structures: The structures by their scoped names.
@@ -176,7 +176,7 @@ class Reader:
         return taken
 
     def _has(self, text: str) -> bool:
-        """Take the next word if it is this one."""
+        """Consume the next token if it is this one."""
         if self._next.text != text or self._next.kind == "text":
             return False
         self._take()
@@ -193,7 +193,7 @@ class Reader:
         return self._take()
 
     def definitions(self, scope: tuple[str, ...]) -> None:
-        """Read what a module has, up to its end."""
+        """Read the contents of a module, up to its end."""
         if len(scope) > DEEPEST:
             raise LineError(self._next.at, f"modules are nested deeper than {DEEPEST}")
         while self._next.kind != "end" and self._next.text != "}":
@@ -241,7 +241,7 @@ class Reader:
         return self._next.text in {"TRUE", "FALSE"}
 
     def _value(self, scope: tuple[str, ...]) -> object:
-        """Read a value: a number, texts that stand side by side, or the name of a constant."""
+        """Read a value: a number, adjacent string literals, or the name of a constant."""
         sign = -1 if self._has("-") else 1
         if sign == 1:
             self._has("+")
@@ -267,7 +267,7 @@ class Reader:
     def _structure(self, scope: tuple[str, ...], comment: str) -> None:
         name = self._name()
         if self._next.text == ";":
-            return  # it is announced only
+            return  # only a forward declaration
         self._expect("{")
         members: list[MemberText] = []
         seen: set[str] = set()
@@ -294,7 +294,7 @@ class Reader:
     def _declarators(
         self, type_: TypeText, scope: tuple[str, ...]
     ) -> Iterator[tuple[int, str, TypeText]]:
-        """Read names, each with where it stands and with the type that its brackets make of it."""
+        """Read declarators: names with their positions and the types that their brackets make."""
         while True:
             word = self._name()
             its_type = type_
@@ -324,7 +324,7 @@ class Reader:
     def _aliases(
         self, type_: TypeText, scope: tuple[str, ...]
     ) -> Iterator[tuple[int, str, TypeText]]:
-        """Read names of types, which may have any letters."""
+        """Read names of types, which may have any spelling."""
         recorded, self._recorded = self._recorded, True
         try:
             yield from self._declarators(type_, scope)
@@ -372,7 +372,7 @@ class Reader:
                 return known
         if len(parts) == 1:
             parts = (*scope, *parts)
-        if len(parts) < 2 or " " in text:  # a package and a name
+        if len(parts) < 2 or " " in text:  # it has no package and name
             raise LineError(word.at, f"{text!r} is no type that is known here")
         package, _, name = named(parts).split("/")
         return TypeText(f"{package}/{name}")
@@ -398,7 +398,7 @@ def split(text: str) -> tuple[str, ...]:
 
 
 def number(word: Token) -> int | float:
-    """Return the number that a word is."""
+    """Parse a number."""
     text = word.text
     if len(text) > LONGEST_NUMBER:
         raise LineError(word.at, f"a number of {len(text)} characters")
@@ -417,13 +417,13 @@ def text_in(word: Token) -> str:
 
 
 def comment_in(notes: dict[str, Any]) -> str:
-    """Return the comment that annotations are."""
+    """Return the comment in annotations."""
     comment = notes.get("verbatim.text", "")
     return comment.strip() if isinstance(comment, str) else ""
 
 
 def default_in(type_: TypeText, notes: dict[str, Any], at: int) -> object:
-    """Return the default that annotations give, or None."""
+    """Return the default in annotations, or None."""
     value = notes.get("default.value", notes.get("default"))
     if value is None:
         return None
@@ -437,7 +437,7 @@ def default_in(type_: TypeText, notes: dict[str, Any], at: int) -> object:
 
 
 def checked_value(type_: TypeText, value: object, at: int) -> object:
-    """Return a value as its type has it; raise `LineError` if it does not fit."""
+    """Convert a value to its type; raise `LineError` if it does not fit."""
     if type_.name not in PRIMITIVES:
         raise LineError(at, f"{type_.name} has no values that could be written here")
     return checked(type_, value, at)

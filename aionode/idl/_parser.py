@@ -1,7 +1,7 @@
 """Parses the text of ``.msg``, ``.srv`` and ``.action`` files.
 
-Each line has one member: ``type name``, ``type name default`` or ``type NAME=value``.
-``#`` begins a comment, ``---`` separates the messages of services and actions.
+Each line has one member: ``type name``, ``type name default`` or ``type NAME=value``. ``#`` starts
+a comment, ``---`` separates the messages of services and actions.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ BUILTINS = {
     "time": "builtin_interfaces/Time",
     "duration": "builtin_interfaces/Duration",
 }
-"""Types of ROS 1 without a package, and those of ROS 2."""
+"""ROS 1 types without a package, and their ROS 2 counterparts."""
 
 STRINGS = frozenset({"string", "wstring"})
 
@@ -45,7 +45,7 @@ MESSAGE_NAME = re.compile(r"(?:[a-z][a-z0-9_]*/(?:msg/)?)?[A-Z][A-Za-z0-9]*")
 FIELD_NAME = re.compile(r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*")
 RECORDED_TYPE = re.compile(r"(?:[a-zA-Z]\w*/(?:msg/)?)?[A-Za-z]\w*", re.ASCII)
 RECORDED_NAME = re.compile(r"[A-Za-z]\w*", re.ASCII)
-"""Types and names in recordings: ROS 1 allowed more, and so does rosidl when it is asked to."""
+"""Types and names in recordings: ROS 1 allowed more, as does rosidl on request."""
 
 CONSTANT_NAME = re.compile(r"[A-Z][A-Z0-9]*(?:_[A-Z0-9]+)*")
 SEPARATOR = re.compile(r"---\s*(?:#.*)?")
@@ -66,27 +66,27 @@ ESCAPED = {
 
 
 MOST_ELEMENTS = 2**32 - 1
-"""Largest bound of a sequence or string, as its length is encoded in 32 bits."""
+"""Maximum bound of a sequence or string, whose length is encoded in 32 bits."""
 
 LARGEST_TEXT = 1 << 20
-"""Most characters of a definition; the largest action of MoveIt has 100 000, with comments."""
+"""Maximum characters of a definition; MoveIt's largest action has 100 000, with comments."""
 
 MOST_MEMBERS = 2_000
-"""Most fields and constants of one message; the largest of mavros has 200."""
+"""Maximum fields and constants of one message; the largest one of mavros has 200."""
 
 LARGEST_ARRAY = 2**26
-"""Largest number of elements of a fixed-size array, as each new message has all of them."""
+"""Maximum elements of a fixed-size array, as each new message has all of them."""
 
 
 def parse(typename: str, text: str, file: str = "", *, recorded: bool = False) -> InterfaceText:
-    """Return a parsed definition.
+    """Parse a definition.
 
     Args:
         typename: The type that it defines, such as ``std_msgs/msg/String``.
         text: The text of a ``.msg``, ``.srv`` or ``.action`` file, according to the name.
         file: The file that it comes from, for errors; by default the name of the type.
-        recorded: Whether names may be others than ROS allows, as in recordings. A field that has
-            the name of a keyword of Python gets an underscore after it.
+        recorded: Whether to accept names that ROS does not allow, as found in recordings. A field
+            named like a Python keyword gets a trailing underscore.
 
     Raises:
         IdlError: The text is not valid; the error names file, line and column.
@@ -157,7 +157,7 @@ class Part:
 
 
 def member(line: str, number: int, *, recorded: bool) -> MemberText:
-    """Return the member on one line, or raise `LineError`."""
+    """Parse the member on one line; raise `LineError` if it is invalid."""
     start = len(line) - len(line.lstrip())
     match = TYPE.match(line, start)
     if match is None:
@@ -184,7 +184,7 @@ def member(line: str, number: int, *, recorded: bool) -> MemberText:
 
 
 def type_text(match: re.Match[str], *, recorded: bool) -> TypeText:
-    """Return the type at the beginning of a line."""
+    """Parse the type at the beginning of a line."""
     name, at = match["name"], match.start()
     allowed = RECORDED_TYPE if recorded else MESSAGE_NAME
     if name not in PRIMITIVES and name in BUILTINS and not recorded:
@@ -212,7 +212,7 @@ def type_text(match: re.Match[str], *, recorded: bool) -> TypeText:
 
 
 def limit(text: str, at: int, what: str, most: int) -> int:
-    """Return the size or bound in `text`, or raise `LineError`."""
+    """Parse the size or bound in `text`; raise `LineError` if it is invalid."""
     text = text.lstrip("0")
     if not text:
         number = "" if what == "a bound" else "a number of "
@@ -223,7 +223,7 @@ def limit(text: str, at: int, what: str, most: int) -> int:
 
 
 def field_name(name: str, at: int, *, recorded: bool, constant: bool = False) -> str:
-    """Return the name of a field or constant in Python; raise `LineError` if it is none."""
+    """Return the Python name of a field or constant; raise `LineError` if it is invalid."""
     if recorded:
         if not RECORDED_NAME.fullmatch(name):
             raise LineError(at, f"{name!r} is not a name: letters, digits and _")
@@ -241,7 +241,7 @@ def field_name(name: str, at: int, *, recorded: bool, constant: bool = False) ->
 
 
 def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: bool) -> object:
-    """Return the default or the value of the constant at offset `at`, or None."""
+    """Parse the default or the constant's value at offset `at`; None if there is none."""
     if (
         type_.name in STRINGS
         and type_.container == "single"
@@ -266,7 +266,7 @@ def written_value(type_: TypeText, line: str, at: int, name: str, *, constant: b
 
 
 def checked(type_: TypeText, default: object, at: int) -> object:
-    """Return the value converted to the field's type; raise `LineError` if it does not fit."""
+    """Convert a value to the field's type; raise `LineError` if it does not fit."""
     primitive = type_.primitive()
     unit = FieldType("uint8") if type_.name == "byte" else primitive
     try:
@@ -304,7 +304,7 @@ def code_end(text: str) -> int:
 
 
 def literal(type_: TypeText, text: str, at: int) -> object:
-    """Return the value of a literal: a single value, or a list for an array or sequence."""
+    """Parse a literal: a single value, or a list for an array or sequence."""
     if type_.container == "single":
         return single(type_.name, text, at)
     if not text.startswith("[") or not text.endswith("]"):
@@ -313,7 +313,7 @@ def literal(type_: TypeText, text: str, at: int) -> object:
 
 
 def items(text: str, at: int) -> Iterator[tuple[int, str]]:
-    """Yield the offset and the text of each element of a list."""
+    """Yield the offset and text of each element of a list."""
     position = start = 1
     while position < len(text):
         quoted = QUOTED.match(text, position)
@@ -331,7 +331,7 @@ def items(text: str, at: int) -> Iterator[tuple[int, str]]:
 
 
 def single(kind: str, text: str, at: int) -> object:
-    """Return the value of one literal."""
+    """Parse one literal."""
     if kind in STRINGS:
         quoted = QUOTED.fullmatch(text)
         if quoted is None and text[0] in "\"'":
@@ -356,7 +356,7 @@ def single(kind: str, text: str, at: int) -> object:
 
 
 def unescaped(text: str) -> str:
-    r"""Return text with escapes such as \n and \" replaced; unknown ones stay as they are."""
+    r"""Replace escapes such as \n and \" in a text; unknown ones are kept."""
 
     def replaced(match: re.Match[str]) -> str:
         code = match[1]

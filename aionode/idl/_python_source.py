@@ -1,4 +1,4 @@
-"""Pieces of Python source, formatted as ruff does."""
+"""Pieces of Python source in ruff's format."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = [
 ]
 
 WIDTH = 100
-"""Largest line length; longer lines are wrapped where possible."""
+"""Maximum line length; longer lines are wrapped where possible."""
 
 
 def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
@@ -34,9 +34,9 @@ def import_lines(module: str, names: Iterable[str]) -> Iterator[str]:
 
 
 def import_order(name: str, *, ignore_case: bool = False) -> tuple[int, list[str | int]]:
-    """Return the key by which isort sorts names: constants, classes, others; 8 before 16.
+    """Return isort's sort key for a name: constants, classes, others; 8 before 16.
 
-    What is imported is sorted without regard to case, what is exported is not.
+    Imports are sorted ignoring case, exports are not.
     """
     kind = 0 if name.isupper() and len(name) > 1 else 1 if name[0].isupper() else 2
     parts = re.findall(r"\d+|\D+", name.lower() if ignore_case else name)
@@ -44,7 +44,7 @@ def import_order(name: str, *, ignore_case: bool = False) -> tuple[int, list[str
 
 
 def wrapped(start: str, items: list[str], end: str, indent: str = "") -> list[str]:
-    """Return a list of items as one line if it fits, else as one line for each item."""
+    """Format a list of items as one line if it fits, else with one line per item."""
     line = f"{start}{', '.join(items)}{end}"
     if len(line) <= WIDTH:
         return [line]
@@ -69,7 +69,7 @@ def doc_lines(text: str, indent: str) -> list[str]:
 
 
 def literal(value: object) -> str:
-    """Return a Python literal as ruff formats it."""
+    """Return a Python literal in ruff's format."""
     if isinstance(value, tuple):
         items = ", ".join(map(literal, value))
         return f"({items},)" if len(value) == 1 else f"({items})"

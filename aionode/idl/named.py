@@ -1,7 +1,7 @@
-"""Interfaces of folders and of the workspace around the program, each read when it is first used.
+"""Interfaces of folders and of the workspace around the program, read on first use.
 
-`aionode.interfaces` asks here for packages that are not shipped, also for programs of rclpy. The
-order of the folders matters for equal names alone: a type may use those of any folder, of
+`aionode.interfaces` looks up packages here that are not shipped, also for programs of rclpy. The
+order of the folders matters only for equal names: a type may use those of any folder, of
 aionode.interfaces and of the sourced ROS 2.
 """
 
@@ -36,21 +36,21 @@ __all__ = [
 ]
 
 VARIABLE = "AIONODE_INTERFACES"
-"""The variable with folders of definitions, in the form of PATH."""
+"""The environment variable with folders of definitions, formatted like PATH."""
 
 VARIABLES = (VARIABLE, "AMENT_PREFIX_PATH")
 
 
 class NamedInterfaces:
-    """The interfaces of several folders, of which nothing is read before it is used."""
+    """The interfaces of several folders, read lazily."""
 
     def __init__(self) -> None:
         self._folders: set[Path] = set()
         self._new: list[Path] = []
-        """The folders that have not been read yet."""
+        """The folders that have not been scanned yet."""
         self._files: dict[str, Path] = {}
         self._builder = NamedBuilder(FileTexts(self._files))
-        self._lock = RLock()  # a builder knows which type is being built; it asks for others
+        self._lock = RLock()  # reentrant: building a type builds others
 
     def add(self, path: str | Path) -> None:
         """Add a folder: a package, or a folder with packages at any depth.
@@ -74,7 +74,7 @@ class NamedInterfaces:
         return {name.partition("/")[0] for name in self._known()}
 
     def file_of(self, typename: str, cls: type[Any]) -> Path | None:
-        """Return the file that a class of this type is made of, if it is one of the folders."""
+        """Return the file that defines a class of this type, if it is in one of the folders."""
         return self._files[typename] if self._builder.built.get(typename) is cls else None
 
     def has(self, typename: str) -> bool:
@@ -82,27 +82,27 @@ class NamedInterfaces:
         return typename in self._known()
 
     def build(self, typename: str) -> type[Interface]:
-        """Return the class of a type, created when it is first asked for.
+        """Return the class of a type, created on first use.
 
         Raises:
-            IdlError: Its definition is not valid, or uses a type that is not known.
+            IdlError: Its definition is not valid, or uses an unknown type.
         """
         self._known()
         with self._lock:
             return self._builder.build(typename)
 
     def _known(self) -> Mapping[str, Path]:
-        """Return the files of all types, after a look at the folders that are new."""
+        """Return the files of all types, after scanning new folders."""
         if self._new:
             with self._lock:
-                while self._new:  # another thread may have done it meanwhile
+                while self._new:  # another thread may have done so meanwhile
                     add_definitions(self._new[0], self._files)
                     del self._new[0]
         return self._files
 
 
 class NamedBuilder(Builder):
-    """Creates the classes of the folders; a shipped type with the same definition stays."""
+    """Creates the classes of the folders; a shipped type with the same definition is kept."""
 
     def __init__(self, texts: Mapping[str, InterfaceText]) -> None:
         super().__init__(texts, reuse=True)
@@ -115,18 +115,18 @@ class NamedBuilder(Builder):
 
 
 def add_definitions(folder: Path, known: dict[str, Path]) -> None:
-    """Add the files of a folder that define types which are not known yet.
+    """Add the files of a folder that define new types.
 
-    A warning names two files that define one type differently, and one whose name is no type's.
+    Warns of two files that define one type differently, and of a file name that is not a type's.
     """
     for file in files_in(folder):
         try:
             typename = f"{package_of(file)}/{file.parent.name}/{checked_stem(file)}"
-        except IdlError as error:  # no program can import it
+        except IdlError as error:  # nothing can import it
             warnings.warn(f"{error}; it is not used", RuntimeWarning, stacklevel=2)
             continue
         first = known.setdefault(typename, file)
-        # A workspace may have its source and an installed copy.
+        # A workspace may have both the source and an installed copy.
         is_another = first is not file and first.suffix == file.suffix
         if is_another and first.read_bytes() != file.read_bytes():
             text = f"{typename} is defined in {first}, and differently in {file}, which is not used"
@@ -134,37 +134,37 @@ def add_definitions(folder: Path, known: dict[str, Path]) -> None:
 
 
 def files_in(folder: Path) -> Iterator[Path]:
-    """Yield the files with definitions below a folder, sorted within each folder."""
+    """Yield the definition files below a folder, sorted within each folder."""
     for place, folders, files in os.walk(folder):
         folders[:] = sorted(name for name in folders if not name.startswith("."))
         kind = Path(place).name
         if kind in HALVES:
-            # What is generated from another file of the same type comes after it.
+            # A file generated from another one of the same type comes after it.
             files.sort(key=lambda name: (name.endswith(".idl"), name))
             named = (Path(place, name) for name in files if is_definition(name, kind))
             yield from (file for file in named if file.is_file())
 
 
 def is_definition(name: str, kind: str) -> bool:
-    """Return whether a file has the ending of a definition, and is no hidden one."""
+    """Return whether a file name has the suffix of a definition and is not hidden."""
     return name.endswith((f".{kind}", ".idl")) and not name.startswith(".")
 
 
 # The folders of this process
 
 NAMED = NamedInterfaces()
-"""The definitions of this process: of folders that were named, and of packages that were found."""
+"""The definitions of this process: from named folders, and from packages that were found."""
 
 SEEN: set[str] = set()
-"""The folders of the variable that have been added."""
+"""The folders of the environment variable that have been added."""
 
 
 def named() -> NamedInterfaces:
-    """Return the definitions of the folders that this process was told of.
+    """Return the definitions from the folders given to this process.
 
-    They are those of ``--interfaces``, of `aionode.rclpy.install` and of AIONODE_INTERFACES, and of
-    the packages of the workspace that have been used. A folder of the variable that is not there is
-    left out with a warning.
+    They are those of ``--interfaces``, `aionode.rclpy.install` and AIONODE_INTERFACES, and of the
+    workspace packages used so far. A folder in the variable that does not exist is left out with a
+    warning.
     """
     for folder in os.environ.get(VARIABLE, "").split(os.pathsep):
         if folder and folder not in SEEN:
@@ -177,7 +177,7 @@ def named() -> NamedInterfaces:
 
 
 def add_workspace(package: str) -> bool:
-    """Add the definitions of a package of the workspace, if it has any that are not there yet."""
+    """Add the definitions of a workspace package, if it has any new ones."""
     source = here().sources().get(package)
     if source is None or not defines(source) or named().names(package):
         return False
@@ -202,7 +202,7 @@ def packages() -> frozenset[str]:
 
 
 def found(fullname: str, package: str, kind: str) -> ModuleSpec | None:
-    """Return how to import a package of ``aionode.interfaces`` that the folders have, if they do.
+    """Return the import spec of a package of ``aionode.interfaces``, if the folders have it.
 
     Args:
         fullname: The name of the module.
@@ -216,7 +216,7 @@ def found(fullname: str, package: str, kind: str) -> ModuleSpec | None:
 
 
 def not_found(fullname: str, package: str) -> ModuleNotFoundError:
-    """Return the error for a package whose definitions are nowhere."""
+    """Return the error for a package whose definitions are not found."""
     workspace = here().workspace
     places = [] if workspace is None else [f"the workspace {workspace}"]
     places += [f"{name}={os.environ[name]}" for name in VARIABLES if os.environ.get(name)]
@@ -229,7 +229,7 @@ def not_found(fullname: str, package: str) -> ModuleNotFoundError:
 
 
 class NamedLoader(Loader):
-    """Loads a module of types; one that is not valid is left out, and an error where it is used."""
+    """Loads a module of types; an invalid type is left out, and raises an error when used."""
 
     def __init__(self, named: NamedInterfaces, names: list[str]) -> None:
         self.named = named
@@ -246,7 +246,7 @@ class NamedLoader(Loader):
 
 
 def refuse(module: ModuleType, name: str, error: IdlError) -> None:
-    """Make a module raise an error where one of its types is asked for."""
+    """Make a module raise an error when one of its types is accessed."""
     failed: dict[str, IdlError] = vars(module).setdefault("__refused__", {})
     failed[name] = error
 
