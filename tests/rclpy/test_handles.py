@@ -191,7 +191,7 @@ def test_the_log_says_once_that_messages_for_a_subscription_are_too_large_togeth
     handle.io.call(lambda: None)
 
     (line,) = [each for each in caplog.messages if "AIONODE_QUEUE_BYTES" in each]
-    assert line.startswith("/heavy: more than 0.0625 MiB wait here")
+    assert line.startswith("/heavy: over 0.0625 MiB wait")
 
 
 @pytest.mark.usefixtures("small_queues")
@@ -209,5 +209,5 @@ def test_the_log_says_once_that_requests_for_a_service_are_too_large_together(
         handle._requests.serve(SimpleNamespace(message=message, drop=drop))
 
     (line,) = [each for each in caplog.messages if "AIONODE_QUEUE_BYTES" in each]
-    assert line.startswith("/heavy: more than 0.0625 MiB wait here")
+    assert line.startswith("/heavy: over 0.0625 MiB wait")
     assert dropped == [0, 1, 2, 3]
