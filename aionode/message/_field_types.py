@@ -176,9 +176,7 @@ def contained(
     """Return the annotation for an array or sequence of `annotation`."""
     element = field_type(annotation)
     if element.container != "single":
-        msg = (
-            f"{element}: ROS has no arrays of arrays; put the inner array into its own message"
-        )
+        msg = f"{element}: ROS has no arrays of arrays; put the inner array into its own message"
         raise TypeError(msg)
     count = 0 if container == "unbounded" else checked_size(element, size)
     return Annotated[

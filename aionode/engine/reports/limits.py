@@ -16,16 +16,16 @@ REJECTED_SEC = 1.0
 
 
 def heavy_text(name: str, limit_bytes: int, what: str) -> str:
-    """Return what the log says of an endpoint for which messages or requests wait.
+    """Return the warning for an endpoint with too many bytes of waiting messages or requests.
 
     Args:
         name: Its topic or service.
         limit_bytes: How many bytes may wait.
-        what: What happens to more.
+        what: What happens to the excess.
     """
     return (
-        f"{name}: more than {limit_bytes / 2**20:.3g} MiB wait here for their callback; what is "
-        f"more is {what}. AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
+        f"{name}: over {limit_bytes / 2**20:.3g} MiB wait for their callback; the excess is "
+        f"{what}. AIONODE_QUEUE_BYTES or Context(queue_bytes=…) sets the limit"
     )
 
 

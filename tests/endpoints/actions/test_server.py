@@ -1056,7 +1056,9 @@ async def test_goals_wait_for_the_node_to_run() -> None:
 @pytest.mark.parametrize("wrong", [String, 3, None])
 async def test_something_else_than_an_action_is_refused(node: Node, wrong: Any) -> None:
     """The text shows what fits."""
-    with pytest.raises(TypeError, match=r"not an action class; use one such as aionode\.interfaces"):
+    with pytest.raises(
+        TypeError, match=r"not an action class; use one such as aionode\.interfaces"
+    ):
         node.create_action_server(wrong, "fibonacci", lambda _goal: None)
 
 

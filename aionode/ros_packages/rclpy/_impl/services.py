@@ -138,7 +138,7 @@ class ServiceHandle(CallHandle[BareEndpoint]):
     def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
         super().__init__(node, srv_type, srv_name, qos_profile, "service")
         limit_bytes = node.bare.context.network.queue_bytes
-        text = heavy_text(self.name, limit_bytes, "refused, without another word")
+        text = heavy_text(self.name, limit_bytes, "refused (logged once)")
         self._requests = Requests(
             self.profile.depth or MOST_REQUESTS,
             limit_bytes,

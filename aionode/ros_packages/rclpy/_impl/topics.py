@@ -279,7 +279,7 @@ class SubscriptionHandle(EndpointHandle[BareEndpoint]):
         self._support = message_support(msg_type)
         self._filter: tuple[str, list[str]] | None = None
         limit_bytes = node.bare.context.network.queue_bytes
-        text = heavy_text(self.name, limit_bytes, "dropped, without another word")
+        text = heavy_text(self.name, limit_bytes, "dropped (logged once)")
         on_heavy = partial(logger.warning, text)
         self.inbox = Inbox(self.profile, limit_bytes, node.messages, node.io.post, on_heavy)
         self.feed = self.inbox.feed
