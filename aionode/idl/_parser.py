@@ -285,7 +285,7 @@ def checked(type_: TypeText, default: object, at: int) -> object:
 
 
 def without_comment(text: str) -> str:
-    """Return text up to the first ``#`` outside quotes."""
+    """Return the text up to the first ``#`` outside quotes."""
     return text[: code_end(text)].strip()
 
 

@@ -82,7 +82,7 @@ class ActionEntity(Entity):
 # Why a goal was rejected or aborted
 
 
-class AbortReason(Exception):  # noqa: N818  # a message to the client, which reads its name
+class AbortReason(Exception):  # noqa: N818  # a message to the client, which checks the name
     """Why a goal was rejected or aborted, as a service error for its client: see `reason_id`."""
 
 

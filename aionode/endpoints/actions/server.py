@@ -104,9 +104,9 @@ class ActionServer(ActionEntity, Generic[GoalT, ResultT, FeedbackT]):
         action_name: Name of the action; relative names are in the node's namespace.
         execute_callback: Called with a `ServerGoalHandle` for each goal; returns the result. Sync
             or async.
-        goal_callback: Called with each goal message, one after the other; returns
-            `GoalResponse.ACCEPT` or ``REJECT``, or raises `GoalRejected` with a reason, which the
-            client gets if it runs aionode. Without it all are accepted. Sync or async.
+        goal_callback: Called with each goal message, one at a time; returns `GoalResponse.ACCEPT`
+            or ``REJECT``, or raises `GoalRejected` with a reason, which the client gets if it runs
+            aionode. Without it all are accepted. Sync or async.
         handle_accepted_callback: Called with the handle of each accepted goal, after the client has
             been told; should call ``goal_handle.execute()``, then or later. Without it, goals are
             executed at once. Sync or async.
