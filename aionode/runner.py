@@ -78,10 +78,10 @@ def run(
             ``asyncio`` or ``uvloop``; without that variable, uvloop's if installed, else asyncio's.
 
     Raises:
-        SystemExit: with status 1 after an error, which was printed on stderr: for one of aionode's
-            own errors the node, entity, file and line; for any other exception its traceback,
-            without the lines inside aionode. ``AIONODE_TRACEBACK=1`` in the environment shows the
-            whole traceback of either.
+        SystemExit: with status 1 after an error, which is printed on stderr: an error of aionode
+            with the node, entity, file and line; any other exception with its traceback, without
+            the lines inside aionode. ``AIONODE_TRACEBACK=1`` in the environment shows the whole
+            traceback of either.
         TypeError: there is nothing to run, or a coroutine was given in place of its function.
         RuntimeError: it was called inside a running event loop.
     """
