@@ -9,6 +9,7 @@ from aionode._packages._executables import Executable
 __all__ = ["program_module", "remark_on", "standard_executables", "standard_plugin"]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
+    "diagnostic_aggregator": {"aggregator_node": "_diagnostics.aggregator_node"},
     "joy": {"joy_node": "_joy.joy_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},

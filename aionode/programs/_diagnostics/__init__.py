@@ -1,0 +1,1 @@
+"""Diagnostics: the states of many parts of a robot, put together."""
