@@ -258,9 +258,10 @@ if TYPE_CHECKING:
             | AbstractSequence[bytes],
         ) -> None: ...
 
+    # One annotation stands for several dtypes, so what reads them may expect any of these.
     Bools: TypeAlias = Numbers[bool, np.bool_]
-    Ints: TypeAlias = Numbers[int, np.integer[Any]]
-    Floats: TypeAlias = Numbers[float, np.floating[Any]]
+    Ints: TypeAlias = Numbers[int, Any]
+    Floats: TypeAlias = Numbers[float, Any]
 else:
     Bools = Bytes = Floats = Ints = Any
 

@@ -74,7 +74,9 @@ class MessageMeta(msgspec.StructMeta):
             namespace["__ros_type__"] = typename if recorded else checked_type_name(typename)
         own: list[Field] = []
         known: list[Constant] = []
-        for key, annotation in annotations_of(namespace, sys._getframe(1)).items():
+        for key, annotation in annotations_of(
+            typename or name, namespace, sys._getframe(1)
+        ).items():
             if get_origin(annotation) is ClassVar:
                 if not key.startswith("__"):
                     (inner,) = get_args(annotation)
@@ -98,8 +100,12 @@ class MessageMeta(msgspec.StructMeta):
         return cls
 
 
-def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:
-    """Return the evaluated annotations of a class that is being created in `frame`."""
+def annotations_of(owner: str, namespace: dict[str, Any], frame: FrameType) -> dict[str, Any]:
+    """Return the evaluated annotations of a class that is being created in `frame`.
+
+    Raises:
+        TypeError: a name in one of them is not known yet.
+    """
     annotations: dict[str, Any] | None = namespace.get("__annotations__")
     if annotations is None and sys.version_info >= (3, 14):  # annotations are evaluated lazily
         import annotationlib
@@ -108,10 +114,19 @@ def annotations_of(namespace: dict[str, Any], frame: FrameType) -> dict[str, Any
         if make is not None:
             form = annotationlib.Format.VALUE
             annotations = annotationlib.call_annotate_function(make, form)
-    return {
-        key: eval(value, frame.f_globals, frame.f_locals) if isinstance(value, str) else value  # noqa: S307 (an annotation in the source of a class)
-        for key, value in (annotations or {}).items()
-    }
+    evaluated = {}
+    for key, value in (annotations or {}).items():
+        try:
+            evaluated[key] = (
+                eval(value, frame.f_globals, frame.f_locals) if isinstance(value, str) else value  # noqa: S307 (an annotation in the source of a class)
+            )
+        except NameError as error:
+            raise TypeError(
+                f"{owner}.{key}: {value}: {error.name!r} is not known while the class is made; a "
+                "message needs the types of its fields at run time, so import it outside of "
+                "`if TYPE_CHECKING:`, and define it above"
+            ) from None
+    return evaluated
 
 
 def checked_field_name(owner: str, name: str) -> None:
@@ -216,6 +231,20 @@ def owned(message: Message, name: str) -> object:
     return bytes(value) if isinstance(value, memoryview) else value
 
 
+# To mypy, the message classes of a `ServiceClass` are functions that return a message.
+MYPY = False
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias, TypeVar
+
+    MessageT = TypeVar("MessageT", bound=Message)
+    if MYPY:
+        MessageClass: TypeAlias = Callable[..., MessageT]
+    else:
+        MessageClass: TypeAlias = type[MessageT]
+
+
 def type_name(cls: Any) -> str:
     """Return the ROS name of a message, service or action class, such as ``std_msgs/msg/String``.
 
@@ -244,7 +273,7 @@ def message_class(cls: Any) -> type[Message]:
     return cls  # type: ignore[return-value] # all classes of this metaclass are messages
 
 
-def fields(cls: type[Message]) -> tuple[Field, ...]:
+def fields(cls: MessageClass[Message]) -> tuple[Field, ...]:
     """Return the fields of a message class, in the order of their encoding.
 
     Raises:
@@ -253,7 +282,7 @@ def fields(cls: type[Message]) -> tuple[Field, ...]:
     return message_class(unserialized(cls)).__ros_fields__
 
 
-def constants(cls: type[Message]) -> tuple[Constant, ...]:
+def constants(cls: MessageClass[Message]) -> tuple[Constant, ...]:
     """Return the constants of a message class, in the order of its definition.
 
     Raises:

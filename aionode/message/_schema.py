@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from pydantic_core import CoreSchema
     from pydantic_core.core_schema import SerializationInfo
 
+    from aionode.message._message import MessageClass
+
 __all__ = [
     "json_schema",
     "pydantic_core_schema",
@@ -38,7 +40,7 @@ NUMBER_OR_WORD: Schema = {
 """A float as `to_json` writes it, with strings for NaN and the infinities."""
 
 
-def json_schema(cls: type[Message]) -> dict[str, Any]:
+def json_schema(cls: MessageClass[Message]) -> dict[str, Any]:
     """Return the JSON Schema of what `from_json` and `from_builtins` accept for a message class.
 
     It is a self-contained ``object`` without references, as tools of language models expect, with
@@ -48,8 +50,7 @@ def json_schema(cls: type[Message]) -> dict[str, Any]:
     Raises:
         TypeError: `cls` is not a message class.
     """
-    message_class(cls)
-    return schema_of(cls, json_schema, NUMBER)
+    return schema_of(message_class(cls), json_schema, NUMBER)
 
 
 def schema_of(
@@ -122,7 +123,7 @@ def with_notes(field: Field, text: str | None, schema: Schema) -> Schema:
     return {**schema, **notes}
 
 
-def documentation(cls: type[object]) -> tuple[str, dict[str, str]]:
+def documentation(cls: object) -> tuple[str, dict[str, str]]:
     """Return the docstring's text, and its description of each field under ``Attributes:``."""
     text, _, attributes = inspect.cleandoc(cls.__doc__ or "").partition("\nAttributes:\n")
     described: dict[str, str] = {}

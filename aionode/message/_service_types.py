@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import new_class
-from typing import Any, ClassVar, Protocol, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeAlias, TypeVar
 
 from aionode.message._field_types import Sequence, int8
 from aionode.message._message import Message, MessageMeta
@@ -53,8 +53,8 @@ def make_event(cls: type[ServiceType]) -> type[Message]:
         "__doc__": f"A request to or a response of {cls.__name__}, with its client and time.",
         "__annotations__": {
             "info": ServiceEventInfo,
-            "request": Sequence[cls.Request, 1],  # type: ignore[attr-defined] # declared by subclasses
-            "response": Sequence[cls.Response, 1],  # type: ignore[attr-defined] # declared by subclasses
+            "request": Sequence[cls.Request, 1],
+            "response": Sequence[cls.Response, 1],
         },
     }
     name = f"{cls.__ros_type__}_Event"
@@ -79,6 +79,9 @@ class ServiceType:
 
     __ros_type__: ClassVar[str] = ""
     Event: ClassVar[Any] = Hidden(make_event)
+    if TYPE_CHECKING:  # so that type[ServiceType] is a ServiceClass
+        Request: ClassVar[type[Message]]
+        Response: ClassVar[type[Message]]
 
     def __init_subclass__(cls, *, typename: str, by_name: bool = True) -> None:
         """Set the ROS names of the service and its messages."""
@@ -123,17 +126,17 @@ def make_impl(cls: type[ActionType]) -> type:
         "__doc__": f"The services and messages that implement {cls.__ros_type__}.",
         "SendGoalService": service(
             "SendGoalService",
-            {"goal_id": UUID, "goal": cls.Goal},  # type: ignore[attr-defined] # nested class
+            {"goal_id": UUID, "goal": cls.Goal},
             {"accepted": bool, "stamp": Time},
         ),
         "GetResultService": service(
             "GetResultService",
             {"goal_id": UUID},
-            {"status": int8, "result": cls.Result},  # type: ignore[attr-defined] # nested class
+            {"status": int8, "result": cls.Result},
         ),
         "FeedbackMessage": message(
             "FeedbackMessage",
-            {"goal_id": UUID, "feedback": cls.Feedback},  # type: ignore[attr-defined] # nested class
+            {"goal_id": UUID, "feedback": cls.Feedback},
             "Feedback, and the goal that it belongs to.",
             f"{cls.__ros_type__}_FeedbackMessage",
         ),
@@ -153,6 +156,10 @@ class ActionType:
 
     __ros_type__: ClassVar[str] = ""
     Impl: ClassVar[Any] = Hidden(make_impl)
+    if TYPE_CHECKING:  # so that type[ActionType] is an ActionClass
+        Goal: ClassVar[type[Message]]
+        Result: ClassVar[type[Message]]
+        Feedback: ClassVar[type[Message]]
 
     def __init_subclass__(cls, *, typename: str, by_name: bool = True) -> None:
         """Set the ROS names of the action and its messages."""
@@ -169,29 +176,42 @@ Result_co = TypeVar("Result_co", bound=Message, covariant=True)
 Feedback_co = TypeVar("Feedback_co", bound=Message, covariant=True)
 
 
-class ServiceClass(Protocol[Request_co, Response_co]):
-    """For type checkers: a service type, with its request and response types.
+# mypy does not let a class that is nested in a class object stand for a property, and pyright takes
+# the result of a method for no class. So each sees the form that it understands.
+MYPY = False
 
-    ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` infers both types
-    from ``AddTwoInts``. The declared by subclasses are declared as functions that return a message,
-    which both mypy and pyright understand.
-    """
+if TYPE_CHECKING and MYPY:
 
-    def Request(self, *args: Any, **values: Any) -> Request_co:  # noqa: N802 (a class)
-        ...
+    class ServiceClass(Protocol[Request_co, Response_co]):
+        def Request(self, *args: Any, **values: Any) -> Request_co: ...  # noqa: N802  # a class
+        def Response(self, *args: Any, **values: Any) -> Response_co: ...  # noqa: N802  # a class
 
-    def Response(self, *args: Any, **values: Any) -> Response_co:  # noqa: N802 (a class)
-        ...
+    class ActionClass(Protocol[Goal_co, Result_co, Feedback_co]):
+        def Goal(self, *args: Any, **values: Any) -> Goal_co: ...  # noqa: N802  # a class
+        def Result(self, *args: Any, **values: Any) -> Result_co: ...  # noqa: N802  # a class
+        def Feedback(self, *args: Any, **values: Any) -> Feedback_co: ...  # noqa: N802  # a class
 
+else:
 
-class ActionClass(Protocol[Goal_co, Result_co, Feedback_co]):
-    """For type checkers: an action type, with its goal, result and feedback types."""
+    class ServiceClass(Protocol[Request_co, Response_co]):
+        """For type checkers: a service type, with its request and response types.
 
-    def Goal(self, *args: Any, **values: Any) -> Goal_co:  # noqa: N802 (a class)
-        ...
+        ``def create_client(self, srv_type: ServiceClass[RequestT, ResponseT], …)`` infers both
+        types from ``AddTwoInts``. ``ServiceClass[Message, Message]`` is any service: what
+        `Node.find_service` returns, with ``.Request`` and ``.Response`` as message classes.
+        """
 
-    def Result(self, *args: Any, **values: Any) -> Result_co:  # noqa: N802 (a class)
-        ...
+        @property
+        def Request(self) -> type[Request_co]: ...  # noqa: N802  # a class
+        @property
+        def Response(self) -> type[Response_co]: ...  # noqa: N802  # a class
 
-    def Feedback(self, *args: Any, **values: Any) -> Feedback_co:  # noqa: N802 (a class)
-        ...
+    class ActionClass(Protocol[Goal_co, Result_co, Feedback_co]):
+        """For type checkers: an action type, with its goal, result and feedback types."""
+
+        @property
+        def Goal(self) -> type[Goal_co]: ...  # noqa: N802  # a class
+        @property
+        def Result(self) -> type[Result_co]: ...  # noqa: N802  # a class
+        @property
+        def Feedback(self) -> type[Feedback_co]: ...  # noqa: N802  # a class

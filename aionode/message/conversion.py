@@ -14,7 +14,7 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, TypeVar
+from typing import TYPE_CHECKING, Any, Final, TypeVar
 
 import msgspec
 
@@ -22,6 +22,9 @@ from aionode.errors import MessageError
 from aionode.message._field_types import FieldType
 from aionode.message._message import Message, message_class, type_name
 from aionode.message.validation import fit, given, listed
+
+if TYPE_CHECKING:
+    from aionode.message._message import MessageClass
 
 __all__ = ["from_builtins", "from_json", "from_yaml", "to_builtins", "to_json", "to_yaml"]
 
@@ -95,7 +98,7 @@ def to_builtins(message: Message, *, truncate: int | None = None) -> dict[str, A
     return plain(validated(message), Form(truncate=truncate))
 
 
-def from_builtins(cls: type[MessageT], data: object) -> MessageT:
+def from_builtins(cls: MessageClass[MessageT], data: object) -> MessageT:
     """Create a message from builtin types; omitted fields have their default.
 
     Arrays and bytes-like objects are accepted as well as lists.
@@ -115,7 +118,7 @@ def to_json(message: Message) -> str:
     return msgspec.json.encode(plain(validated(message), Form(json_float))).decode()
 
 
-def from_json(cls: type[MessageT], text: str | bytes) -> MessageT:
+def from_json(cls: MessageClass[MessageT], text: str | bytes) -> MessageT:
     """Create a message from JSON; see `from_builtins`.
 
     Raises:
@@ -147,7 +150,7 @@ def to_yaml(message: Message, *, flow_style: bool = False) -> str:
     return text
 
 
-def from_yaml(cls: type[MessageT], text: str | bytes) -> MessageT:
+def from_yaml(cls: MessageClass[MessageT], text: str | bytes) -> MessageT:
     """Create a message from YAML, such as ``{linear: {x: 1.5}}``.
 
     An empty text gives a message of defaults. See `from_builtins`.
@@ -167,7 +170,7 @@ def validated(message: Message) -> Message:
 
 
 def decoded(
-    cls: type[Message], decode: Callable[[str | bytes], Any], text: str | bytes, form: str
+    cls: MessageClass[Message], decode: Callable[[str | bytes], Any], text: str | bytes, form: str
 ) -> Any:
     """Decode JSON or YAML to builtin types."""
     try:

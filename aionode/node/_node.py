@@ -36,11 +36,11 @@ from aionode.engine.graph_queries import (
     actions_among,
     topic_endpoint_info,
 )
-from aionode.errors import brief, shortened
+from aionode.errors import InterfaceNotFoundError, brief, shortened
 from aionode.graph import SERVICE_KINDS, EndpointKind
 from aionode.interfaces import fitting
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
-from aionode.message import Message, ServiceType, holds_arrays
+from aionode.message import ActionType, Message, ServiceType, holds_arrays
 from aionode.node import _builtin_services as builtin_services
 from aionode.node._own_graph import OwnGraph
 from aionode.node._time_source import TimeSource
@@ -806,7 +806,7 @@ class Node(ParameterMethods, GraphQueries):
         type define it differently, the class is made from the description sent by one of these
         nodes: at most five are asked, each for at most 2 s. Such a class is accepted only if its
         type hash is the one in the graph. Cancelling is safe. The result is `Any` to type
-        checkers::
+        checkers; `find_message`, `find_service` and `find_action` are checked::
 
             message = await node.find_type("my_robot_msgs/msg/Words")
             node.create_subscription(message, "/words", print)
@@ -823,6 +823,59 @@ class Node(ParameterMethods, GraphQueries):
         from aionode.node._type_lookup import find_type  # most programs know their types
 
         return await find_type(self, name, endpoints)
+
+    async def find_message(
+        self, name: str, *, endpoints: Sequence[EndpointInfo] | None = None
+    ) -> type[Message]:
+        """Return the class of a message type that is known by its name; see `find_type`.
+
+        Raises:
+            InterfaceNotFoundError: as `find_type`; or the type is no message.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        found: type[Message] = await self.__found(name, Message, endpoints)
+        return found
+
+    async def find_service(
+        self, name: str, *, endpoints: Sequence[EndpointInfo] | None = None
+    ) -> ServiceClass[Message, Message]:
+        """Return the class of a service type that is known by its name; see `find_type`.
+
+        Code over any service is checked by that: the result fits `create_client`, and its
+        ``Request`` fits `json_schema` and `from_builtins`::
+
+            service = await node.find_service("std_srvs/srv/SetBool")
+            request = from_builtins(service.Request, {"data": True})
+            response = await node.create_client(service, "/light").call(request)
+
+        Raises:
+            InterfaceNotFoundError: as `find_type`; or the type is no service.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        found: ServiceClass[Message, Message]
+        found = await self.__found(name, ServiceType, endpoints)
+        return found
+
+    async def find_action(
+        self, name: str, *, endpoints: Sequence[EndpointInfo] | None = None
+    ) -> ActionClass[Message, Message, Message]:
+        """Return the class of an action type that is known by its name; see `find_type`.
+
+        Raises:
+            InterfaceNotFoundError: as `find_type`; or the type is no action.
+            EntityDestroyedError: the node was destroyed (a RuntimeError).
+        """
+        found: ActionClass[Message, Message, Message]
+        found = await self.__found(name, ActionType, endpoints)
+        return found
+
+    async def __found(self, name: str, base: type, endpoints: Sequence[EndpointInfo] | None) -> Any:
+        found = await self.find_type(name, endpoints=endpoints)
+        if not (isinstance(found, type) and issubclass(found, base)):
+            kind = base.__name__.removesuffix("Type").lower()
+            problem = f"it is no {kind}; find_type() takes any type"
+            raise InterfaceNotFoundError(name, problem=problem)
+        return found
 
     # The graph
 

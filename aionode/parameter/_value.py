@@ -6,7 +6,7 @@ import array
 from collections.abc import Sequence
 from enum import IntEnum
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Generic
 
 from aionode._process.bounded_yaml import loaded_yaml
 from aionode.errors import ParameterFileError, brief
@@ -21,6 +21,15 @@ __all__ = [
     "parameter_dict_from_yaml_file",
     "parameter_value_to_python",
 ]
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar  # type checkers have it; its TypeVar has defaults
+
+    ValueT_co = TypeVar("ValueT_co", default=Any, covariant=True)
+else:
+    from typing import TypeVar
+
+    ValueT_co = TypeVar("ValueT_co", covariant=True)
 
 PARAMETER_SEPARATOR_STRING = "."
 
@@ -134,7 +143,7 @@ def expect(value: object, kind: type | tuple[type, ...], what: str) -> None:
         raise TypeError(message)
 
 
-class Parameter:
+class Parameter(Generic[ValueT_co]):
     """A parameter: its name, its type and its value.
 
     Args:
@@ -162,7 +171,7 @@ class Parameter:
             raise ValueError(message)
         self._name = name
         self._type = type_
-        self._value = value
+        self._value: ValueT_co = value
 
     @property
     def name(self) -> str:
@@ -175,7 +184,7 @@ class Parameter:
         return self._type
 
     @property
-    def value(self) -> Any:
+    def value(self) -> ValueT_co:
         """The value; None if not set."""
         return self._value
 
@@ -203,6 +212,7 @@ class Parameter:
 
     def get_parameter_value(self) -> rcl_msg.ParameterValue:
         """Return the type and value as a message."""
+        value: Any = self._value
         # Empty tuples in place of the default arrays, which need numpy: importing that takes longer
         # than starting a node, and most parameters hold no array.
         message = rcl_msg.ParameterValue(
@@ -213,11 +223,11 @@ class Parameter:
         )
         if self._type is ParameterType.BYTE_ARRAY:
             message.byte_array_value = b"".join(
-                bytes([item]) if isinstance(item, int) else item for item in self._value
+                bytes([item]) if isinstance(item, int) else item for item in value
             )
         elif self._type is not ParameterType.NOT_SET:
-            is_list = isinstance(self._value, LISTS)
-            setattr(message, FIELDS[self._type], list(self._value) if is_list else self._value)
+            is_list = isinstance(value, LISTS)
+            setattr(message, FIELDS[self._type], list(value) if is_list else value)
         return message
 
     def to_parameter_msg(self) -> rcl_msg.Parameter:

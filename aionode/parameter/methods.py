@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ParameterMethods"]
 
+ScalarT = TypeVar("ScalarT", bool, int, float, str)
+"""A value whose type type checkers know; bool comes first, since it is an int to them."""
+
 
 class ParameterMethods:
     """Methods that delegate to a `ParameterStore`, where each step and exception is described."""
@@ -28,6 +31,30 @@ class ParameterMethods:
 
     # Declaring
 
+    @overload
+    def declare_parameter(
+        self,
+        name: str,
+        value: ParameterType | None = None,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter: ...
+    @overload
+    def declare_parameter(
+        self,
+        name: str,
+        value: ScalarT,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter[ScalarT]: ...
+    @overload
+    def declare_parameter(
+        self,
+        name: str,
+        value: Any = None,
+        descriptor: ParameterDescriptor | None = None,
+        ignore_override: bool = False,
+    ) -> Parameter: ...
     def declare_parameter(
         self,
         name: str,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import copy
 import pickle
+import runpy
 import subprocess
 import sys
+from pathlib import Path
 from types import new_class
 from typing import Any, ClassVar, Literal
 
@@ -438,3 +440,24 @@ def test_numpy_is_not_imported_before_an_array_is_made() -> None:
         "assert 'yaml' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_a_type_that_is_imported_for_type_checkers_only_is_refused(tmp_path: Path) -> None:
+    """With the class, the field and the remedy: Python's NameError names neither."""
+    module = tmp_path / "unseen.py"
+    module.write_text(
+        "from __future__ import annotations\n"
+        "from typing import TYPE_CHECKING\n"
+        "from aionode.message import DEFAULT, Message\n"
+        "if TYPE_CHECKING:\n"
+        "    from aionode.interfaces.geometry_msgs.msg import Point\n"
+        "class Spot(Message, typename='tutorial/msg/Spot'):\n"
+        "    where: Point = DEFAULT\n"
+    )
+
+    with pytest.raises(
+        TypeError,
+        match=r"tutorial/msg/Spot\.where: Point: 'Point' is not known while the class is made; .*"
+        r"import it outside of `if TYPE_CHECKING:`",
+    ):
+        runpy.run_path(str(module))

@@ -238,3 +238,16 @@ async def test_only_some_nodes_are_asked(node_factory: Callable[..., Node]) -> N
 
     assert asked == 5
     assert not asker.graph.count(EndpointKind.CLIENT, "/mute0/get_type_description")
+
+
+async def test_a_type_is_found_by_its_kind_and_another_kind_is_refused(
+    node_factory: Callable[..., Node],
+) -> None:
+    """So that type checkers know what code over any service gets."""
+    node = node_factory("asking")
+
+    assert await node.find_message("std_msgs/msg/String") is String
+    assert await node.find_service("example_interfaces/srv/AddTwoInts") is AddTwoInts
+    assert await node.find_action("example_interfaces/action/Fibonacci") is Fibonacci
+    with pytest.raises(InterfaceNotFoundError, match=r"std_msgs/msg/String: it is no service; "):
+        await node.find_service("std_msgs/msg/String")

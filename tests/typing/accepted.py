@@ -7,7 +7,16 @@ from typing import Any, ClassVar, TypeVar, assert_type
 import numpy as np
 import numpy.typing as npt
 
-from aionode import GoalResponse, Health, Node, NodeEnd, ServerGoalHandle, Supervisor
+from aionode import (
+    Client,
+    GoalResponse,
+    Health,
+    Node,
+    NodeEnd,
+    Parameter,
+    ServerGoalHandle,
+    Supervisor,
+)
 from aionode.interfaces import get_action, get_message, get_service
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.example_interfaces.srv import AddTwoInts
@@ -26,13 +35,17 @@ from aionode.message import (
     ServiceClass,
     ServiceType,
     byte,
+    documentation,
     fields,
     float32,
     float64,
+    from_builtins,
     from_json,
     int32,
+    json_schema,
     snapshot,
     snapshotter,
+    to_builtins,
     to_json,
     type_name,
     uint8,
@@ -201,6 +214,69 @@ async def types_by_name(node: Node) -> None:
     node.create_action_client(get_action("example_interfaces/action/Fibonacci"), "fibonacci")
     node.create_publisher(get_message("std_msgs/msg/String"), "text", 1)
     node.create_service(await node.find_type("std_srvs/srv/Trigger"), "trigger", print)
+
+
+async def any_service(node: Node, name: str, type_name: str, given: object) -> dict[str, object]:
+    """What tools for agents, panels and recorders do: twelve lines over any service."""
+    service = await node.find_service(type_name)
+    text, _ = documentation(service)
+    schema: dict[str, object] = json_schema(service.Request)
+    schema["description"] = text
+    request = from_builtins(service.Request, given)
+    assert_type(request, Message)
+    client = node.create_client(service, name)
+    assert_type(client, Client[Message, Message])
+    response = await client.call(request)
+    names = [field.name for field in fields(service.Response)]
+    return {**to_builtins(response), "names": names, "type": type_name_of(service)}
+
+
+def type_name_of(service: ServiceClass[Message, Message]) -> str:
+    """Return the name of any service."""
+    return type_name(service)
+
+
+async def any_action(node: Node, name: str, type_name: str, given: object) -> Message:
+    """The same over any action."""
+    action = await node.find_action(type_name)
+    json_schema(action.Goal)
+    client = node.create_action_client(action, name)
+    return await client.call(from_builtins(action.Goal, given))
+
+
+async def any_topic(node: Node, type_name: str) -> None:
+    """The same over any message."""
+    message = await node.find_message(type_name)
+    node.create_publisher(message, "/anything", 1).publish(message())
+    node.create_publisher(message, "/anything", 1).publish(from_json(message, "{}"))
+
+
+def services_in_a_list(node: Node, action: type[ActionType]) -> None:
+    """Types of services and actions are one kind of thing."""
+    services: list[type[ServiceType]] = [AddTwoInts, Say]
+    for service in services:
+        node.create_client(service, "any")
+        json_schema(service.Request)
+    node.create_action_client(action, "any")
+    assert_type(type_name_of(AddTwoInts), str)
+
+
+def numbers(values: npt.NDArray[np.float64]) -> float:
+    """Compute with doubles, as most functions do."""
+    return float(values.sum())
+
+
+def parameters_and_arrays(node: Node) -> None:
+    """What is declared has a type; and arrays of messages go where arrays are wanted."""
+    assert_type(node.declare_parameter("speed", 0.5).value, float)
+    assert_type(node.declare_parameter("count", 5).value, int)
+    assert_type(node.declare_parameter("on", True).value, bool)
+    assert_type(node.declare_parameter("name", "x").value, str)
+    assert_type(node.declare_parameter("later", Parameter.Type.DOUBLE).value, Any)
+    speed: Parameter = node.get_parameter("speed")
+    print(speed.value + 1)  # noqa: T201
+    numbers(Imu().orientation_covariance)
+    numbers(JointState().position)
 
 
 async def calls(node: Node) -> None:

@@ -165,8 +165,8 @@ def ros_name(name: str) -> str:
 def halves(cls: type[Any]) -> Iterator[tuple[str, type[Any]]]:
     """Yield name and type of each part of a service or action."""
     if issubclass(cls, ServiceType):
-        yield "request_message", cls.Request  # type: ignore[attr-defined] # nested classes
-        yield "response_message", cls.Response  # type: ignore[attr-defined] # nested classes
+        yield "request_message", cls.Request
+        yield "response_message", cls.Response
         yield "event_message", cls.Event
         return
     yield "goal", cls.Goal
