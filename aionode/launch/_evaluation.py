@@ -44,6 +44,9 @@ FUNCTION = "generate_launch_description"
 MAX_DEPTH = 100
 """Most files that may include one another."""
 
+MAX_ENTITIES = 50_000
+"""Most entities of one evaluation: files that include others twice grow without end."""
+
 
 def new_context(path: str, arguments: Mapping[str, str]) -> LaunchContext:
     """Return the context in which the description of a file is evaluated."""
@@ -268,6 +271,7 @@ def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:
     Raises:
         LaunchFileError: An entity cannot be evaluated, with its file and line.
     """
+    context.visited = 0
     try:
         for entity in entities:
             visit(entity, context, 0)
@@ -305,9 +309,12 @@ def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
 
 def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -> None:
     """Do what an entity says, and what it consists of."""
-    if depth > MAX_DEPTH:
+    context.visited += 1
+    is_too_much = context.visited > MAX_ENTITIES and isinstance(entity, IncludeLaunchDescription)
+    if depth > MAX_DEPTH or is_too_much:
         path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
-        problem = f"includes more than {MAX_DEPTH} levels; does a file include itself?"
+        many = f"{MAX_DEPTH} levels" if depth > MAX_DEPTH else f"{MAX_ENTITIES} entities"
+        problem = f"includes more than {many}; does a file include itself?"
         raise LaunchFileError(path, problem, line=int(line))
     try:
         inner = entities_of(entity.visit(context))

@@ -571,6 +571,34 @@ def test_a_file_that_includes_itself_is_an_error(files: Files) -> None:
         files.plan("a.launch.xml", '<launch><include file="$(filename)"/></launch>')
 
 
+def test_files_that_include_others_twice_end(files: Files) -> None:
+    """Twenty such files are a million, although none includes itself."""
+    last = 18
+    for number in range(last):
+        include = f'<include file="$(dirname)/{number + 1}.launch.xml"/>'
+        files.write(f"{number}.launch.xml", f"<launch>{include * 2}</launch>")
+    files.write(f"{last}.launch.xml", "<launch/>")
+
+    with pytest.raises(LaunchFileError, match="more than 50000 entities") as caught:
+        list(Plan(str(files.folder / "0.launch.xml"), {}).records())
+
+    assert caught.value.path.endswith(".launch.xml")
+
+
+@pytest.mark.parametrize("stream", ["", " >&2"])
+def test_a_command_that_writes_without_end_is_an_error(files: Files, stream: str) -> None:
+    """It filled the memory."""
+    with pytest.raises(LaunchFileError, match="writes more than 16777216 bytes"):
+        files.python(f"LogInfo(msg=Command('sh -c \"exec yes{stream}\"'))")
+
+
+def test_substitutions_are_nested_to_a_limit(files: Files) -> None:
+    """Python's own limit would be met deep in the reader."""
+    text = "$(env " * 500 + "A" + ")" * 500
+    with pytest.raises(LaunchFileError, match="nested deeper than 100"):
+        files.plan("a.launch.xml", f'<launch><arg name="x" default="{text}"/></launch>')
+
+
 def test_reading_a_launch_file_leaves_no_file_beside_it(files: Files) -> None:
     """The folder may be read-only, or under version control."""
     files.python("LogInfo(msg='x'),")

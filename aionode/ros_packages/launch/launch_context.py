@@ -61,6 +61,8 @@ class LaunchContext:
         """The entities that were left out, by the package that is not there; None if an error."""
         self.ahead = False
         """Whether what is evaluated is done later."""
+        self.visited = 0
+        """How many entities the present evaluation has visited."""
         self.names: dict[str, int] = {}
         """The number of processes that each name had so far."""
         self._configurations: list[dict[str, Any]] = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 import os
+import selectors
 import shlex
 import shutil
 import subprocess
@@ -14,7 +15,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Self
 
-from aionode._process.bounded_files import read_file
+from aionode._process.bounded_files import LARGEST_FILE, read_file
 from launch.launch_context import LaunchContext
 from launch.substitution import (
     SomeSubstitutionsType,
@@ -333,29 +334,57 @@ class Command(Substitution):
         if program is None:
             raise SubstitutionFailure(f"command {line!r}: {missing_program(words[0])}")
         try:
-            done = subprocess.run(  # noqa: S603  # the command of the user's file
+            process = subprocess.Popen(  # noqa: S603  # the command of the user's file
                 [*context.packages.starter(Path(program)), *words[1:]],
                 stdout=subprocess.PIPE,
                 stderr=stderr,
-                text=True,
-                check=False,
                 env=context.environment,
             )
         except OSError as error:
             raise SubstitutionFailure(f"command {line!r} cannot be run: {error}") from error
-        if done.returncode != 0:
-            said = (done.stderr or "").rstrip()
+        output, errors = outputs_of(process, line)
+        if process.returncode != 0:
+            said = errors.rstrip()
             if "No module named 'ament_index_python'" in said:
                 said += f"; {program} runs in another Python: pip install 'aionode[xacro]'"
             raise SubstitutionFailure(
-                f"command {line!r} ended with status {done.returncode}: {said}"
+                f"command {line!r} ended with status {process.returncode}: {said}"
             )
-        if done.stderr and on_stderr == "fail":
+        if errors and on_stderr == "fail":
             raise SubstitutionFailure(
-                f"command {line!r} wrote to stderr: {done.stderr.rstrip()}; "
+                f"command {line!r} wrote to stderr: {errors.rstrip()}; "
                 "on_stderr='ignore' accepts that"
             )
-        return done.stdout
+        return output
+
+
+def outputs_of(process: subprocess.Popen[bytes], line: str) -> tuple[str, str]:
+    """Return what a command writes to stdout and to stderr, and wait for its end.
+
+    Raises:
+        SubstitutionFailure: it writes more than there can be of a file.
+    """
+    pieces: dict[str, list[bytes]] = {"stdout": [], "stderr": []}
+    left = LARGEST_FILE
+    with process, selectors.DefaultSelector() as selector:
+        for name in pieces:
+            if (pipe := getattr(process, name)) is not None:
+                selector.register(pipe, selectors.EVENT_READ, name)
+        try:
+            while selector.get_map() and left >= 0:
+                for key, _ in selector.select():
+                    piece = os.read(key.fd, 64 << 10)
+                    pieces[key.data].append(piece)
+                    left -= len(piece)
+                    if not piece:
+                        selector.unregister(key.fileobj)
+        finally:
+            if selector.get_map():  # too much, or Ctrl-C: its end would be waited for
+                process.kill()
+    if left < 0:
+        raise SubstitutionFailure(f"command {line!r} writes more than {LARGEST_FILE} bytes")
+    output, said = (b"".join(each).decode(errors="replace") for each in pieces.values())
+    return output, said
 
 
 class PythonExpression(Substitution):

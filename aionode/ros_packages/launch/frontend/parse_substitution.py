@@ -12,6 +12,9 @@ __all__ = ["parse_words"]
 
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
+MOST_LEVELS = 100
+"""Most substitutions within one another."""
+
 
 def parse_words(text: str) -> list[Substitution]:
     """Return the substitutions that make up a text.
@@ -30,6 +33,7 @@ class Reader:
     def __init__(self, text: str) -> None:
         self.text = text
         self.at = 0
+        self._depth = 0
 
     def parts(self, until: str) -> list[Substitution]:
         """Return what comes before one of these characters, or before the end."""
@@ -55,6 +59,9 @@ class Reader:
     def substitution(self) -> Substitution:
         """Return the substitution that begins here."""
         begin = self.at
+        self._depth += 1
+        if self._depth > MOST_LEVELS:
+            raise ValueError(f"substitutions are nested deeper than {MOST_LEVELS}")
         self.at += 2
         match = NAME.match(self.text, self.at)
         if match is None:
@@ -67,6 +74,7 @@ class Reader:
         if self.peek() != ")":
             raise ValueError(f"'{self.text[begin : begin + 40]}': ')' is missing")
         self.at += 1
+        self._depth -= 1
         return make(match.group(), words)
 
     def word(self) -> list[Substitution]:
