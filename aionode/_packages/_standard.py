@@ -10,6 +10,7 @@ __all__ = ["program_module", "remark_on", "standard_executables", "standard_plug
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "diagnostic_aggregator": {"aggregator_node": "_diagnostics.aggregator_node"},
+    "image_transport": {"republish": "_camera.republish"},
     "joy": {"joy_node": "_joy.joy_node"},
     "joint_state_publisher": {"joint_state_publisher": "_joint_state_publisher"},
     "nav2_lifecycle_manager": {"lifecycle_manager": "_lifecycle_manager"},
@@ -36,6 +37,9 @@ MODULES: Final[dict[str, dict[str, str]]] = {
 """The module of `aionode.programs` that is an executable, by package and name."""
 
 PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
+    "image_transport": {
+        "image_transport::Republisher": ("_camera.republish:Republisher", "image_republisher")
+    },
     "joy": {"joy::Joy": ("_joy.joy_node:JoyNode", "joy_node")},
     "nav2_lifecycle_manager": {
         "nav2_lifecycle_manager::LifecycleManager": (

@@ -1,0 +1,1 @@
+"""Cameras, and other forms of their images."""

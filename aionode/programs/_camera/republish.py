@@ -1,0 +1,177 @@
+"""``image_transport republish``: publishes images in another form, such as compressed ones."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib.util import find_spec
+from typing import Any, Final
+
+import aionode
+from aionode import Node, Parameter, Publisher, PublisherEventCallbacks, Subscription
+from aionode.arguments import remove_ros_args
+from aionode.errors import CommandError
+from aionode.image import compress, decompress, from_numpy, to_numpy
+from aionode.interfaces.rcl_interfaces.msg import IntegerRange, ParameterDescriptor
+from aionode.interfaces.sensor_msgs.msg import CompressedImage, Image
+
+__all__ = ["Republisher", "compressed", "main", "topic_of", "uncompressed"]
+
+INPUTS: Final[dict[str, Any]] = {
+    "raw": Image,
+    "compressed": CompressedImage,
+    "compressedDepth": CompressedImage,
+}
+"""The transports that can be read, and their types."""
+
+OUTPUTS: Final[dict[str, Any]] = {"raw": Image, "compressed": CompressedImage}
+"""Those that can be written."""
+
+FORMATS: Final = ("jpeg", "png")
+
+QUALITY: Final = "out.compressed.jpeg_quality"
+LEVEL: Final = "out.compressed.png_level"
+FORMAT: Final = "out.compressed.format"
+
+
+def topic_of(node: Node, base: str, transport: str) -> str:
+    """Return the topic of a transport: a rule for it counts before one for the base."""
+    if transport == "raw":
+        return node.resolve_topic_name(base)
+    own = node.resolve_topic_name(f"{base}/{transport}")
+    if own != node.resolve_topic_name(f"{base}/{transport}", only_expand=True):
+        return own
+    return f"{node.resolve_topic_name(base)}/{transport}"
+
+
+def compressed(image: Image, format_: str, quality: int, level: int) -> CompressedImage:
+    """Return an image as JPEG or PNG; as in compressed_image_transport, its format says both forms.
+
+    Raises:
+        ValueError: The image has no colours that the format can hold.
+    """
+    encoding = image.encoding
+    if format_ == "jpeg" and encoding in ("rgba8", "bgra8"):
+        image = from_numpy(to_numpy(image, "rgb8"), "rgb8", image.header)
+    options = {"quality": quality} if format_ == "jpeg" else {"compress_level": level}
+    found = compress(image, format_, **options)
+    target = "" if encoding.startswith(("mono", "8U", "16U")) else "bgr8"
+    found.format = f"{encoding}; {format_} compressed {target}"
+    return found
+
+
+def uncompressed(image: CompressedImage) -> Image:
+    """Return an image as it was before it was compressed; ``bgr8`` if that is unknown.
+
+    Raises:
+        ValueError: Its data cannot be read.
+    """
+    found = decompress(image)
+    if found.encoding not in ("rgb8", "rgba8"):
+        return found
+    encoding, said, _ = image.format.partition(";")
+    wanted = encoding if said and encoding in ("rgb8", "rgba8", "bgra8") else "bgr8"
+    return from_numpy(to_numpy(found, wanted), wanted, image.header)
+
+
+class Republisher(Node):
+    """Publishes on `out`, in one transport or in all, what it hears on `in` while somebody listens.
+
+    Args:
+        *words: The transport of the input, then that of the output, as in older launch files.
+
+    Raises:
+        CommandError: A transport is unknown, or a parameter does not fit.
+    """
+
+    def __init__(self, *words: str) -> None:
+        names = ("in_transport", "out_transport")
+        given = [Parameter(name, value=word) for name, word in zip(names, words, strict=False)]
+        super().__init__("image_republisher", parameter_overrides=given)
+        self.source = self.chosen("in_transport", "raw", list(INPUTS))
+        wanted = self.chosen("out_transport", "", ["", *OUTPUTS])
+        transports = [wanted] if wanted else list(OUTPUTS)
+        if (self.source, *transports) != ("raw", "raw") and find_spec("PIL") is None:
+            raise CommandError(
+                "compressed images need Pillow, which is not installed: pip install pillow"
+            )
+        self.warned = ""
+        self.format = "jpeg"
+        if "compressed" in transports:
+            self.declare_compression()
+        self.input: Subscription[Any] | None = None
+        events = PublisherEventCallbacks(matched=self.on_matched)
+        self.outputs: dict[str, Publisher[Any]] = {
+            transport: self.create_publisher(
+                OUTPUTS[transport], topic_of(self, "out", transport), 10, event_callbacks=events
+            )
+            for transport in transports
+        }
+
+    def chosen(self, name: str, usual: str, fits: Sequence[str]) -> str:
+        """Return the transport that a parameter says."""
+        transport: str = self.declare_parameter(name, usual).value
+        self.get_logger().info(f"The '{name}' parameter is set to: {transport}")
+        if transport not in fits:
+            known = ", ".join(each for each in fits if each)
+            raise CommandError(
+                f"{name} is {transport!r}, and there is no such transport here; {known} fit"
+            )
+        return transport
+
+    def declare_compression(self) -> None:
+        """Declare how images are compressed."""
+        for name, usual, most in ((QUALITY, 95, 100), (LEVEL, 3, 9)):
+            limits = IntegerRange(from_value=int(name == QUALITY), to_value=most, step=1)
+            self.declare_parameter(name, usual, ParameterDescriptor(integer_range=[limits]))
+        self.format = self.declare_parameter(FORMAT, "jpeg").value
+        if self.format not in FORMATS:
+            raise CommandError(f"{FORMAT} is {self.format!r}; {' and '.join(FORMATS)} fit")
+
+    def on_matched(self, _info: object) -> None:
+        """Listen while somebody listens."""
+        is_wanted = any(each.get_subscription_count() for each in self.outputs.values())
+        if is_wanted and self.input is None:
+            topic = topic_of(self, "in", self.source)
+            self.input = self.create_subscription(
+                INPUTS[self.source], topic, self.on_image, 10, offload=True
+            )
+        elif not is_wanted and self.input is not None:
+            self.input.destroy()
+            self.input = None
+
+    def on_image(self, given: Image | CompressedImage) -> None:
+        """Publish an image in the forms that somebody listens to; in a thread."""
+        listened = {
+            transport: each
+            for transport, each in self.outputs.items()
+            if each.get_subscription_count()
+        }
+        quality = level = 0
+        if "compressed" in self.outputs:
+            quality, level = self.get_parameter(QUALITY).value, self.get_parameter(LEVEL).value
+        for transport, output in listened.items():
+            try:
+                image = self.converted(given, transport, quality, level)
+            except ValueError as error:
+                if str(error) != self.warned:
+                    self.get_logger().error(f"an image is left out: {error}")
+                self.warned = str(error)
+                continue
+            if not output.destroyed:
+                output.publish(image)
+
+    def converted(
+        self, given: Image | CompressedImage, transport: str, quality: int, level: int
+    ) -> Image | CompressedImage:
+        """Return an image in the form of a transport."""
+        if self.source == transport:
+            return given
+        image = uncompressed(given) if isinstance(given, CompressedImage) else given
+        return image if transport == "raw" else compressed(image, self.format, quality, level)
+
+
+def main() -> None:
+    """Run the node until Ctrl-C."""
+    words = remove_ros_args(sys.argv)[1:3]
+    aionode.run(lambda: Republisher(*words))
