@@ -20,7 +20,6 @@ import sys
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -109,7 +108,7 @@ def outcome_of(file: Path, clone: Path, aionode: Aionode, *options: str) -> tupl
     except subprocess.TimeoutExpired:
         return TOO_LONG, f"more than {LIMIT_SEC:g} s"
     last = "".join(done.stderr.strip().splitlines()[-1:])
-    if "Traceback (most recent call last)" in done.stderr:
+    if re.search(r"^Traceback \(most recent", done.stderr, re.MULTILINE):
         return TRACEBACK, last
     return (EVALUATES, "") if done.returncode == 0 else (REFUSED, last)
 
@@ -153,9 +152,7 @@ def count_launch_files(
     files = [(file, clone) for clone in clones for file in launch_files_in(clone, at_most)]
     total: Counter[str] = Counter()
     with ThreadPoolExecutor(2) as threads:
-        outcomes = threads.map(
-            lambda pair: partial(outcome_of, aionode=aionode)(*pair, *options), files
-        )
+        outcomes = threads.map(lambda pair: outcome_of(*pair, aionode, *options), files)
         for (file, _), (outcome, reason) in zip(files, outcomes, strict=True):
             total[outcome] += 1
             say(f"{file}: {outcome}{reason and ': '}{reason}")
