@@ -152,7 +152,7 @@ def count_launch_files(
     files = [(file, clone) for clone in clones for file in launch_files_in(clone, at_most)]
     total: Counter[str] = Counter()
     with ThreadPoolExecutor(2) as threads:
-        outcomes = threads.map(lambda pair: outcome_of(*pair, aionode, *options), files)
+        outcomes = threads.map(lambda pair: outcome_of(pair[0], pair[1], aionode, *options), files)
         for (file, _), (outcome, reason) in zip(files, outcomes, strict=True):
             total[outcome] += 1
             say(f"{file}: {outcome}{reason and ': '}{reason}")

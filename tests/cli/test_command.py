@@ -82,7 +82,15 @@ def test_every_command_that_prints_data_has_json() -> None:
         if "--json" not in [name for parameter in of_verb.params for name in parameter.opts]
     }
 
-    assert without == {"bag reindex", "completion", "gateway types", "new", "run", "teleop"}
+    assert without == {
+        "bag reindex",
+        "completion",
+        "deploy",
+        "gateway types",
+        "new",
+        "run",
+        "teleop",
+    }
 
 
 def test_help_imports_neither_numpy_nor_zenoh() -> None:
