@@ -36,6 +36,7 @@ NOUNS = {
     "interface": "Show message, service and action types.",
     "launch": "Start the processes and nodes of a launch file.",
     "lifecycle": "Show and change the states of managed nodes.",
+    "mcp": "Let a language model's program use the robot.",
     "new": "Write a package with a node, a message and a test.",
     "node": "List and inspect nodes.",
     "param": "Read and set the parameters of nodes.",

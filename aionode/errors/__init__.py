@@ -66,6 +66,7 @@ rclpy's name; new ones end in `Error`. They carry plain values, never live objec
     ├── RequestRefusedError (ValueError)
     ├── RequestTimeoutError (TimeoutError)
     ├── TimeSourceChangedError (RuntimeError)
+    ├── ToolError (RuntimeError)
     ├── TransformException (RuntimeError)
     │   ├── ConnectivityException
     │   ├── ExtrapolationException
@@ -100,7 +101,7 @@ from aionode.errors._calls import (
     ServiceUnavailableError,
 )
 from aionode.errors._commands import CommandError, LaunchFileError
-from aionode.errors._gateway import PolicyFileError, RefusedError
+from aionode.errors._gateway import PolicyFileError, RefusedError, ToolError
 from aionode.errors._interfaces import (
     DecodeError,
     IdlError,
@@ -238,6 +239,7 @@ __all__ = [
     "ServiceUnavailableError",
     "TimeSourceChangedError",
     "TimeoutException",
+    "ToolError",
     "TransformException",
     "TransitionError",
     "TransportError",

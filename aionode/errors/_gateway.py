@@ -1,10 +1,10 @@
-"""Refusals by the gateway, and errors in its policy file."""
+"""Refusals by the gateway, errors in its policy file, and those of an assistant's tools."""
 
 from __future__ import annotations
 
 from aionode.errors._base import AionodeError
 
-__all__ = ["PolicyFileError", "RefusedError"]
+__all__ = ["PolicyFileError", "RefusedError", "ToolError"]
 
 
 class RefusedError(AionodeError, PermissionError):
@@ -40,3 +40,19 @@ class PolicyFileError(AionodeError, ValueError):
         self.path = path
         self.problem = problem
         super().__init__(f"policy {path}: {problem}")
+
+
+class ToolError(AionodeError, RuntimeError):
+    """A tool of an assistant cannot do what it was called for.
+
+    Attributes:
+        subject: What it was called with.
+        reason: Why it cannot, and what to do.
+        code: The reason as a word for programs: ``not_found``, ``timeout``, or ``failed``.
+    """
+
+    def __init__(self, subject: str, reason: str, code: str = "failed") -> None:
+        self.subject = subject
+        self.reason = reason
+        self.code = code
+        super().__init__(f"{subject}: {reason}")

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from aionode.gateway._clients import GatewayStats
     from aionode.gateway._gateway import Gateway
     from aionode.gateway.http.typescript import typescript
+    from aionode.gateway.mcp.assistant import Assistant
     from aionode.gateway.policy.identity import Credentials, Identity
     from aionode.gateway.policy.policy import (
         Decision,
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from aionode.gateway.session.session import Session
 
 __all__ = [
+    "Assistant",
     "Credentials",
     "Decision",
     "FieldLimit",
@@ -54,6 +56,7 @@ __all__ = [
 ]
 
 PLACES: Final = {
+    "Assistant": "mcp.assistant",
     "Credentials": "policy.identity",
     "Gateway": "_gateway",
     "GatewayStats": "_clients",

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections import defaultdict
 from collections.abc import AsyncIterator, Callable, Iterable, MutableMapping
-from contextlib import asynccontextmanager
-from typing import TYPE_CHECKING, Any
+from contextlib import AsyncExitStack, asynccontextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
 
 import msgspec
 
-from aionode.errors import RefusedError
+from aionode.errors import PolicyFileError, RefusedError
 from aionode.gateway.policy.identity import Identity
+from aionode.gateway.policy.policy import Policy
+from aionode.gateway.session.audit import Audit
 from aionode.gateway.session.refusals import Refusal
+from aionode.gateway.session.robot import Robot
 from aionode.gateway.session.session import Session
 
 if TYPE_CHECKING:
     from aionode.gateway.policy.identity import Credentials
-    from aionode.gateway.policy.policy import Policy
-    from aionode.gateway.session.robot import Robot
+    from aionode.gateway.session.robot import Ask
     from aionode.node import Node
 
 __all__ = ["Clients", "GatewayStats"]
+
+RELOAD_SEC: Final = 1.0
+"""Time between two looks at the policy file, in seconds."""
 
 
 class GatewayStats(msgspec.Struct, frozen=True):
@@ -48,18 +55,51 @@ class GatewayStats(msgspec.Struct, frozen=True):
 
 
 class Clients:
-    """The part of `Gateway` that the ways in use.
+    """The clients of a robot: the part of `Gateway` and `Assistant` that the ways in use.
 
     Attributes:
         node: The node by which the gateway takes part.
     """
 
-    def __init__(self, node: Node, policy: Policy) -> None:
+    def __init__(self, node: Node, policy: Policy, ask: Ask | None = None) -> None:
         self.node = node
         self._policy = policy
+        self._ask = ask
         self._sessions: dict[Session, None] = {}
         self._refused = 0
         self._robot: Robot | None = None
+
+    def _check_node(self) -> None:
+        """Refuse to begin with a node that does not run.
+
+        Raises:
+            RuntimeError: it does not.
+        """
+        if not self.node.is_running:
+            raise RuntimeError(f"gateway: {self.node!r} does not run; enter it first")
+
+    async def _open(self, stack: AsyncExitStack) -> asyncio.TaskGroup:
+        """Make what the sessions share, until a stack ends, and return the group of its tasks."""
+        tasks = await stack.enter_async_context(asyncio.TaskGroup())
+        audit = Audit(self.node, self._policy.audit_file)
+        stack.callback(audit.close)
+        self._robot = Robot(self.node, self._policy, audit, tasks, self._ask)
+        stack.callback(self._robot.close)
+        self._robot.standstills.watch(self._doubt_all)
+        for work in (audit.run(), self._follow_policy()):
+            stack.callback(tasks.create_task(work).cancel)
+        return tasks
+
+    def _doubt_all(self, is_long: bool) -> None:
+        """Doubt all clients after a standstill: what they have sent in it was not read meanwhile.
+
+        One that has nothing to do with commands answers a ping for nothing.
+
+        Args:
+            is_long: Whether calls and goals are too old after it as well.
+        """
+        for session in list(self._sessions):
+            session.doubt(stood_still=is_long)
 
     @property
     def robot(self) -> Robot:
@@ -71,6 +111,11 @@ class Clients:
         if self._robot is None:
             raise RuntimeError("gateway: use `async with Gateway(...)`")
         return self._robot
+
+    @property
+    def sessions(self) -> list[Session]:
+        """The sessions of all clients, the oldest first."""
+        return list(self._sessions)
 
     @property
     def policy(self) -> Policy:
@@ -195,6 +240,29 @@ class Clients:
             session.check_again()
         log.info("gateway: the policy was read again")
 
+    # The policy file
+
+    async def _follow_policy(self) -> None:
+        """Read the policy file again when it changes; a file with a mistake changes nothing."""
+        path = self._policy.path
+        if not path:
+            return
+        read = modified(path)
+        while True:
+            await self.robot.clock.sleep(RELOAD_SEC)
+            if modified(path) == read:
+                continue
+            read = modified(path)
+            self._reread(path)
+
+    def _reread(self, path: str) -> None:
+        try:
+            policy = Policy.load(path)
+        except PolicyFileError as error:
+            self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
+        else:
+            self.use_policy(policy)
+
 
 def largest(sessions: Iterable[Session], key: Callable[[Session], str]) -> list[Session]:
     """Return the largest group of clients that a program has not made itself, the oldest first."""
@@ -203,3 +271,12 @@ def largest(sessions: Iterable[Session], key: Callable[[Session], str]) -> list[
         if session.credentials is not None:
             groups[key(session)].append(session)
     return max(groups.values(), key=len, default=[])
+
+
+def modified(path: str) -> tuple[int, int] | None:
+    """Return when a file was written, and its number; None if it is not there."""
+    try:
+        status = Path(path).stat()
+    except OSError:
+        return None
+    return status.st_mtime_ns, status.st_ino

@@ -6,7 +6,6 @@ import asyncio
 import socket
 from collections.abc import Coroutine, Sequence
 from contextlib import AsyncExitStack
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Self
 
 from starlette.applications import Starlette
@@ -14,7 +13,7 @@ from starlette.exceptions import HTTPException
 from starlette.routing import WebSocketRoute
 
 from aionode._process.concurrency import to_the_end
-from aionode.errors import ConfigurationError, PolicyFileError, RefusedError
+from aionode.errors import ConfigurationError, RefusedError
 from aionode.gateway._clients import Clients
 from aionode.gateway.foxglove import websocket as _foxglove
 from aionode.gateway.http import routes as _http
@@ -26,7 +25,6 @@ from aionode.gateway.rosbridge.client_list import ClientList
 from aionode.gateway.server.door import Door
 from aionode.gateway.server.exchange import TRY_AGAIN_LATER, close
 from aionode.gateway.server.server import Server
-from aionode.gateway.session.audit import Audit
 from aionode.gateway.session.refusals import Refusal
 from aionode.gateway.session.robot import Bucket, Robot
 
@@ -37,6 +35,7 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
     from aionode.bag import Player
+    from aionode.gateway.mcp.http import McpOverHttp
     from aionode.gateway.session.robot import Ask
     from aionode.gateway.session.session import Session
     from aionode.node import Node
@@ -45,9 +44,6 @@ __all__ = ["Gateway"]
 
 REFUSALS_PER_SEC: Final = 50.0
 """Frames that are read in a second of a client whose frames are refused."""
-
-RELOAD_SEC: Final = 1.0
-"""Time between two looks at the policy file, in seconds."""
 
 
 class Gateway(Clients):
@@ -64,6 +60,10 @@ class Gateway(Clients):
             and it returns whether the person says yes. Without `ask`, such requests are refused.
         player: The player of a bag. Foxglove's timeline controls it, as far as the policy allows
             calls of the services of the player's node.
+        mcp: Whether clients of MCP, such as those of language models, are served at ``/mcp``; it
+            needs the extra ``mcp``.
+        about: With `mcp`, what models are told of this robot.
+        bags: With `mcp`, a folder of recordings of which models get summaries; empty for none.
 
     Raises:
         ConfigurationError: other machines can connect to `host`, and the policy knows no client by
@@ -84,12 +84,19 @@ class Gateway(Clients):
         port: int = 9090,
         ask: Ask | None = None,
         player: Player | None = None,
+        mcp: bool = False,
+        about: str = "",
+        bags: str = "",
     ) -> None:
-        super().__init__(node, Policy.default() if policy is None else policy)
+        super().__init__(node, Policy.default() if policy is None else policy, ask)
         self._player = player
+        self._mcp: McpOverHttp | None = None
+        if mcp:
+            from aionode.gateway.mcp.http import McpOverHttp  # takes a second, and few want it
+
+            self._mcp = McpOverHttp(self, about, bags)
         self.host = host
         self.port = port
-        self._ask = ask
         if not is_loopback(host) and not self._policy.knows_secrets:
             raise ConfigurationError(
                 "gateway's host",
@@ -107,26 +114,22 @@ class Gateway(Clients):
             OSError: the address cannot be listened on: another program does, for example.
             RuntimeError: the node does not run.
         """
-        if not self.node.is_running:
-            raise RuntimeError(f"gateway: {self.node!r} does not run; enter it first")
+        self._check_node()
         listener = bound(self.host, self.port)
         self.port = listener.getsockname()[1]
         async with AsyncExitStack() as stack:
             stack.callback(listener.close)
-            tasks = await stack.enter_async_context(asyncio.TaskGroup())
-            audit = Audit(self.node, self._policy.audit_file)
-            stack.callback(audit.close)
-            self._robot = Robot(self.node, self._policy, audit, tasks, self._ask)
-            stack.callback(self._robot.close)
-            self._robot.standstills.watch(self._doubt_all)
+            tasks = await self._open(stack)
             self._client_list = ClientList(self.node)
             stack.callback(self._client_list.close)
-            for work in (audit.run(), self._follow_policy()):
-                stack.callback(tasks.create_task(work).cancel)
             app = Door(self._application(), self)
             self._server = server = Server(app, lambda: self._policy)
             serving = tasks.create_task(server.serve(listener))
             stack.push_async_callback(self._stop, server, serving)
+            if self._mcp is not None:
+                tasks.create_task(self._mcp.run())
+                stack.callback(self._mcp.stop)
+                await self._mcp.started()
             await server.has_started.wait()
             self._stack = stack.pop_all()
         self.node.get_logger().info(f"gateway: listening on {self.host}:{self.port}")
@@ -155,17 +158,6 @@ class Gateway(Clients):
         await serving
         await self.robot.commands.close()  # those of requests, which have no session any more
 
-    def _doubt_all(self, is_long: bool) -> None:
-        """Doubt all clients after a standstill: what they have sent in it was not read meanwhile.
-
-        One that has nothing to do with commands answers a ping for nothing.
-
-        Args:
-            is_long: Whether calls and goals are too old after it as well.
-        """
-        for session in list(self._sessions):
-            session.doubt(stood_still=is_long)
-
     # Routes
 
     def _application(self) -> Starlette:
@@ -174,6 +166,7 @@ class Gateway(Clients):
             WebSocketRoute("/ws", self._websocket),
             *_http.routes(self),
             *_page_files.routes(),
+            *(self._mcp.routes() if self._mcp is not None else ()),
             WebSocketRoute("/{path:path}", _http.answer_other_websocket),
         ]
         return Starlette(routes=routes, exception_handlers={HTTPException: _http.answer_http_error})
@@ -222,29 +215,6 @@ class Gateway(Clients):
             if is_lost:
                 session.ended.set()
                 connection.abort()
-
-    # The policy file
-
-    async def _follow_policy(self) -> None:
-        """Read the policy file again when it changes; a file with a mistake changes nothing."""
-        path = self._policy.path
-        if not path:
-            return
-        read = modified(path)
-        while True:
-            await self.robot.clock.sleep(RELOAD_SEC)
-            if modified(path) == read:
-                continue
-            read = modified(path)
-            self._reread(path)
-
-    def _reread(self, path: str) -> None:
-        try:
-            policy = Policy.load(path)
-        except PolicyFileError as error:
-            self.node.get_logger().error(f"{error}; the gateway keeps the policy that it has")
-        else:
-            self.use_policy(policy)
 
 
 def protocol_of(offered: Sequence[str]) -> tuple[str, str | None]:
@@ -337,15 +307,6 @@ async def until(
             task.cancel()
     if error is not None:
         raise error
-
-
-def modified(path: str) -> tuple[int, int] | None:
-    """Return when a file was written, and its number; None if it is not there."""
-    try:
-        status = Path(path).stat()
-    except OSError:
-        return None
-    return status.st_mtime_ns, status.st_ino
 
 
 def is_loopback(host: str) -> bool:

@@ -9,6 +9,7 @@ import pytest
 from aionode.gateway.session.robot import Robot
 from aionode.node import Node
 from aionode.testing import settle
+from tests.support import mcp_bench
 from tests.support.gateway_bench import Bench, bench_of_gateway
 from tests.support.rosbridge import RosbridgeClient, robot_of, rosbridge_client
 
@@ -45,3 +46,16 @@ async def bench() -> AsyncIterator[Bench]:
     """Yield a gateway without a server that allows everything, at a time that a test sets."""
     async with bench_of_gateway() as bench:
         yield bench
+
+
+@pytest.fixture(params=["in process", "http"])
+async def assisted(request: pytest.FixtureRequest) -> AsyncIterator[mcp_bench.Bench]:
+    """Yield a robot with an assistant, whose clients are in this process or use HTTP."""
+    async with mcp_bench.bench_of(over_http=request.param == "http") as bench:
+        yield bench
+
+
+@pytest.fixture(params=["auto", "legacy"], ids=["2026-07-28", "2025-11-25"])
+def era(request: pytest.FixtureRequest) -> str:
+    """Return how clients of MCP connect: by the newest revision, or by an older one."""
+    return str(request.param)

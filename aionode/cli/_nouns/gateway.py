@@ -47,14 +47,27 @@ PORT = 9090
     "--limit", "limits", metavar="KEY=VALUE", multiple=True,
     help="Without a policy: change a limit for clients, such as call_sec=60. Can be repeated.",
 )  # fmt: skip
+@click.option(
+    "--mcp", is_flag=True,
+    help="Serve clients of MCP, such as those of language models, at /mcp.",
+)  # fmt: skip
+@click.option(
+    "--about", default="", metavar="TEXT", help="With --mcp: what models are told of this robot.",
+)  # fmt: skip
+@click.option(
+    "--bags", default="", metavar="FOLDER",
+    help="With --mcp: a folder of recordings that assistants may summarize.",
+)  # fmt: skip
 @click.pass_context
 def gateway_command(
     ctx: click.Context,
+    /,
     host: str,
     port: int,
     path: str | None,
     allow_write: bool,
     limits: tuple[str, ...],
+    **assistants: Any,
 ) -> None:
     """Serve the robot to browsers, programs and apps.
 
@@ -71,19 +84,32 @@ def gateway_command(
     if path is not None and limits:
         problem = "--limit cannot be combined with --policy: write it under [limits] there"
         raise click.UsageError(problem, ctx)
-    serve = serving(path, allow_write, host, port, limits)
+    serve = serving(path, allow_write, host, port, limits, **assistants)
     run_verb(serve, node_name="gateway", endless=True, busy=True, asks=False)
 
 
 def serving(
-    path: str | None, allow_write: bool, host: str, port: int, limits: Sequence[str] = ()
+    path: str | None,
+    allow_write: bool,
+    host: str,
+    port: int,
+    limits: Sequence[str] = (),
+    **assistants: Any,
 ) -> Callable[[Node, Output], Coroutine[Any, Any, int | None]]:
     """Return the coroutine function that serves the robot until it is cancelled.
+
+    Args:
+        path: The policy file; None without one.
+        allow_write: Whether this host may write without one.
+        host: Where to listen.
+        port: Which port.
+        limits: Limits without a policy file, as text.
+        assistants: Further arguments of the gateway: ``mcp``, ``about`` and ``bags``.
 
     Raises:
         PolicyFileError: the policy file cannot be read, or is not a policy.
         CommandError: there is no such limit.
-        ImportError: the extra ``gateway`` is not installed.
+        ImportError: the extra ``gateway``, or for assistants ``mcp``, is not installed.
     """
     from aionode.gateway import Gateway, Limits, Policy
 
@@ -97,7 +123,7 @@ def serving(
         policy = Policy.load(path)
 
     async def serve(node: Node, output: Output) -> int | None:
-        gateway = Gateway(node, policy, host=host, port=port)
+        gateway = Gateway(node, policy, host=host, port=port, **assistants)
         async with AsyncExitStack() as stack:
             try:
                 await stack.enter_async_context(gateway)

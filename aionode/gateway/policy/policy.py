@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Decision", "FieldLimit", "LeaseRule", "Limits", "Policy", "Rule", "Tls", "Verb", "Who"]
 
-Verb: TypeAlias = Literal["see", "subscribe", "publish", "call", "goal", "parameter", "advertise"]
+Verb: TypeAlias = Literal[
+    "see", "subscribe", "publish", "call", "goal", "parameter", "advertise", "stop"
+]
 """The uses of a name by a client; ``parameter`` sets one, and to read one is to ``see`` it."""
 
 Names: TypeAlias = str | list[str]
@@ -42,14 +44,15 @@ VERBS: Final[tuple[Verb, ...]] = (
     "goal",
     "parameter",
     "advertise",
+    "stop",
 )
-WRITING: Final[tuple[Verb, ...]] = ("publish", "call", "goal", "parameter", "advertise")
+WRITING: Final[tuple[Verb, ...]] = ("publish", "call", "goal", "parameter", "advertise", "stop")
 
 UNTYPED: Final[tuple[Verb, ...]] = ("see", "parameter")
 """The verbs about nodes and parameters, which have no type."""
 
 LIMITED: Final[dict[str, tuple[Verb, ...]]] = {
-    "type": ("see", "subscribe", "publish", "call", "goal", "advertise"),
+    "type": ("see", "subscribe", "publish", "call", "goal", "advertise", "stop"),
     "rate_hz": ("subscribe", "publish", "call", "goal", "parameter", "advertise"),
     "max_bytes": ("publish", "call", "goal"),
     "fields": ("publish", "call", "goal", "parameter"),
@@ -143,6 +146,8 @@ class Rule(Part, frozen=True):
         parameter: The parameters that they may set, as ``/node:parameter``. ``/node`` stands for
             all parameters of the node.
         advertise: The services and actions that they may offer themselves.
+        stop: The topics and actions on which an assistant of theirs may end what others move. Its
+            own motion it may always end.
         type: The types that the rule is about; all types if empty.
         rate_hz: How often they may do so with each name, in hertz. The number of one second may
             come at once.
@@ -165,6 +170,7 @@ class Rule(Part, frozen=True):
     goal: Names = []
     parameter: Names = []
     advertise: Names = []
+    stop: Names = []
     type: Names = []
     rate_hz: float = math.inf
     max_bytes: int | None = None
@@ -287,6 +293,9 @@ class Limits(Part, frozen=True):
             none, in seconds.
         longest_call_sec: The longest time for which a call waits, whatever its client says, in
             seconds.
+        move_sec: The longest motion by one command of an assistant, in seconds: nobody notices that
+            its client is frozen.
+        goal_sec: The longest time for which a goal of an assistant runs, in seconds.
         calls: The most calls, goals and questions about parameters of one client at a time.
         handshake_sec: The longest time in which a request arrives, and the longest time for which
             its client reads nothing of the answer, in seconds.
@@ -304,6 +313,8 @@ class Limits(Part, frozen=True):
     calls: int = 64
     call_sec: float = 30.0
     longest_call_sec: float = 3600.0
+    move_sec: float = 10.0
+    goal_sec: float = 120.0
     handshake_sec: float = 10.0
     client_lost_sec: float = 3.0
 

@@ -107,6 +107,10 @@ class Arrivals:
         """Return when that arrived which is handled, in nanoseconds of the steady clock."""
         return self._now_ns() if self._frame_ns is None else self._frame_ns
 
+    def fresh_ns(self) -> int:
+        """Return when that has arrived which the gateway makes itself, now: it has not waited."""
+        return max(self._now_ns(), self._standstills.until_ns + 1)
+
     def _trust(self, doubt: int) -> None:
         """End a doubt and those before it; the ping for a later one is not answered yet."""
         self._trusted = max(self._trusted, doubt)

@@ -14,8 +14,8 @@ from aionode.parameter import Parameter
 
 if TYPE_CHECKING:
     from aionode.gateway.policy.identity import Identity
-    from aionode.gateway.policy.policy import Decision, Limits, Verb
-    from aionode.gateway.session.robot import Robot
+    from aionode.gateway.policy.policy import Decision, Limits, Rule, Verb
+    from aionode.gateway.session.robot import Ask, Robot
     from aionode.message import Message
 
 __all__ = ["Rights"]
@@ -32,6 +32,7 @@ class Rights:
     Attributes:
         identity: Who the client is; a new policy may know it by another name.
         kind: The way in.
+        ask: Asks a person about the client; None for the way that all clients have.
         refused: How many things the client was refused.
         refused_cheaply: How many of these were commands that came too late, or on a topic in use.
     """
@@ -41,6 +42,7 @@ class Rights:
         self.kind = kind
         self.refused = 0
         self.refused_cheaply = 0
+        self.ask: Ask | None = None
         self._robot = robot
         self._coming: Counter[str] = Counter()
 
@@ -48,6 +50,11 @@ class Rights:
     def limits(self) -> Limits:
         """The limits of the policy that holds now."""
         return self._robot.policy.limits
+
+    @property
+    def rules(self) -> list[Rule]:
+        """The rules about the client that allow something."""
+        return [rule for rule in self._robot.policy.allow if rule.is_about(self.identity)]
 
     def note(self, kind: Refusal, subject: str, reason: str, count: int = 1) -> None:
         """Count and log what is refused, dropped or late of the client; see `Refusals.note`."""
@@ -117,8 +124,18 @@ class Rights:
             decision = self.decide(verb, name, type_name, message)
         return decision
 
+    async def confirm(self, verb: Verb, name: str, type_name: str, message: Any) -> None:
+        """Ask a person now, if the policy wants one asked.
+
+        Raises:
+            RefusedError: the policy does not allow it, or no person has said yes.
+        """
+        decision = self.decide(verb, name, type_name, message)
+        if decision.ask:
+            await self._ask(verb, name, decision.message)
+
     async def _ask(self, verb: Verb, name: str, message: Any) -> None:
-        ask = self._robot.ask
+        ask = self.ask or self._robot.ask
         if ask is None:
             raise self.refusal(
                 verb, name, "a person has to say yes, and nobody is there to ask",

@@ -75,7 +75,7 @@ class Session:
     Args:
         robot: The robot, as all sessions of a gateway share it.
         identity: Who the client is.
-        kind: The way in, for the audit log: ``rosbridge``, ``foxglove``, ``http``.
+        kind: The way in, for the audit log: ``rosbridge``, ``foxglove``, ``http``, ``mcp``.
         credentials: The evidence of its identity; None if the program makes the session itself.
 
     Attributes:
@@ -118,7 +118,7 @@ class Session:
         self._counts: dict[str, int] = defaultdict(int)
         self._noted_ns: dict[str, int] = {}
         self._attempts: dict[Attempt, None] = {}
-        self._goals: set[Any] = set()
+        self._goals: dict[Any, tuple[str, str]] = {}
         self._served: dict[str, Served] = {}
         self._served_types: dict[str, str] = {}
 
@@ -329,6 +329,10 @@ class Session:
             self._published[topic] = self.robot.shared.take(key, make)
         self.robot.audit.note(self.identity, "advertise", topic, way=self.kind)
 
+    def publisher(self, topic: str) -> Any:
+        """Return the publisher of a topic that the client has advertised."""
+        return self._published[self.topic_name(topic)][0]
+
     async def publish(
         self,
         topic: str,
@@ -502,6 +506,11 @@ class Session:
         return min(limits.call_sec if wanted_sec is None else wanted_sec, limits.longest_call_sec)
 
     @property
+    def goals(self) -> Mapping[Any, tuple[str, str]]:
+        """The goals of the client that have not ended, with the names of action and type."""
+        return self._goals
+
+    @property
     def has_goals(self) -> bool:
         """Whether goals of the client have not ended."""
         return bool(self._goals)
@@ -549,12 +558,12 @@ class Session:
                 self.arrivals.check_waited("goal", action, arrived_ns)
                 goal_id = self.robot.owners.new_goal(self.identity, self.kind)
                 handle = await attempt.client.send_goal(decision.message, goal_uuid=goal_id)
-                self._goals.add(handle)
+                self._goals[handle] = (action, cls.__ros_type__)
                 try:
                     async with handle:
                         yield handle
                 finally:
-                    self._goals.discard(handle)
+                    self._goals.pop(handle, None)
                     attempt.result = handle.status.name.lower()
 
     @contextmanager

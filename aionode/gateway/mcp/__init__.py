@@ -1,0 +1,1 @@
+"""An assistant for the robot: tools of the Model Context Protocol, bounded by the policy."""

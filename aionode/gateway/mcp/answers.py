@@ -1,0 +1,84 @@
+"""The answers of tools: small enough for a model, as JSON, and errors that say what fits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import mcp_types as types
+import msgspec
+
+from aionode.errors import InterfaceNotFoundError, MessageError, RefusedError, ToolError
+
+__all__ = ["MOST_BYTES", "answer", "bounded", "failure"]
+
+MOST_BYTES: Final = 9_500
+"""The longest JSON of an answer, which it has twice: as text, and structured. Both are 20 kB."""
+
+SIZES: Final = ((400, 4000), (150, 1500), (60, 600), (25, 250), (10, 100), (4, 40), (1, 20))
+"""How many entries and characters are left of long lists and texts, until the whole fits."""
+
+MOST_LEVELS: Final = 30
+"""How deeply nested an answer may be."""
+
+
+def answer(values: Mapping[str, Any], *, is_error: bool = False) -> types.CallToolResult:
+    """Return the result of a tool: its values as JSON, shortened to `MOST_BYTES`."""
+    fitting = bounded(values, MOST_BYTES)
+    text = msgspec.json.encode(fitting).decode()
+    content = [types.TextContent(type="text", text=text)]
+    return types.CallToolResult(
+        content=list(content), structured_content=fitting, is_error=is_error
+    )
+
+
+def failure(error: Exception) -> types.CallToolResult:
+    """Return why a tool has failed, as the model reads it."""
+    code = "failed"
+    if isinstance(error, RefusedError | ToolError):
+        code = error.code
+    elif isinstance(error, TimeoutError):
+        code = "timeout"
+    elif isinstance(error, MessageError):
+        code = "invalid_message"
+    elif isinstance(error, InterfaceNotFoundError):
+        code = "not_found"
+    text = str(error) or "no answer in time; try again, or wait longer"
+    fitting = bounded({"error": text, "code": code}, MOST_BYTES)
+    return types.CallToolResult(
+        content=[types.TextContent(type="text", text=fitting["error"])],
+        structured_content=fitting,
+        is_error=True,
+    )
+
+
+def bounded(values: Mapping[str, Any], most_bytes: int) -> dict[str, Any]:
+    """Return values with the ends of long lists and texts left out, so that their JSON fits."""
+    fitting = {str(key): cut(value, *SIZES[0]) for key, value in values.items()}
+    for items, characters in SIZES:
+        fitting = {str(key): cut(value, items, characters) for key, value in values.items()}
+        if len(msgspec.json.encode(fitting)) <= most_bytes:
+            return fitting
+    return {"left_out": f"the answer has more than {most_bytes} bytes; ask for less of it"}
+
+
+def cut(value: Any, items: int, characters: int, level: int = 0) -> Any:
+    """Return a value with lists and texts of a length at most, and how much of them is left out."""
+    if level > MOST_LEVELS:
+        return "..."
+    if isinstance(value, str):
+        if len(value) <= characters:
+            return value
+        return f"{value[:characters]}... ({len(value)} characters)"
+    if isinstance(value, Mapping):
+        kept = {
+            str(key): cut(part, items, characters, level + 1)
+            for key, part in list(value.items())[:items]
+        }
+        if len(value) > items:
+            kept["..."] = f"{len(value) - items} more"
+        return kept
+    if isinstance(value, list | tuple):
+        parts = [cut(part, items, characters, level + 1) for part in value[:items]]
+        return [*parts, f"... {len(value) - items} more"] if len(value) > items else parts
+    return value

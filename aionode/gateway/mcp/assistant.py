@@ -1,0 +1,122 @@
+"""An assistant for the robot in a program, or behind a command's standard streams."""
+
+from __future__ import annotations
+
+from contextlib import AsyncExitStack
+from typing import TYPE_CHECKING, Any, Self
+
+from mcp.server.stdio import stdio_server
+
+from aionode._process.concurrency import to_the_end
+from aionode.errors import ConfigurationError
+from aionode.gateway._clients import Clients
+from aionode.gateway.mcp.server import McpServer
+from aionode.gateway.policy.identity import Credentials, Identity
+from aionode.gateway.policy.policy import Policy
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+    from aionode.gateway.session.robot import Ask
+    from aionode.node import Node
+
+__all__ = ["Assistant"]
+
+LOOPBACK = Credentials(address="127.0.0.1", host="127.0.0.1")
+"""What a program of this host shows that shows nothing else."""
+
+
+class Assistant(Clients):
+    """Lets a model's client of MCP use a robot: ``async with Assistant(node) as assistant:``.
+
+    The tools, their limits and what they may reach are those of the policy; see `Policy`. It needs
+    the extra ``mcp``. For clients over HTTP, use `Gateway` with ``mcp=True``.
+
+    Args:
+        node: The node by which the assistant takes part in the graph. The node has to run.
+        policy: Who may do what; by default `Policy.default`, by which it only looks.
+        name: Which ``[[who]]`` of the policy the client is; by default what the policy says of
+            programs of this host.
+        ask: Asks a person, where a rule of the policy has ``ask``, as for `Gateway`; by default the
+            client asks its user, and if it cannot, the request is refused.
+        about: What the model is told of this robot: what it is for, and what to take care of.
+        bags: A folder of recordings of which the model gets summaries; empty for none.
+
+    Raises:
+        ConfigurationError: the policy has no client of that name (a ValueError).
+
+    Attributes:
+        node: The node.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        policy: Policy | None = None,
+        *,
+        name: str = "",
+        ask: Ask | None = None,
+        about: str = "",
+        bags: str = "",
+    ) -> None:
+        super().__init__(node, Policy.default() if policy is None else policy, ask)
+        self._name = name
+        if name:
+            self.identity()
+        self._mcp = McpServer(self, self.identity, about, bags)
+
+    @property
+    def server(self) -> Any:
+        """The low-level server of the MCP SDK, for its transports and for clients in tests."""
+        return self._mcp.server
+
+    def identity(self) -> Identity:
+        """Return who the client is, by the policy as it is now.
+
+        Raises:
+            ConfigurationError: the policy has no client of the name (a ValueError).
+            RefusedError: the policy knows no programs of this host.
+        """
+        if not self._name:
+            return self.policy.identify(LOOPBACK)
+        for who in self.policy.who:
+            if who.name == self._name:
+                return Identity(who.name, frozenset(who.groups), LOOPBACK.address)
+        known = ", ".join(who.name for who in self.policy.who) or "none"
+        raise ConfigurationError(
+            "assistant's name", self._name, f"no [[who]] of the policy has it; there is {known}"
+        )
+
+    async def __aenter__(self) -> Self:
+        """Begin; clients are served from now on.
+
+        Raises:
+            RuntimeError: the node does not run.
+        """
+        self._check_node()
+        async with AsyncExitStack() as stack:
+            await self._open(stack)
+            stack.push_async_callback(self._end)
+            self._stack = stack.pop_all()
+        return self
+
+    async def __aexit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """End the calls under way: the stops of their leases are sent, their goals cancelled."""
+        if isinstance(error, Exception):
+            kind = error = traceback = None  # the group of tasks would wrap the program's error
+        await to_the_end(self._stack.__aexit__(kind, error, traceback))
+
+    async def _end(self) -> None:
+        for session in self.sessions:
+            session.ended.set()
+        await self.robot.commands.close()
+
+    async def serve_stdio(self) -> None:
+        """Serve one client over the standard streams of this process, until it closes them."""
+        async with stdio_server() as (incoming, outgoing):
+            await self.server.run(incoming, outgoing, self.server.create_initialization_options())

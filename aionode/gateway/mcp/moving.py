@@ -1,0 +1,426 @@
+"""The tools that change something: commands, goals, calls and parameters; and the stop.
+
+What moves the robot ends with who asked for it. The end of a call ends its session, which sends the
+stops of leases and cancels goals; a call ends when it is cancelled, when its client disconnects, at
+the latest after the seconds that the policy allows, and when somebody calls `stop`.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import suppress
+from typing import TYPE_CHECKING, Annotated, Any, Final
+
+from msgspec import Meta, field
+
+from aionode.errors import AionodeError, RefusedError, ToolError
+from aionode.gateway.mcp.answers import answer
+from aionode.gateway.mcp.arguments import Arguments, Nothing
+from aionode.gateway.mcp.names import topic_of
+from aionode.message import summarize
+
+if TYPE_CHECKING:
+    import mcp_types as types
+
+    from aionode.gateway.mcp.call import Call
+    from aionode.gateway.mcp.motions import Motion
+    from aionode.gateway.policy.policy import Decision, LeaseRule
+    from aionode.gateway.session.command import Holder
+    from aionode.gateway.session.session import Session
+
+__all__ = ["CallService", "Do", "Move", "Publish", "SetParameter", "call_service", "do"]
+__all__ += ["move", "publish", "run_goal", "run_service", "set_parameter", "stop"]
+
+RATE_HZ: Final = 20.0
+"""How often a command is repeated, in hertz, if its rule and lease take that."""
+
+LISTENERS_SEC: Final = 1.0
+"""The longest wait for a subscription that the graph shows to be matched, in seconds."""
+
+ENDING_SEC: Final = 1.0
+"""The longest time for motion to end that was stopped, in seconds."""
+
+LONG: Final = 4000
+
+
+# Topics
+
+TopicName = Annotated[str, Meta(description="The full name of the topic.")]
+Values = Annotated[
+    dict[str, Any],
+    Meta(description='The fields by name, such as {"linear": {"x": 0.2}}; others are zero.'),
+]
+
+
+class Publish(Arguments, frozen=True):
+    """The arguments of `publish`."""
+
+    topic: TopicName
+    message: Values = field(default_factory=dict)
+
+
+async def publish(call: Call, given: Publish) -> types.CallToolResult:
+    """Publish one message; a topic with commands has `move`."""
+    session = call.session
+    topic, type_name, decision = decided(session, given.topic)
+    if decision.lease is not None:
+        raise RefusedError(
+            f"publish {topic}",
+            "it has commands, which the robot would follow without an end; use the tool `move`, "
+            "which ends with the stop",
+        )
+    await session.advertise(topic, type_name)
+    listeners = await listening(call, topic)
+    await session.publish(topic, given.message, type_name)
+    return answer({"topic": topic, "type": type_name, "published": 1, "subscribers": listeners})
+
+
+def decided(session: Session, name: str) -> tuple[str, str, Decision]:
+    """Return the full name of a topic, its type, and the rule by which the client publishes.
+
+    Raises:
+        ToolError: there is no such topic.
+        RefusedError: the policy does not allow it.
+    """
+    topic = session.topic_name(name)
+    session.rights.decide("publish", topic, "")
+    topic = topic_of(session, name)
+    type_name = session.graph.type_of(topic, "topic")
+    return topic, type_name, session.rights.decide("publish", topic, type_name)
+
+
+async def listening(call: Call, topic: str) -> int:
+    """Wait until the subscriptions of a topic are matched, and return how many there are."""
+    publisher = call.session.publisher(topic)
+    with suppress(TimeoutError):
+        async with asyncio.timeout(LISTENERS_SEC):
+            await publisher.wait_for_subscribers()
+    return int(publisher.get_subscription_count())
+
+
+class Move(Arguments, frozen=True):
+    """The arguments of `move`."""
+
+    topic: TopicName
+    message: Values
+    seconds: Annotated[float, Meta(gt=0, description="For how long; then the robot is stopped.")]
+
+
+async def move(call: Call, given: Move) -> types.CallToolResult:
+    """Repeat a command for some seconds, and send the stop, however it ends."""
+    session = call.session
+    topic, type_name, decision = decided(session, given.topic)
+    if decision.lease is None or decision.rule is None:
+        raise RefusedError(
+            f"move {topic}",
+            "its rule in the policy has no lease, which says how the motion stops; publish one "
+            "message with the tool `publish`, or have `lease` added to the rule",
+        )
+    check_seconds(given.seconds, session.rights.limits.move_sec, "move_sec")
+    await session.advertise(topic, type_name)
+    # Before the time counts: the values, the person who says yes, and who listens.
+    publisher = session.publisher(topic)
+    message = await session.message_of(publisher.msg_type, given.message)
+    await session.rights.confirm("publish", topic, type_name, message)
+    listeners = await listening(call, topic)
+    mover = Mover(call, topic, type_name, given)
+    with call.moving("publish", topic, type_name) as motion:
+        await mover.run(motion, period_of(decision.lease, decision.rule.rate_hz))
+        lasted = motion.seconds()
+        await session.unadvertise(topic)  # sends the stop
+    call.outcome = motion.outcome(mover.how(motion))
+    return answer(
+        {
+            "outcome": call.outcome,
+            "topic": topic,
+            "seconds": round(lasted, 3),
+            "commands": mover.sent,
+            "subscribers": listeners,
+            "stop_sent": True,
+        },
+        is_error=mover.problem is not None,
+    )
+
+
+class Mover:
+    """Repeats the command of one call.
+
+    Attributes:
+        sent: How many were sent.
+        problem: Why it ended before its time; None if it did not, or by `stop`.
+    """
+
+    def __init__(self, call: Call, topic: str, type_name: str, given: Move) -> None:
+        self.sent = 0
+        self.problem: str | None = None
+        self._call = call
+        self._topic = topic
+        self._type_name = type_name
+        self._given = given
+        self._commands = call.clients.robot.commands
+
+    async def run(self, motion: Motion, period_sec: float) -> None:
+        """Send commands until the time is over, the motion is ended, or the topic is lost.
+
+        Raises:
+            RefusedError: the first command is refused.
+        """
+        session, given = self._call.session, self._given
+        session.arrivals.check_waited("publish", self._topic, session.arrivals.arrival_ns())
+        holder: Holder | None = None
+        try:
+            async with motion.running(given.seconds):
+                while motion.seconds() < given.seconds:
+                    if holder is not None and self._commands.holder(self._topic) is not holder:
+                        # The stop was sent, and no command may come after it.
+                        self.problem = self._lost()
+                        break
+                    await session.publish(
+                        self._topic,
+                        given.message,
+                        self._type_name,
+                        arrived_ns=session.arrivals.fresh_ns(),
+                    )
+                    holder = holder or self._commands.holder(self._topic)
+                    self.sent += 1
+                    await self._call.report(
+                        motion.seconds(), given.seconds, f"moving {self._topic}"
+                    )
+                    await self._call.sleep(period_sec)
+        except RefusedError as error:
+            if not self.sent:
+                raise
+            self.problem = self._lost() if error.code == "too_old" else error.reason
+
+    def _lost(self) -> str:
+        """Return why the topic is commanded no more."""
+        holder = self._commands.holder(self._topic)
+        if holder is not None:
+            return f"{holder.identity.name} commands {self._topic} now"
+        return "this computer was too busy, and the robot was stopped; try again"
+
+    def how(self, motion: Motion) -> str:
+        """Return how the motion has ended, in words."""
+        if motion.stopped_by:
+            self.problem = None
+            return f"by {motion.stopped_by}"
+        return self.problem or "done"
+
+
+def check_seconds(seconds: float, most: float, limit: str) -> None:
+    """Refuse a time that is longer than the policy allows.
+
+    Raises:
+        RefusedError: it is; its code is ``out_of_limits``.
+    """
+    if seconds > most:
+        raise RefusedError(
+            "seconds",
+            f"{seconds:g} s, at most {most:g} s fit, by {limit} of the policy; move in several "
+            "steps, and look in between",
+            "out_of_limits",
+        )
+
+
+def period_of(lease: LeaseRule, rate_hz: float) -> float:
+    """Return the time between two commands, in seconds.
+
+    Raises:
+        RefusedError: the rule does not allow as many as its lease needs.
+    """
+    period_sec = max(min(1 / RATE_HZ, lease.ttl_sec / 4), 1.1 / rate_hz)
+    if period_sec > lease.ttl_sec / 2:
+        raise RefusedError(
+            "move",
+            f"the rule allows {rate_hz:g} commands a second, and its lease of {lease.ttl_sec:g} s "
+            "needs more; have rate_hz or ttl_sec changed in the policy",
+        )
+    return period_sec
+
+
+# Services
+
+Seconds = Annotated[float, Meta(gt=0, description="How long it may take at most.")]
+
+
+class CallService(Arguments, frozen=True):
+    """The arguments of `call_service`."""
+
+    service: Annotated[str, Meta(description="The full name of the service.")]
+    request: Annotated[dict[str, Any], Meta(description="The fields of the request by name.")] = (
+        field(default_factory=dict)
+    )
+
+
+async def call_service(call: Call, given: CallService) -> types.CallToolResult:
+    """Call a service by its name."""
+    return await run_service(call, given.service, given.request)
+
+
+async def run_service(call: Call, service: str, request: Any) -> types.CallToolResult:
+    """Call a service, and return its response."""
+    response = await call.session.call(service, request, timeout_sec=call.session.wait_sec(None))
+    return answer({"service": service, "response": summarize(response, LONG)})
+
+
+# Actions
+
+
+class Do(Arguments, frozen=True):
+    """The arguments of `do`."""
+
+    action: Annotated[str, Meta(description="The full name of the action.")]
+    goal: Annotated[dict[str, Any], Meta(description="The fields of the goal by name.")] = field(
+        default_factory=dict
+    )
+    seconds: Seconds | None = None
+
+
+async def do(call: Call, given: Do) -> types.CallToolResult:
+    """Send a goal to an action by its name."""
+    return await run_goal(call, given.action, given.goal, given.seconds)
+
+
+async def run_goal(
+    call: Call, action: str, goal: Any, seconds: float | None
+) -> types.CallToolResult:
+    """Send a goal, wait for its end, and report how far it is meanwhile."""
+    session = call.session
+    most = session.rights.limits.goal_sec
+    seconds = most if seconds is None else seconds
+    check_seconds(seconds, most, "goal_sec")
+    action = session.topic_name(action)
+    session.rights.decide("goal", action, "")
+    type_name = session.graph.type_of(action, "action")
+    feedback: Any = None
+    result: Any = None
+    with call.moving("goal", action, type_name) as motion:
+        async with session.goal(action, goal, type_name=type_name) as handle:
+            async with motion.running(seconds):
+                async for feedback in handle:
+                    far = str(summarize(feedback, 300).get("value"))
+                    await call.report(motion.seconds(), seconds, far)
+                result = await handle.result()
+            if result is None:
+                result = await cancelled(handle)
+    values, is_error = ended(call, motion, action, feedback, result)
+    return answer(values, is_error=is_error)
+
+
+async def cancelled(handle: Any) -> Any:
+    """Cancel a goal, and return how it has ended; None if it has not within a second."""
+    with suppress(TimeoutError, AionodeError):
+        async with asyncio.timeout(ENDING_SEC):
+            await handle.cancel()
+            return await handle.result()
+    return None
+
+
+def ended(
+    call: Call, motion: Motion, action: str, feedback: Any, result: Any
+) -> tuple[dict[str, Any], bool]:
+    """Return the answer about a goal that was given up or has ended, and whether it has failed."""
+    status = "unknown" if result is None else result.status.name.lower()
+    how = f"by {motion.stopped_by}" if motion.stopped_by else "expired"
+    if not motion.was_cut:
+        how = "done" if status == "succeeded" else status
+    elif status == "unknown":
+        how = f"{how}; the goal goes on: its server has not ended it"
+    call.outcome = motion.outcome(how)
+    values: dict[str, Any] = {
+        "outcome": call.outcome,
+        "action": action,
+        "status": status,
+        "seconds": round(motion.seconds(), 3),
+    }
+    if result is not None:
+        values["result"] = summarize(result.result, LONG)
+        if result.error_text:
+            values["error"] = result.error_text
+    if feedback is not None:
+        values["last_feedback"] = summarize(feedback, LONG // 4)
+    return values, status != "succeeded"
+
+
+# Parameters
+
+
+class SetParameter(Arguments, frozen=True):
+    """The arguments of `set_parameter`."""
+
+    node: Annotated[str, Meta(description="The full name of the node.")]
+    name: Annotated[str, Meta(description="The name of the parameter.")]
+    value: Annotated[
+        bool | int | float | str | list[Any],
+        Meta(description="The value, of the same type as now."),
+    ]
+
+
+async def set_parameter(call: Call, given: SetParameter) -> types.CallToolResult:
+    """Set a parameter of a node."""
+    result = await call.session.parameters.set_json(given.node, given.name, given.value)
+    if not result.successful:
+        reason = result.reason or "the node has refused it, without a reason"
+        raise ToolError(f"{given.node}:{given.name}", reason)
+    return answer({"node": given.node, "name": given.name, "value": given.value})
+
+
+# The stop
+
+
+async def stop(call: Call, _given: Nothing) -> types.CallToolResult:
+    """End what the client moves, and what others move as far as the policy says so."""
+    session = call.session
+    own = session.identity.name
+    ended: list[str] = []
+    ending: list[Motion] = []
+    for motion in call.motions:
+        if may_stop(session, motion, motion.name, motion.type_name):
+            motion.end(by=f"stop of {own}")
+            ending.append(motion)
+            ended.append(f"{motion.name} ({motion.identity.name})")
+    with suppress(TimeoutError):
+        async with asyncio.timeout(ENDING_SEC):
+            for motion in ending:
+                await motion.ended.wait()
+    ended += await end_others(call)
+    moving = still_moving(call)
+    call.outcome = f"ended {len(ended)}, {len(moving)} go on"
+    return answer({"ended": sorted(set(ended)), "still_moving": moving})
+
+
+def may_stop(session: Session, owner: Any, name: str, type_name: str) -> bool:
+    """Return whether a client may end what another one moves: its own, or by the policy's word."""
+    if owner.identity.name == session.identity.name:
+        return True
+    return session.rights.decision("stop", name, type_name).allowed
+
+
+async def end_others(call: Call) -> list[str]:
+    """End leases and goals of clients by other ways in, and return what they moved."""
+    session, robot, ended = call.session, call.clients.robot, []
+    for topic in list(robot.commands.holders()):
+        holder = robot.commands.holder(topic)
+        types = session.graph.types_of(topic, "topic")
+        if holder is not None and may_stop(session, holder, topic, types[0] if types else ""):
+            ended.append(f"{topic} ({holder.identity.name})")
+            await robot.commands.leave(holder.owner, topic)
+    for other in call.clients.sessions:
+        for handle, (action, type_name) in list(other.goals.items()):
+            if may_stop(session, other, action, type_name):
+                ended.append(f"{action} ({other.identity.name})")
+                await cancelled(handle)
+    return ended
+
+
+def still_moving(call: Call) -> list[dict[str, str]]:
+    """Return who moves what now, as far as the gateway knows."""
+    holders = call.clients.robot.commands.holders()
+    moving = [{"name": topic, "who": identity.name} for topic, identity in holders.items()]
+    moving += [
+        {"name": action, "who": other.identity.name}
+        for other in call.clients.sessions
+        for handle, (action, _) in other.goals.items()
+        if not handle.done
+    ]
+    return moving

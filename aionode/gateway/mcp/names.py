@@ -1,0 +1,102 @@
+"""Names: those of the robot that are its user's own, and those of the tools made of them."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from aionode.errors import ToolError
+from aionode.gateway.mcp.arguments import meant
+
+if TYPE_CHECKING:
+    from aionode.gateway.policy.policy import Verb
+    from aionode.gateway.session.session import Session
+
+__all__ = ["MOST_CHARACTERS", "may", "rights", "tool_name", "topic_of", "user_names"]
+
+MOST_CHARACTERS: Final = 40
+"""The longest name of a tool: some clients cut names at 64 characters, with a prefix of theirs."""
+
+DIGITS: Final = 8
+"""Digits of the hash at the end of a name that would be longer."""
+
+VERBS: Final[dict[str, tuple[Verb, ...]]] = {
+    "topic": ("subscribe", "publish"),
+    "service": ("call",),
+    "action": ("goal",),
+}
+
+
+def user_names(session: Session) -> dict[str, dict[str, list[str]]]:
+    """Return the names that a client sees and that are its user's own, with their types."""
+    offered = session.graph.offered()
+    return {
+        "nodes": {name: [] for name in offered.nodes},
+        "topics": offered.topics,
+        "services": offered.services,
+        "actions": offered.actions,
+    }
+
+
+def may(session: Session, verb: Verb, name: str, type_name: str) -> bool:
+    """Return whether the policy lets the client do something."""
+    return session.rights.decision(verb, name, type_name).allowed
+
+
+def rights(
+    session: Session, kind: Literal["topic", "service", "action"], name: str, type_name: str
+) -> list[str]:
+    """Return what the client may do with a name, and within which limits."""
+    found = []
+    for verb in VERBS[kind]:
+        decision = session.rights.decision(verb, name, type_name)
+        if decision.allowed:
+            word = "move" if decision.lease is not None else verb
+            found.append(word + limits_of(decision.rule))
+    return found
+
+
+def limits_of(rule: Any) -> str:
+    """Return the limits of a rule in words, in brackets; empty without any."""
+    if rule is None:
+        return ""
+    parts = [
+        f"{path} from {limit.min:g} to {limit.max:g}"
+        + (", others are replaced by the nearest" if limit.outside == "clamp" else "")
+        for path, limit in rule.fields.items()
+    ]
+    if rule.rate_hz < float("inf"):
+        parts.append(f"at most {rule.rate_hz:g} times a second")
+    if rule.ask:
+        parts.append("a person is asked each time")
+    return f" ({'; '.join(parts)})" if parts else ""
+
+
+def topic_of(session: Session, name: str) -> str:
+    """Return the full name of a topic that is there.
+
+    Raises:
+        ToolError: there is none, or the client may not see it.
+        InvalidTopicNameException: it is no name (a ValueError).
+    """
+    topic = session.topic_name(name)
+    if not session.graph.types_of(topic, "topic"):
+        known = user_names(session)["topics"]
+        raise ToolError(
+            topic[:200], f"the robot has no such topic{meant(topic, known)}", "not_found"
+        )
+    return topic
+
+
+def tool_name(verb: str, name: str) -> str:
+    """Return the name of the tool for a service or action: always the same one, and of no other.
+
+    A slash becomes a hyphen, which no name in ROS has. A name that is too long ends in a hash.
+    """
+    plain = f"{verb}_{name.removeprefix('/').replace('/', '-')}"
+    if len(plain) <= MOST_CHARACTERS and re.fullmatch(r"[A-Za-z0-9_-]+", plain):
+        return plain
+    digest = hashlib.sha256(name.encode()).hexdigest()[:DIGITS]
+    kept = re.sub(r"[^A-Za-z0-9_-]", "_", plain)[: MOST_CHARACTERS - DIGITS - 1]
+    return f"{kept}-{digest}"

@@ -1,0 +1,277 @@
+"""The tools of an assistant, for clients of both revisions, in this process and over HTTP."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import re
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aionode.gateway.mcp.answers import MOST_BYTES, bounded
+from aionode.gateway.mcp.names import MOST_CHARACTERS, tool_name
+from aionode.gateway.mcp.tools import MOST_TYPED
+from aionode.interfaces.std_msgs.msg import String
+from aionode.interfaces.std_srvs.srv import Trigger
+from tests.support.mcp_bench import POLICY, Bench, bench_of
+from tests.support.waiting import until
+
+LOOKING = ["list", "describe", "read", "watch", "look", "transform", "log", "get_parameters"]
+
+
+async def answered(client: Any, tool: str, /, **arguments: Any) -> dict[str, Any]:
+    """Return what a tool has answered; it must not have failed."""
+    result = await client.call_tool(tool, arguments)
+    assert not result.is_error, result.content
+    values: dict[str, Any] = result.structured_content
+    return values
+
+
+async def refused(client: Any, tool: str, /, **arguments: Any) -> str:
+    """Return why a tool has failed, as a model reads it."""
+    result = await client.call_tool(tool, arguments)
+    assert result.is_error, result.structured_content
+    return str(result.content[0].text)
+
+
+async def test_a_client_has_tools_for_what_the_policy_allows(assisted: Bench, era: str) -> None:
+    """And a tool of its own for each service and action."""
+    client = await assisted.connect(era)
+    names = [tool.name for tool in (await client.list_tools()).tools]
+
+    writing = ["move", "publish", "set_parameter", "call_switch", "do_count"]
+    assert names == [*LOOKING, "stop", *writing]
+
+
+async def test_a_robot_without_a_policy_is_only_looked_at(era: str) -> None:
+    """Nothing is offered that would be refused."""
+    async with bench_of('[[who]]\nname = "a"\nloopback = true\n[[allow]]\nsee = "/**"\n') as bench:
+        client = await bench.connect(era)
+        names = [tool.name for tool in (await client.list_tools()).tools]
+
+    assert names == [*LOOKING, "stop"]
+
+
+async def test_each_tool_says_what_it_may_do(assisted: Bench) -> None:
+    """Hosts ask a person by these, and their defaults are the worst case."""
+    client = await assisted.connect()
+    for tool in (await client.list_tools()).tools:
+        hints = tool.annotations
+        assert hints is not None
+        each = (hints.read_only_hint, hints.destructive_hint, hints.idempotent_hint)
+        expected = {
+            "stop": (False, False, True),
+            "set_parameter": (False, True, True),
+            **dict.fromkeys(LOOKING, (True, False, True)),
+        }
+        assert each == expected.get(tool.name, (False, True, False)), tool.name
+        assert hints.open_world_hint is (tool.name not in expected), tool.name
+
+
+async def test_the_instructions_name_the_domain_and_the_nodes(assisted: Bench, era: str) -> None:
+    """A program of the desktop passes no environment on, and sees no robot in domain 0."""
+    client = await assisted.connect(era)
+
+    assert "domain 0, which shows 1 node." in str(client.instructions)
+
+
+async def test_list_and_describe_show_the_users_names(assisted: Bench, era: str) -> None:
+    """Not those that every node has."""
+    client = await assisted.connect(era)
+    listed = await answered(client, "list")
+    described = await answered(client, "describe", name="/cmd_vel")
+
+    assert listed["services"] == {"/switch": ["std_srvs/srv/SetBool"]}
+    assert listed["actions"] == {"/count": ["example_interfaces/action/Fibonacci"]}
+    assert described["topic"]["you_may"] == ["subscribe", "move (linear.x from -0.5 to 0.5)"]
+    assert described["topic"]["subscribed_by"] == ["/base"]
+
+
+async def test_read_returns_the_next_messages(assisted: Bench, era: str) -> None:
+    """Those that come while it waits."""
+    client = await assisted.connect(era)
+    async with asyncio.TaskGroup() as tasks:
+        reading = tasks.create_task(answered(client, "read", topic="/text", count=2))
+        await assisted.base.text.wait_for_subscribers()
+        for text in ("one", "two"):
+            assisted.base.text.publish(String(data=text))
+
+    assert [each["value"]["data"] for each in reading.result()["messages"]] == ["one", "two"]
+
+
+async def test_watch_sums_up_what_comes(assisted: Bench, era: str) -> None:
+    """Its progress says how many there were so far."""
+    client = await assisted.connect(era)
+    heard: list[str] = []
+
+    async def report(progress: float, total: float | None, message: str | None) -> None:
+        heard.append(f"{progress < (total or 0)} {message}")
+
+    async with asyncio.TaskGroup() as tasks:
+        watching = tasks.create_task(
+            client.call_tool(
+                "watch", {"topic": "/cmd_vel", "seconds": 1.0}, progress_callback=report
+            )
+        )
+        moving = tasks.create_task(
+            answered(client, "move", topic="/cmd_vel", message={"linear": {"x": 0.2}}, seconds=0.5)
+        )
+    seen = watching.result().structured_content
+
+    assert seen["messages"] == moving.result()["commands"] + 1  # and the stop
+    assert seen["fields"]["linear.x"]["max"] == 0.2
+    assert seen["fields"]["linear.x"]["last"] == 0.0
+    assert heard
+    assert heard[0].startswith("True ")
+
+
+async def test_a_service_and_parameters_are_reached(assisted: Bench, era: str) -> None:
+    """The fields of the request are the arguments of its tool."""
+    client = await assisted.connect(era)
+    response = await answered(client, "call_switch", data=False)
+    await answered(client, "set_parameter", node="/base", name="speed", value=1)
+    parameters = await answered(client, "get_parameters", node="/base", names=["speed"])
+
+    assert response["response"]["value"]["message"] == "off"
+    assert parameters["parameters"] == {"speed": 1.0}
+
+
+async def test_publish_sends_one_message(assisted: Bench, era: str) -> None:
+    """And waits until the subscription is matched."""
+    client = await assisted.connect(era)
+    published = await answered(client, "publish", topic="/says", message={"data": "hello"})
+    await until(lambda: assisted.base.heard)
+
+    assert assisted.base.heard == ["hello"]
+    assert published["subscribers"] == 1
+
+
+async def test_publish_names_move_for_a_topic_with_commands(assisted: Bench, era: str) -> None:
+    """One command alone would have no stop."""
+    client = await assisted.connect(era)
+
+    assert "the tool `move`" in await refused(client, "publish", topic="/cmd_vel", message={})
+    assert assisted.base.commands == []
+
+
+async def test_move_is_refused_without_a_lease(assisted: Bench, era: str) -> None:
+    """Nothing says how it would stop."""
+    client = await assisted.connect(era)
+
+    assert "no lease" in await refused(client, "move", topic="/says", message={}, seconds=1)
+
+
+MISTAKES = [
+    ("move", {"topic": "/cmd_vel", "message": {"linear": {"z0": 1}}, "seconds": 1}, "did you mean"),
+    ("move", {"topic": "/cmd_vel", "message": {"linear": {"x": 2}}, "seconds": 1}, "-0.5 and 0.5"),
+    ("move", {"topic": "/cmd_vel", "message": {}, "seconds": 60}, "at most 10 s fit"),
+    ("move", {"topic": "/cmd_vel", "message": {}}, "missing required field `seconds`"),
+    ("move", {"topic": "/cmd", "message": {}, "seconds": 1}, "the policy does not allow"),
+    ("read", {"topic": "/tekst"}, "did you mean /text?"),
+    ("read", {"topik": "/text"}, "did you mean topic?"),
+    ("read", {"topic": "/text", "timeout_sec": 0.05}, "published by /base"),
+    ("list", {"kind": "tpics"}, "one of actions, all, nodes, services, topics fits"),
+    ("lst", {}, "did you mean list?"),
+    ("describe", {"name": "/tekst"}, "did you mean /text?"),
+    ("describe", {"name": "std_msgs/msg/Strin"}, "std_msgs/msg/String"),
+    ("get_parameters", {"node": "/bas"}, "did you mean /base?"),
+    ("get_parameters", {"node": "/base", "names": ["sped"]}, "did you mean speed?"),
+    ("set_parameter", {"node": "/base", "name": "speed", "value": "fast"}, "speed"),
+    ("call_switch", {"data": "yes"}, "SetBool_Request.data"),
+    ("do_count", {"order": 1.5}, "order"),
+    ("do_count", {"order": 1, "seconds": -1}, "above 0"),
+    ("look", {}, "0 topics with images"),
+    ("transform", {"target": "odom", "source": "base", "timeout_sec": 0.05}, "no transforms came"),
+]
+
+
+@pytest.mark.parametrize(("tool", "arguments", "expected"), MISTAKES)
+async def test_a_mistake_says_what_fits(
+    tool: str, arguments: dict[str, Any], expected: str
+) -> None:
+    """The model reads it as a result, and can try again."""
+    async with bench_of() as bench:
+        client = await bench.connect()
+        assert expected in await refused(client, tool, **arguments)
+        assert bench.base.commands == []
+
+
+async def test_an_endless_answer_is_cut(assisted: Bench, era: str) -> None:
+    """Texts and lists end in how much there was of them."""
+    client = await assisted.connect(era)
+    result = await client.call_tool("call_switch", {"data": True})
+
+    assert "(100000 characters)" in result.content[0].text
+    assert len(result.model_dump_json()) < 20_000
+
+
+async def test_twenty_clients_at_once_are_served(assisted: Bench, era: str) -> None:
+    """Each call has a session of its own."""
+    clients = [await assisted.connect(era) for _ in range(20)]
+    async with asyncio.TaskGroup() as tasks:
+        calls = [tasks.create_task(answered(client, "list")) for client in clients]
+
+    assert all(call.result()["services"] for call in calls)
+
+
+async def test_each_call_has_a_line_in_the_audit_log(assisted: Bench, era: str) -> None:
+    """Also one that only looks, and one that is refused."""
+    client = await assisted.connect(era)
+    await answered(client, "list")
+    await refused(client, "publish", topic="/cmd_vel", message={})
+    await answered(client, "stop")
+    await until(lambda: sum(line["action"] == "tool" for line in assisted.audit) == 3)
+    lines = [line for line in assisted.audit if line["action"] == "tool"]
+
+    assert [(line["name"], line["who"], line["way"]) for line in lines] == [
+        ("list", "model", "mcp"), ("publish", "model", "mcp"), ("stop", "model", "mcp"),
+    ]  # fmt: skip
+    assert lines[1]["result"].startswith("failed: publish /cmd_vel: refused")
+
+
+async def test_many_services_have_one_tool(era: str) -> None:
+    """A list of a hundred tools would fill the context of a model."""
+    policy = POLICY.replace('call = "/switch"', 'call = "/**"')
+    async with bench_of(policy) as bench:
+        for number in range(MOST_TYPED):
+            bench.base.create_service(Trigger, f"/work/w{number}", lambda _, response: response)
+        client = await bench.connect(era)
+        names = [tool.name for tool in (await client.list_tools()).tools]
+        response = await answered(client, "call", service="/work/w7")
+
+    assert names[-2:] == ["call", "do"]
+    assert response["response"]["value"] == {"success": False, "message": ""}
+
+
+# Laws
+
+NAMES = st.from_regex(r"(/[a-z_][a-z0-9_]{0,30}){1,5}", fullmatch=True)
+
+
+@given(names=st.lists(NAMES, unique=True, max_size=20))
+def test_names_of_tools_are_short_and_unique(names: list[str]) -> None:
+    """Whatever else the robot offers, each has the same one."""
+    made = [tool_name("call", name) for name in names]
+
+    assert len(set(made)) == len(names)
+    assert all(re.fullmatch(r"[A-Za-z0-9_-]+", name) for name in made)
+    assert all(len(name) <= MOST_CHARACTERS for name in made)
+
+
+JSON = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.text(),
+    lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
+)
+
+
+@given(values=st.dictionaries(st.text(), JSON), times=st.integers(1, 2000))
+def test_answers_are_bounded(values: dict[str, Any], times: int) -> None:
+    """By what they are as JSON."""
+    longer = {"values": [values] * times}
+
+    assert (
+        len(json.dumps(bounded(longer, MOST_BYTES), ensure_ascii=False).encode()) < 2 * MOST_BYTES
+    )
