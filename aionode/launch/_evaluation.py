@@ -41,6 +41,9 @@ __all__ = ["arguments_of", "check_later_steps", "evaluate", "load_file", "new_co
 
 FUNCTION = "generate_launch_description"
 
+ENDINGS = {".py": "python", ".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
+"""The languages of launch files, by the endings of their names."""
+
 MAX_DEPTH = 100
 """Most files that may include one another."""
 
@@ -69,11 +72,42 @@ def load_description(path: str, kind: str = "any") -> Any:
     Raises:
         LaunchFileError: There is no such file, or it is not a launch file.
     """
-    file = Path(path)
+    return description_in_text(path, text_of(path), kind)
+
+
+def description_of_text(path: str, text: bytes | None, endings: Iterable[str]) -> Any:
+    """Return the description in a file, for a program that asks for it.
+
+    Args:
+        path: The file, or a name for what was read.
+        text: Its text; read from the file if not given.
+        endings: Those of the languages that it may be in; one of them, if there is only one.
+
+    Raises:
+        LaunchFileError: There is no such file, or it is not a launch file of these languages.
+    """
+    kinds = [ENDINGS[f".{ending}"] for ending in endings]
+    content = text_of(path) if text is None else text
+    kind = kinds[0] if len(kinds) == 1 else kind_of(path, content)
+    if kind not in kinds:
+        raise LaunchFileError(path, f"is in {kind}; {', '.join(dict.fromkeys(kinds))} fit")
+    return description_in_text(path, content, kind)
+
+
+def text_of(path: str) -> bytes:
+    """Return the text of a launch file.
+
+    Raises:
+        LaunchFileError: It cannot be read.
+    """
     try:
-        text = read_file(file)
+        return read_file(Path(path))
     except OSError as error:
         raise LaunchFileError(path, f"cannot be read: {error.strerror}") from error
+
+
+def description_in_text(path: str, text: bytes, kind: str) -> Any:
+    """Return the description in the text of a file."""
     if kind == "any":
         kind = kind_of(path, text)
     if kind == "python":
@@ -83,8 +117,7 @@ def load_description(path: str, kind: str = "any") -> Any:
 
 def kind_of(path: str, text: bytes) -> str:
     """Return in which language a file is: by its name, else by its text."""
-    endings = {".py": "python", ".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}
-    kind = endings.get(Path(path).suffix)
+    kind = ENDINGS.get(Path(path).suffix)
     if kind is not None:
         return kind
     begin = text.lstrip()[:200]

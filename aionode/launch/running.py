@@ -18,7 +18,12 @@ from aionode.errors import LaunchFileError
 from aionode.interfaces.composition_interfaces.srv import LoadNode
 from aionode.interfaces.lifecycle_msgs.msg import Transition, TransitionEvent
 from aionode.interfaces.lifecycle_msgs.srv import ChangeState
-from aionode.launch._evaluation import evaluate, failure_of, load_description
+from aionode.launch._evaluation import (
+    description_of_text,
+    evaluate,
+    failure_of,
+    load_description,
+)
 from aionode.launch._process_events import ProcessEvents
 from aionode.launch.plan import (
     Call,
@@ -51,7 +56,7 @@ if TYPE_CHECKING:
     from launch.launch_context import LaunchContext
     from launch.launch_service import LaunchService
 
-__all__ = ["RunningLaunch", "first_of", "run_service"]
+__all__ = ["RunningLaunch", "description_of_text", "first_of", "run_service"]
 
 
 NODE_LIMIT_SEC: Final = 30.0

@@ -26,6 +26,17 @@ YIELDING: Final = ("launch_param_builder", "nav2_common")
 A_MODULE_FOR_EACH_CLASS: Final = ("launch", "launch_ros", "nav2_common")
 """The packages that have a module for each class in ROS, and one for several classes here."""
 
+FOR_SEVERAL: Final = frozenset(
+    {
+        "any_launch_file_utilities",
+        "boolean_substitution",
+        "frontend_launch_file_utilities",
+        "process_matchers",
+        "python_launch_file_utilities",
+    }
+)
+"""The modules of these packages that have several classes or functions in ROS, too."""
+
 SHARED_ELSEWHERE: Final = {
     "InvalidQoSProfileException": "rclpy.qos",
     "InvalidQosOverridesError": "rclpy.qos_overriding_options",
@@ -202,7 +213,7 @@ def of_one_name(fullname: str) -> ModuleSpec | None:
     package = import_module(parent)
     names = {name.replace("_", "").lower() for name in package.__all__}  # SetROSLogDir, set_ros_…
     named = (last, last.removesuffix("_action"), last.removesuffix("_impl"))
-    if names.isdisjoint(name.replace("_", "") for name in named):
+    if last not in FOR_SEVERAL and names.isdisjoint(name.replace("_", "") for name in named):
         return None
     return spec_from_loader(fullname, NamesLoader(package))
 

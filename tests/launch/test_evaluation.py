@@ -599,6 +599,113 @@ def test_substitutions_are_nested_to_a_limit(files: Files) -> None:
         files.plan("a.launch.xml", f'<launch><arg name="x" default="{text}"/></launch>')
 
 
+NAMES = """
+from launch import InvalidLaunchFileError, LaunchIntrospector, SomeEntitiesType
+from launch.events.process.process_exited import ProcessExited
+from launch.events.process.process_matchers import matches_name
+from launch.frontend import Entity, Parser
+from launch.frontend.entity import Entity as SameEntity
+from launch.frontend.parser import Parser as SameParser
+from launch.invalid_launch_file_error import InvalidLaunchFileError as SameError
+from launch.launch_description_sources import (
+    InvalidFrontendLaunchFileError,
+    get_launch_description_from_any_launch_file,
+    get_launch_description_from_frontend_launch_file,
+    get_launch_description_from_python_launch_file,
+)
+from launch.launch_description_sources.python_launch_file_utilities import (
+    InvalidPythonLaunchFileError,
+)
+from launch.launch_introspector import format_entities
+from launch.logging import launch_config
+from launch.some_entities_type import SomeEntitiesType_types_tuple
+from launch.substitutions.boolean_substitution import NotSubstitution
+from launch.utilities import isclassinstance
+from launch.utilities.class_tools_impl import is_a
+from launch.utilities.typing_file_path import FilePath
+"""
+
+
+def test_launch_files_find_the_names_of_released_launch(files: Files) -> None:
+    """In the modules in which ROS has them; an import of one that is missing ends the file."""
+    imports = f"import logging\n{NAMES}"
+    (record,) = files.python(
+        "LogInfo(msg=str((SameEntity is Entity, SameParser is Parser, launch_config.level)))",
+        imports=imports,
+    )
+    assert record["log"].startswith("(True, True, ")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "function"),
+    [
+        ("b.launch.xml", '<launch><log message="hi"/></launch>', "frontend"),
+        ("b.launch.yaml", "launch: [log: {message: hi}]", "frontend"),
+        ("b.launch.yaml", "launch: [log: {message: hi}]", "any"),
+        (
+            "b.py",
+            (
+                "from launch import *\nfrom launch.actions import *\n"
+                "def generate_launch_description(): return LaunchDescription([LogInfo(msg='hi')])\n"
+            ),
+            "python",
+        ),
+    ],
+)
+def test_a_launch_file_reads_another_one_by_itself(
+    files: Files, name: str, text: str, function: str
+) -> None:
+    """Helpers of launch files and their tests do, without `IncludeLaunchDescription`."""
+    path = files.write(name, text)
+    (record,) = files.python(
+        f"*get_launch_description_from_{function}_launch_file({path!r}).entities", imports=NAMES
+    )
+    assert record["log"] == "hi"
+
+
+def test_a_parser_reads_a_text(files: Files) -> None:
+    """As tests of launch files in XML do."""
+    (record,) = files.python(
+        "*(lambda root, parser: parser.parse_description(root).entities)("
+        "*Parser.load(io.StringIO('<launch><log message=\"hi\"/></launch>')))",
+        imports=f"import io\n{NAMES}",
+    )
+    assert record["log"] == "hi"
+
+
+@pytest.mark.parametrize(
+    ("function", "error"),
+    [
+        ("frontend", "InvalidFrontendLaunchFileError"),
+        ("python", "InvalidPythonLaunchFileError"),
+        ("any", "InvalidLaunchFileError"),
+    ],
+)
+def test_a_file_that_is_no_launch_file_has_launchs_error(
+    files: Files, function: str, error: str
+) -> None:
+    """Which programs catch."""
+    path = files.write("b.launch.txt", "nothing")
+    body = f"get_launch_description_from_{function}_launch_file({path!r})"
+    with pytest.raises(LaunchFileError, match=error):
+        files.python(f"*{body}.entities", imports=NAMES)
+
+
+def test_an_introspector_shows_a_description_as_a_tree(files: Files) -> None:
+    """Launch files of the first years print it."""
+    (record,) = files.python(
+        "LogInfo(msg=LaunchIntrospector().format_launch_description(LaunchDescription(["
+        "LogInfo(msg='hi'), RegisterEventHandler(OnProcessExit(on_exit=[LogInfo(msg='end')]))])))",
+        imports=NAMES,
+    )
+    assert record["log"].splitlines()[1:] == [
+        "├── LogInfo('hi')",
+        "├── RegisterEventHandler:",
+        "│   ├── OnProcessExit(exit of any process)",
+        "│   │   ├── LogInfo('end')",
+    ]
+
+
 def test_reading_a_launch_file_leaves_no_file_beside_it(files: Files) -> None:
     """The folder may be read-only, or under version control."""
     files.python("LogInfo(msg='x'),")

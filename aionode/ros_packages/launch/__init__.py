@@ -16,11 +16,14 @@ from launch.action import Action
 from launch.condition import Condition
 from launch.event import Event
 from launch.event_handler import BaseEventHandler, EventHandler
+from launch.invalid_launch_file_error import InvalidLaunchFileError
 from launch.launch_context import LaunchContext
 from launch.launch_description import LaunchDescription
 from launch.launch_description_entity import LaunchDescriptionEntity
 from launch.launch_description_sources import LaunchDescriptionSource
+from launch.launch_introspector import LaunchIntrospector
 from launch.launch_service import LaunchService
+from launch.some_entities_type import SomeEntitiesType, SomeEntitiesType_types_tuple
 from launch.some_substitutions_type import (
     SomeSubstitutionsType,
     SomeSubstitutionsType_types_tuple,
@@ -33,11 +36,15 @@ __all__ = [
     "Condition",
     "Event",
     "EventHandler",
+    "InvalidLaunchFileError",
     "LaunchContext",
     "LaunchDescription",
     "LaunchDescriptionEntity",
     "LaunchDescriptionSource",
+    "LaunchIntrospector",
     "LaunchService",
+    "SomeEntitiesType",
+    "SomeEntitiesType_types_tuple",
     "SomeSubstitutionsType",
     "SomeSubstitutionsType_types_tuple",
     "Substitution",

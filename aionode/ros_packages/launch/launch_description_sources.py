@@ -7,6 +7,8 @@ from importlib.util import module_from_spec, spec_from_loader
 from types import ModuleType
 from typing import Any, ClassVar
 
+from launch.frontend.parser import ENDINGS, InvalidFrontendLaunchFileError
+from launch.invalid_launch_file_error import InvalidLaunchFileError
 from launch.launch_context import LaunchContext
 from launch.substitution import (
     SomeSubstitutionsType,
@@ -17,10 +19,16 @@ from launch.substitution import (
 __all__ = [
     "AnyLaunchDescriptionSource",
     "FrontendLaunchDescriptionSource",
+    "InvalidFrontendLaunchFileError",
+    "InvalidLaunchFileError",
+    "InvalidPythonLaunchFileError",
     "LaunchDescriptionSource",
     "PythonLaunchDescriptionSource",
     "XMLLaunchDescriptionSource",
     "YAMLLaunchDescriptionSource",
+    "get_launch_description_from_any_launch_file",
+    "get_launch_description_from_frontend_launch_file",
+    "get_launch_description_from_python_launch_file",
     "load_python_launch_file_as_module",
 ]
 
@@ -95,3 +103,45 @@ def load_python_launch_file_as_module(python_launch_file_path: str) -> ModuleTyp
     module = module_from_spec(spec)
     loader.exec_module(module)
     return module
+
+
+class InvalidPythonLaunchFileError(InvalidLaunchFileError):
+    """A launch file in Python cannot be used."""
+
+
+def get_launch_description_from_python_launch_file(python_launch_file_path: str) -> Any:
+    """Return the description in a file of Python, whatever its ending.
+
+    Raises:
+        InvalidPythonLaunchFileError: It fails, or has no description.
+    """
+    return described(python_launch_file_path, ("py",), InvalidPythonLaunchFileError)
+
+
+def get_launch_description_from_frontend_launch_file(launch_file_path: str) -> Any:
+    """Return the description in a file in XML or YAML.
+
+    Raises:
+        InvalidFrontendLaunchFileError: It is no such file.
+    """
+    return described(launch_file_path, ENDINGS, InvalidFrontendLaunchFileError)
+
+
+def get_launch_description_from_any_launch_file(launch_file_path: str) -> Any:
+    """Return the description in a file in Python, XML or YAML.
+
+    Raises:
+        InvalidLaunchFileError: It is no such file.
+    """
+    return described(launch_file_path, ("py", *ENDINGS), InvalidLaunchFileError)
+
+
+def described(path: str, endings: tuple[str, ...], failure: type[InvalidLaunchFileError]) -> Any:
+    """Return the description in a file of one of the languages that have these endings."""
+    from aionode.launch.running import description_of_text  # which imports this package
+
+    try:
+        return description_of_text(str(path), None, endings)
+    except ValueError as error:
+        extension = str(path).rpartition(".")[2]
+        raise failure(extension, likely_errors=[error]) from error

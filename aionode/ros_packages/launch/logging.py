@@ -3,8 +3,32 @@
 from __future__ import annotations
 
 import logging
+import os
+from pathlib import Path
 
-__all__ = ["get_logger"]
+__all__ = ["LaunchConfig", "get_logger", "launch_config"]
+
+
+class LaunchConfig:
+    """What programs ask of launch's log."""
+
+    @property
+    def level(self) -> int:
+        """The level from which on messages are shown."""
+        return logging.getLogger("launch").getEffectiveLevel()
+
+    @level.setter
+    def level(self, new_level: int | str) -> None:
+        logging.getLogger("launch").setLevel(new_level)
+
+    @property
+    def log_dir(self) -> str:
+        """The folder of logs: ROS_LOG_DIR, or log below ROS_HOME."""
+        home = os.environ.get("ROS_HOME") or str(Path.home() / ".ros")
+        return os.environ.get("ROS_LOG_DIR") or str(Path(home, "log"))
+
+
+launch_config = LaunchConfig()
 
 
 def get_logger(name: str | None = None) -> logging.Logger:

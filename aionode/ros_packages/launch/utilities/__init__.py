@@ -9,6 +9,7 @@ from launch.substitution import (
     normalize_to_list_of_substitutions,
     perform_substitutions,
 )
+from launch.utilities.class_tools_impl import is_a, is_a_subclass, isclassinstance
 from launch.utilities.type_utils import (
     normalize_typed_substitution,
     perform_typed_substitution,
@@ -18,22 +19,13 @@ __all__ = [
     "ensure_argument_type",
     "is_a",
     "is_a_subclass",
+    "isclassinstance",
     "normalize_to_list_of_entities",
     "normalize_to_list_of_substitutions",
     "normalize_typed_substitution",
     "perform_substitutions",
     "perform_typed_substitution",
 ]
-
-
-def is_a(obj: Any, entity_type: type) -> bool:
-    """Return whether an object is of a type."""
-    return isinstance(obj, entity_type)
-
-
-def is_a_subclass(obj: Any, entity_type: type) -> bool:
-    """Return whether an object, or a class, is of a type."""
-    return isinstance(obj, entity_type) or (isinstance(obj, type) and issubclass(obj, entity_type))
 
 
 def normalize_to_list_of_entities(entities: Any) -> list[Any]:
