@@ -118,7 +118,7 @@ class Subscription(Endpoint, Generic[ItemT]):
                 size_of, setup.queue_bytes, partial(report_heavy, setup, "dropped")
             )
         if self._runner is not None:
-            self._reader.runner = self._runner
+            self._reader.set_runner(self._runner)
         self._time_base = time_base
         self._runs = False
         self._monitor: SubscriptionMonitor | None = None  # if a policy or the program needs one

@@ -124,13 +124,21 @@ class MessageQueue(InlineCall, Generic[T]):
         self.limit_bytes = limit_bytes
         self.weighed_from = min(self.depth, unweighed)
 
-    def put(self, item: T) -> bool:
+    def put(self, item: T, *, is_own: bool = False) -> bool:
         """Add `item`, wake the readers, and return whether it was added.
 
-        `SubscriptionReader.deliver` repeats this.
+        Args:
+            item: The item.
+            is_own: Whether this process has made it: of such ones the first that has to wait is
+                weighed, and others from `own_from` on.
         """
         queue = self.items
-        if len(queue) >= self.weighed_from and not self.make_room(item):
+        count = len(queue)
+        if (
+            count >= self.weighed_from
+            and (not is_own or count >= self.own_from or count == self.weighed_from)
+            and not self.make_room(item)
+        ):
             return False
         queue.append((perf_ns(), item))
         if self._readers:
