@@ -33,6 +33,8 @@ MODULES: Final[dict[str, dict[str, str]]] = {
         "turtlesim_node": "_turtlesim.node",
     },
     "twist_mux": {"twist_mux": "_twist_mux"},
+    "usb_cam": {"usb_cam_node_exe": "_camera.usb_cam_node"},
+    "v4l2_camera": {"v4l2_camera_node": "_camera.v4l2_camera_node"},
 }
 """The module of `aionode.programs` that is an executable, by package and name."""
 
@@ -62,6 +64,10 @@ PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
     "topic_tools": {
         f"topic_tools::{name}Node": (f"_{name.lower()}:{name}", name.lower())
         for name in ("Delay", "Demux", "Drop", "Mux", "Relay", "Throttle")
+    },
+    "usb_cam": {"usb_cam::UsbCamNode": ("_camera.usb_cam_node:UsbCam", "usb_cam")},
+    "v4l2_camera": {
+        "v4l2_camera::V4L2Camera": ("_camera.v4l2_camera_node:V4L2Camera", "v4l2_camera")
     },
 }
 """The node class of `aionode.programs` that is a plugin for containers, by package and name.

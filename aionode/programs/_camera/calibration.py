@@ -1,0 +1,146 @@
+"""The calibration of a camera, as camera_info_manager keeps it: files in YAML, by addresses."""
+
+from __future__ import annotations
+
+import os
+import re
+from pathlib import Path
+from typing import Any, Final
+
+import yaml
+
+from aionode import Node
+from aionode._packages import here
+from aionode.errors import PackageNotFoundError
+from aionode.interfaces.sensor_msgs.msg import CameraInfo
+from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
+
+__all__ = ["Calibration", "info_of", "text_of"]
+
+USUAL: Final = "file://${ROS_HOME}/camera_info/${NAME}.yaml"
+"""Where a calibration is if nothing else is said."""
+
+MATRICES: Final = {"k": ("camera_matrix", 3), "r": ("rectification_matrix", 3),
+                   "p": ("projection_matrix", 4), "d": ("distortion_coefficients", 0)}  # fmt: skip
+"""The matrices of a calibration, by the fields of CameraInfo, and how many columns they have."""
+
+
+def info_of(text: str) -> CameraInfo:
+    """Return a calibration.
+
+    Raises:
+        ValueError: The text is none.
+    """
+    try:
+        given = yaml.safe_load(text)
+        matrices = {
+            name: [float(number) for number in given[key]["data"]]
+            for name, (key, _) in MATRICES.items()
+        }
+        info = CameraInfo(
+            width=int(given["image_width"]),
+            height=int(given["image_height"]),
+            distortion_model=str(given.get("distortion_model", "plumb_bob")),
+            binning_x=int(given.get("binning_x", 0)),
+            binning_y=int(given.get("binning_y", 0)),
+        )
+        for name, numbers in matrices.items():
+            setattr(info, name, numbers)
+    except (yaml.YAMLError, KeyError, TypeError, AttributeError, ValueError) as error:
+        raise ValueError(f"no calibration: {type(error).__name__}: {error}") from None
+    sizes = [len(info.k), len(info.r), len(info.p)]
+    if sizes != [9, 9, 12]:
+        raise ValueError(f"no calibration: its matrices have {sizes} numbers; [9, 9, 12] fit")
+    return info
+
+
+def text_of(info: CameraInfo, name: str) -> str:
+    """Return the file of a calibration."""
+    given: dict[str, Any] = {
+        "image_width": info.width,
+        "image_height": info.height,
+        "camera_name": name,
+        "distortion_model": info.distortion_model,
+        "binning_x": info.binning_x,
+        "binning_y": info.binning_y,
+    }
+    for field, (key, columns) in MATRICES.items():
+        data = [float(number) for number in getattr(info, field)]
+        rows, width = (len(data) // columns, columns) if columns else (1, len(data))
+        given[key] = {"rows": rows, "cols": width, "data": data}
+    return yaml.safe_dump(given, sort_keys=False, default_flow_style=None)
+
+
+class Calibration:
+    """Reads the calibration of a node's camera, and keeps what `~/set_camera_info` is told.
+
+    Args:
+        node: The node.
+        name: The name of the camera, which may be a part of addresses.
+        url: Where the calibration is: ``file:///…`` or ``package://NAME/…``.
+
+    Attributes:
+        info: The calibration; zeros where there is none.
+    """
+
+    def __init__(self, node: Node, name: str, url: str) -> None:
+        self.name = name
+        self.url = url
+        self.log = node.get_logger()
+        self.info = CameraInfo()
+        self.load(url)
+        node.create_service(SetCameraInfo, "~/set_camera_info", self.on_set)
+
+    def load(self, url: str) -> None:
+        """Read a calibration; the log says what is wrong with it."""
+        self.url = url
+        path = self.path()
+        if path is None:
+            self.log.error(f"Invalid camera calibration URL: {url}")
+            return
+        self.log.info(f"camera calibration URL: {url or USUAL}")
+        try:
+            self.info = info_of(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            self.log.warning(f"Camera calibration file {path} not found")
+        except (OSError, ValueError) as error:
+            self.log.warning(f"Camera calibration file {path} is not used: {error}")
+
+    def path(self) -> Path | None:
+        """Return the file of the calibration; None if its address is none."""
+        home = os.environ.get("ROS_HOME") or str(Path.home() / ".ros")
+        url = (self.url or USUAL).replace("${NAME}", self.name).replace("${ROS_HOME}", home)
+        if url.lower().startswith("file:///"):
+            return Path(url[7:])
+        match = re.fullmatch(r"package://([^/]+)/(.+)", url, re.IGNORECASE)
+        if match is None:
+            return None
+        try:
+            return here().share(match[1]) / match[2]
+        except PackageNotFoundError as error:
+            self.log.warning(str(error))
+            return None
+
+    def for_size(self, width: int, height: int) -> CameraInfo:
+        """Return the calibration of images of a size; zeros if it is of another one."""
+        if (self.info.width, self.info.height) == (width, height):
+            return self.info
+        return CameraInfo(width=width, height=height)
+
+    def on_set(self, request: Any, response: Any) -> Any:
+        """Keep a calibration, in its file as well."""
+        self.info = request.camera_info
+        path = self.path()
+        if path is None:
+            response.status_message = (
+                f"Error storing camera calibration: {self.url} is no address of a file"
+            )
+            return response
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text_of(self.info, self.name), encoding="utf-8")
+            response.success = True
+            self.log.info(f"writing calibration data to {path}")
+        except OSError as error:
+            response.status_message = f"Error storing camera calibration: {error}"
+        return response

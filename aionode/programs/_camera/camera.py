@@ -1,0 +1,119 @@
+"""What the nodes of cameras have in common: pictures of a device or a file become messages."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any, Final
+
+from aionode import Node, QoSProfile
+from aionode.image import from_numpy
+from aionode.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from aionode.interfaces.std_msgs.msg import Header
+from aionode.programs._camera.calibration import Calibration
+from aionode.programs._camera.republish import compressed
+from aionode.programs._camera.video import FORMATS, Frame, Video, check_device
+
+__all__ = ["Camera"]
+
+START_SEC: Final = 0.01
+RETRY_SEC: Final = 1.0
+"""How long after a failure a camera is opened again."""
+
+
+class Camera(Node):
+    """Publishes `image_raw`, `image_raw/compressed` while somebody looks, and `camera_info`.
+
+    Attributes:
+        device: The device, or the file of a video, which begins anew at its end.
+        pixel_format: One of `FORMATS`.
+        size: Width and height.
+        rate: Pictures a second.
+        frame_id: The frame of the camera.
+        is_capturing: Whether pictures are taken.
+        has_raw: Whether `image_raw` is published.
+    """
+
+    def __init__(self, name: str) -> None:
+        super().__init__(name)
+        self.device = ""
+        self.pixel_format = "yuyv2rgb"
+        self.size = (640, 480)
+        self.rate = 30.0
+        self.frame_id = ""
+        self.is_capturing = True
+        self.has_raw = True
+        self.offset_ns = 0
+
+    def begin(self, calibration: Calibration, qos: QoSProfile) -> None:
+        """Publish from now on.
+
+        Raises:
+            CommandError: There is no camera, or nothing to read it by.
+        """
+        check_device(self.device)
+        self.calibration = calibration
+        self.images = self.create_publisher(Image, "image_raw", qos) if self.has_raw else None
+        self.small = self.create_publisher(CompressedImage, "image_raw/compressed", qos)
+        self.infos = self.create_publisher(CameraInfo, "camera_info", qos)
+        self.create_timer(START_SEC, self.capture)
+
+    async def capture(self) -> None:
+        """Publish pictures until the node ends; a camera that is pulled out is waited for."""
+        while True:
+            try:
+                await self.play()
+            except OSError as error:
+                self.get_logger().error(
+                    f"{self.device}: {error}; it is opened again until that succeeds",
+                    throttle_duration_sec=10.0,
+                )
+                await self.get_clock().sleep(RETRY_SEC)
+
+    async def play(self) -> None:
+        """Publish the pictures of a camera, or those of a file once.
+
+        Raises:
+            OSError: It cannot be opened, or read any more.
+        """
+        given = FORMATS[self.pixel_format]
+        video = await asyncio.to_thread(Video, self.device, given, self.size, self.rate)
+        clock = self.get_clock()
+        count = 0
+        try:
+            while True:
+                began = clock.now()
+                frame = await asyncio.to_thread(video.read)
+                if frame is None and count and not video.is_camera:
+                    return
+                if frame is None:
+                    raise OSError("there are no pictures in it")
+                count += 1
+                if self.is_capturing:
+                    await self.publish(frame)
+                if not video.is_camera:
+                    taken = (clock.now() - began).nanoseconds / 1e9
+                    await clock.sleep(1.0 / self.rate - taken)
+        finally:
+            video.close()
+
+    async def publish(self, frame: Frame) -> None:
+        """Publish a picture, and the calibration."""
+        now = self.get_clock().now().nanoseconds + self.offset_ns
+        header = Header(frame_id=self.frame_id)
+        header.stamp.sec, header.stamp.nanosec = divmod(now, 1_000_000_000)
+        image = from_numpy(frame.pixels, frame.encoding, header)
+        if self.images is not None:
+            self.images.publish(image)
+        if self.small.get_subscription_count():
+            self.small.publish(await asyncio.to_thread(self.compressed, frame, image))
+        found = self.calibration.for_size(*self.size)
+        info = CameraInfo(header=header, width=found.width, height=found.height)
+        for name in ("distortion_model", "d", "k", "r", "p", "binning_x", "binning_y", "roi"):
+            setattr(info, name, getattr(found, name))
+        self.infos.publish(info)
+
+    def compressed(self, frame: Frame, image: Image) -> Any:
+        """Return a picture as JPEG: as it came, if it did so."""
+        if frame.jpeg is not None:
+            return CompressedImage(header=image.header, format="jpeg", data=frame.jpeg)
+        return compressed(image, "jpeg", 95, 3)

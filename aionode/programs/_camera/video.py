@@ -1,0 +1,160 @@
+"""Cameras of Linux and files of videos, read by PyAV."""
+
+from __future__ import annotations
+
+import threading
+from pathlib import Path
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from aionode.errors import CommandError
+
+__all__ = ["FORMATS", "Frame", "Video", "check_device"]
+
+
+class Format(NamedTuple):
+    """How pixels come, and how they are published.
+
+    Attributes:
+        v4l2: What a camera is asked for, as ffmpeg calls it.
+        av: To what ffmpeg converts them.
+        encoding: What ROS calls that.
+    """
+
+    v4l2: str
+    av: str
+    encoding: str
+
+
+FORMATS: Final = {
+    "yuyv": Format("yuyv422", "yuyv422", "yuv422_yuy2"),
+    "yuyv2rgb": Format("yuyv422", "rgb24", "rgb8"),
+    "uyvy": Format("uyvy422", "yuyv422", "yuv422"),
+    "uyvy2rgb": Format("uyvy422", "rgb24", "rgb8"),
+    "mjpeg": Format("mjpeg", "rgb24", "rgb8"),
+    "mjpeg2rgb": Format("mjpeg", "rgb24", "rgb8"),
+    "rgb8": Format("rgb24", "rgb24", "rgb8"),
+    "mono8": Format("gray", "gray", "mono8"),
+    "mono16": Format("gray16le", "gray16le", "mono16"),
+}
+"""Pixel formats, by the names of usb_cam."""
+
+
+class Frame(NamedTuple):
+    """A picture.
+
+    Attributes:
+        pixels: Its pixels.
+        encoding: What they are.
+        jpeg: The same as JPEG, if it came so and has its size.
+    """
+
+    pixels: npt.NDArray[Any]
+    encoding: str
+    jpeg: bytes | None
+
+
+def check_device(path: str) -> None:
+    """Refuse a camera that is not there, or that could not be read.
+
+    Raises:
+        CommandError: There is none, or PyAV is not installed.
+    """
+    if not Path(path).exists():
+        there = sorted(str(each) for each in Path("/dev").glob("video*"))
+        raise CommandError(
+            f"video_device is {path!r}, which is not there; "
+            f"{', '.join(there) or 'no camera'} is, and a file of a video fits as well"
+        )
+    try:
+        import av  # noqa: F401  # only whether it is there
+    except ModuleNotFoundError:
+        raise CommandError(
+            "cameras are read by PyAV, which is not installed: pip install 'aionode[camera]'"
+        ) from None
+
+
+class Video:
+    """A camera or a file, opened. Its methods block, and belong into a thread.
+
+    Args:
+        path: The device, or the file of a video.
+        format_: How pixels come, and how they are wanted.
+        size: Width and height; files are scaled to it.
+        rate: How many pictures a second a camera is asked for.
+
+    Raises:
+        OSError: It cannot be opened.
+    """
+
+    def __init__(self, path: str, format_: Format, size: tuple[int, int], rate: float) -> None:
+        import av
+
+        self.format = format_
+        self.size = size
+        self.is_camera = Path(path).resolve().is_relative_to("/dev")
+        width, height = size
+        options = {
+            "input_format": format_.v4l2,
+            "video_size": f"{width}x{height}",
+            "framerate": f"{rate:g}",
+        }
+        given = {"format": "v4l2", "options": options} if self.is_camera else {}
+        opening: Any = av.open
+        self.failures = (av.error.FFmpegError, IndexError)
+        try:
+            self.container = opening(path, **given)
+            self.stream = self.container.streams.video[0]
+        except self.failures as error:
+            raise OSError(f"no video that can be read ({error})") from None
+        self.is_jpeg = self.stream.codec_context.name == "mjpeg"
+        self.packets = self.container.demux(self.stream)
+        self.waiting: list[tuple[Any, bytes | None]] = []
+        self.reading = threading.Lock()  # FFmpeg crashes if it is closed while it reads
+        self.is_closing = False
+
+    def read(self) -> Frame | None:
+        """Return the next picture; None at the end of a file.
+
+        Raises:
+            OSError: The camera is gone, or the file is damaged.
+        """
+        try:
+            with self.reading:
+                return self.next_frame()
+        finally:
+            if self.is_closing:
+                self.close()
+
+    def next_frame(self) -> Frame | None:
+        """Return the next picture; as `read`."""
+        while not self.waiting:
+            try:
+                packet = next(self.packets, None)
+                pictures = [] if packet is None else packet.decode()
+            except self.failures as error:
+                raise OSError(f"no more pictures ({error})") from None
+            if packet is None:
+                return None
+            data = bytes(packet) if self.is_jpeg and packet.size else None
+            self.waiting = [(picture, data) for picture in pictures]
+        picture, data = self.waiting.pop(0)
+        width, height = self.size
+        if (picture.width, picture.height) != self.size:
+            data = None
+        found = picture.reformat(width=width, height=height, format=self.format.av)
+        pixels = found.to_ndarray()
+        if self.format.encoding == "yuv422":
+            pixels = np.ascontiguousarray(pixels.reshape(height, width, 2)[..., ::-1])
+        return Frame(pixels, self.format.encoding, data)
+
+    def close(self) -> None:
+        """Close it, from any thread: at once, or as soon as no other one reads it any more."""
+        self.is_closing = True
+        if self.reading.acquire(blocking=False):
+            try:
+                self.container.close()
+            finally:
+                self.reading.release()

@@ -1,0 +1,275 @@
+"""The programs that publish the pictures of cameras, with a file of a video in its place."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from aionode.errors import CommandError
+from aionode.image import decompress, to_numpy
+from aionode.interfaces.sensor_msgs.msg import CameraInfo, CompressedImage, Image
+from aionode.interfaces.sensor_msgs.srv import SetCameraInfo
+from aionode.interfaces.std_srvs.srv import SetBool
+from aionode.programs._camera.calibration import Calibration, info_of, text_of
+from aionode.programs._camera.usb_cam_node import UsbCam
+from aionode.programs._camera.v4l2_camera_node import V4L2Camera
+from tests.programs.conftest import Start
+from tests.support.peers import isolated_environment
+from tests.support.waiting import until
+
+av = pytest.importorskip("av", reason="videos are read by PyAV")
+
+WIDTH, HEIGHT = 64, 48
+
+
+@pytest.fixture(scope="module")
+def videos(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Write ten pictures, from dark to light, as they are and as JPEG."""
+    folder = tmp_path_factory.mktemp("videos")
+    for name, codec, pixels in (("plain", "ffv1", "yuv420p"), ("jpeg", "mjpeg", "yuvj420p")):
+        with av.open(str(folder / f"{name}.mkv"), "w") as container:
+            stream = container.add_stream(codec, rate=30)
+            stream.width, stream.height, stream.pix_fmt = WIDTH, HEIGHT, pixels
+            for at in range(10):
+                shade = np.full((HEIGHT, WIDTH, 3), 20 * at, np.uint8)
+                container.mux(stream.encode(av.VideoFrame.from_ndarray(shade, format="rgb24")))
+            container.mux(stream.encode())
+    return folder
+
+
+class Viewer:
+    """Who looks at a camera."""
+
+    def __init__(self, node: Any) -> None:
+        self.node = node
+        self.seen: asyncio.Queue[Any] = asyncio.Queue()
+
+    def look(self, kind: Any, topic: str) -> None:
+        """Look at a topic."""
+        self.node.create_subscription(kind, topic, self.seen.put_nowait)
+
+    async def pictures(self, count: int) -> list[Any]:
+        """Return so many messages."""
+        async with asyncio.timeout(20):
+            return [await self.seen.get() for _ in range(count)]
+
+
+@pytest.fixture
+async def viewer(node_factory: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> Viewer:
+    """Return a viewer; no calibration is at home."""
+    monkeypatch.setenv("ROS_HOME", "/nowhere")
+    return Viewer(node_factory("viewer"))
+
+
+SMALL: dict[str, Any] = {"image_width": WIDTH, "image_height": HEIGHT, "framerate": 200.0}
+
+
+async def test_a_video_in_the_place_of_a_camera_begins_anew_at_its_end(
+    start: Start, viewer: Viewer, videos: Path
+) -> None:
+    """Its pictures come one after the other, with the frame of the camera."""
+    viewer.look(Image, "image_raw")
+    given_values = {"video_device": str(videos / "plain.mkv"), "pixel_format": "yuyv2rgb"}
+    start(UsbCam, frame_id="eye", **SMALL | given_values)
+    images = await viewer.pictures(12)
+
+    assert {(each.width, each.height, each.encoding) for each in images} == {(64, 48, "rgb8")}
+    assert images[0].header.frame_id == "eye"
+    shades = [int(to_numpy(each).mean()) for each in images]
+    assert shades[:10] == pytest.approx([20 * at for at in range(10)], abs=3)
+    assert shades[10:] == shades[:2]
+
+
+@pytest.mark.parametrize(
+    ("pixels", "encoding", "shape"),
+    [
+        ("yuyv", "yuv422_yuy2", (48, 64, 2)),
+        ("uyvy", "yuv422", (48, 64, 2)),
+        ("mono8", "mono8", (48, 64)),
+        ("rgb8", "rgb8", (48, 64, 3)),
+    ],
+)
+async def test_pixel_formats_are_those_of_usb_cam(
+    start: Start, viewer: Viewer, videos: Path, pixels: str, encoding: str, shape: tuple[int, ...]
+) -> None:
+    """Each with its encoding of ROS."""
+    viewer.look(Image, "image_raw")
+    start(UsbCam, video_device=str(videos / "plain.mkv"), pixel_format=pixels, **SMALL)
+    image = (await viewer.pictures(5))[-1]
+
+    assert image.encoding == encoding
+    found = to_numpy(image)
+    assert found.shape == shape
+    luma = found[..., {"yuyv": 0, "uyvy": 1}[pixels]] if "uv" in encoding else found
+    assert float(luma.mean()) == pytest.approx(80, abs=8)
+
+
+async def test_jpeg_of_a_camera_is_passed_on_as_it_is(
+    start: Start, viewer: Viewer, videos: Path
+) -> None:
+    """As usb_cam does with `mjpeg`; there is no `image_raw` then."""
+    viewer.look(CompressedImage, "image_raw/compressed")
+    start(UsbCam, video_device=str(videos / "jpeg.mkv"), pixel_format="mjpeg", **SMALL)
+    (picture,) = await viewer.pictures(1)
+
+    assert picture.format == "jpeg"
+    assert bytes(picture.data[:3]) == b"\xff\xd8\xff"
+    assert decompress(picture).width == WIDTH
+    names = {name for name, _ in viewer.node.get_topic_names_and_types()}
+    assert "/image_raw" not in names
+
+
+async def test_set_capture_ends_the_pictures(start: Start, viewer: Viewer, videos: Path) -> None:
+    """And begins them again."""
+    viewer.look(CameraInfo, "camera_info")
+    node = start(UsbCam, video_device=str(videos / "plain.mkv"), pixel_format="rgb8", **SMALL)
+    client = viewer.node.create_client(SetBool, "set_capture")
+    await viewer.pictures(1)
+
+    assert (await client.call(SetBool.Request(data=False))).message == "Stop Capturing"
+    assert not node.is_capturing
+    assert (await client.call(SetBool.Request(data=True))).message == "Start Capturing"
+    await viewer.pictures(2)
+
+
+async def test_v4l2_camera_publishes_the_calibration_of_its_size(
+    start: Start, viewer: Viewer, videos: Path, tmp_path: Path
+) -> None:
+    """With the stamp of the picture; zeros if the calibration is of another size."""
+    file = tmp_path / "eye.yaml"
+    info = CameraInfo(width=WIDTH, height=HEIGHT, distortion_model="plumb_bob")
+    info.k = [100.0, 0.0, 32.0, 0.0, 100.0, 24.0, 0.0, 0.0, 1.0]
+    file.write_text(text_of(info, "eye"))
+    viewer.look(CameraInfo, "camera_info")
+    images: list[Image] = []
+    viewer.node.create_subscription(Image, "image_raw", images.append)
+    start(
+        V4L2Camera,
+        video_device=str(videos / "plain.mkv"),
+        image_size=[WIDTH, HEIGHT],
+        time_per_frame=[1, 200],
+        camera_info_url=f"file://{file}",
+        camera_frame_id="eye",
+    )
+    (seen,) = await viewer.pictures(1)
+
+    assert seen.k[0] == 100.0
+    assert seen.header == images[0].header
+    assert (seen.header.frame_id, images[0].encoding) == ("eye", "rgb8")
+
+
+async def test_a_calibration_is_kept_in_its_file(
+    node_factory: Callable[..., Any], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """By the service that camera_calibration calls; below the home of ROS by default."""
+    monkeypatch.setenv("ROS_HOME", str(tmp_path))
+    node = node_factory("camera")
+    Calibration(node, "eye", "")
+    client = node.create_client(SetCameraInfo, "~/set_camera_info")
+    info = CameraInfo(width=4, height=3, distortion_model="plumb_bob", d=[0.1, 0, 0, 0, 0])
+    answer = await client.call(SetCameraInfo.Request(camera_info=info))
+
+    assert answer.success
+    assert info_of((tmp_path / "camera_info" / "eye.yaml").read_text()) == info
+
+
+@given(
+    st.lists(st.floats(-1e6, 1e6), min_size=33, max_size=33),
+    st.lists(st.floats(-1e3, 1e3), max_size=8),
+    st.integers(1, 10_000),
+)
+def test_a_calibration_comes_back_as_it_was(
+    numbers: list[float], d: list[float], size: int
+) -> None:
+    """Through its file."""
+    info = CameraInfo(width=size, height=size + 1, distortion_model="rational_polynomial", d=d)
+    info.k, info.r, info.p = numbers[:9], numbers[9:18], numbers[18:30]
+
+    assert info_of(text_of(info, "eye")) == info
+
+
+@given(st.text(max_size=40))
+def test_what_is_no_calibration_is_one_error(text: str) -> None:
+    """Whatever a file holds."""
+    with pytest.raises(ValueError, match="no calibration"):
+        info_of(text)
+
+
+@pytest.mark.parametrize(
+    ("kind", "parameters", "text"),
+    [
+        (UsbCam, {"video_device": "/dev/video77"}, "is '/dev/video77', which is not there"),
+        (UsbCam, {"pixel_format": "test"}, "pixel_format is 'test'; yuyv, yuyv2rgb"),
+        (UsbCam, {"framerate": 0.0}, "numbers above 0 fit"),
+        (V4L2Camera, {"image_size": [640]}, "Invalid image size"),
+        (V4L2Camera, {"output_encoding": "mono"}, "output_encoding 'mono'"),
+    ],
+)
+async def test_what_does_not_fit_is_refused(
+    start: Start, kind: Any, parameters: dict[str, Any], text: str
+) -> None:
+    """With what does."""
+    with pytest.raises(CommandError, match=text):
+        start(kind, **parameters)
+
+
+async def test_a_file_that_is_no_video_is_said_and_tried_again(
+    start: Start, viewer: Viewer, tmp_path: Path, videos: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As a camera that is pulled out, and is back a second later."""
+    file = tmp_path / "a.mkv"
+    file.write_bytes(b"no video")
+    viewer.look(CameraInfo, "camera_info")
+    start(UsbCam, video_device=str(file), pixel_format="rgb8", **SMALL)
+    await until(lambda: "no video that can be read" in capsys.readouterr().err)
+    file.write_bytes((videos / "plain.mkv").read_bytes())
+
+    assert await viewer.pictures(1)
+
+
+async def test_controls_of_the_camera_are_those_of_usb_cam(
+    start: Start, viewer: Viewer, videos: Path
+) -> None:
+    """By the names that v4l2-ctl knows; what is -1 is left alone."""
+    values = {"autoexposure": False, "exposure": 40, "gain": 7, "auto_white_balance": False}
+    node = start(UsbCam, video_device=str(videos / "plain.mkv"), **SMALL | values)
+
+    assert node.controls() == {
+        "brightness": 50,
+        "gain": 7,
+        "white_balance_temperature_auto": 0,
+        "white_balance_temperature": 4000,
+        "exposure_auto": 1,
+        "exposure_absolute": 40,
+        "focus_auto": 0,
+    }
+
+
+@pytest.mark.timeout(90)
+@pytest.mark.one_loop
+def test_a_camera_is_started_by_its_name(videos: Path) -> None:
+    """As a launch file does it; the other end reads the pictures."""
+    env = {**os.environ, **isolated_environment(), "PYTHONUNBUFFERED": "1"}
+    aionode = [sys.executable, "-m", "aionode"]
+    device = f"video_device:={videos / 'plain.mkv'}"
+    words = ["run", "v4l2_camera", "v4l2_camera_node", "--ros-args", "-p", device]
+    with subprocess.Popen([*aionode, *words], env=env) as process:
+        said = subprocess.run(
+            [*aionode, "topic", "echo", "--once", "/image_raw", "sensor_msgs/msg/Image"],
+            env=env, capture_output=True, text=True, check=False, timeout=60,
+        )  # fmt: skip
+        process.send_signal(signal.SIGINT)
+
+    assert "width: 640" in said.stdout
+    assert "encoding: rgb8" in said.stdout
