@@ -137,14 +137,18 @@ class Packages:
             options = (*self._options(), *options)
         return program.command(*options)
 
-    def starter(self, program: Path) -> list[str]:
+    def starter(self, program: Path, options: Sequence[str] = ()) -> list[str]:
         """Return the command that starts a program which may look for packages.
 
         One that is installed for this Python, such as the xacro of PyPI, runs under aionode's
         rclpy: it finds packages as the workspace has them. Any other one runs as it is.
+
+        Args:
+            program: The file of the program.
+            options: Options of ``python -m aionode.rclpy``, if it runs under that.
         """
         if runs_in_this_python(program):
-            return [sys.executable, "-m", "aionode.rclpy", *self._options(), str(program)]
+            return [sys.executable, "-m", "aionode.rclpy", *self._options(), *options, str(program)]
         return [str(program)]
 
     def _place(self, package: str) -> str | None:

@@ -80,11 +80,13 @@ class Plan:
         around = workspace_of(Path(path)) if workspace is None else Path(workspace)
         install(workspace=around)
         from aionode.launch._evaluation import load_file
+        from aionode.launch._stand_ins import forget_stand_ins
 
         self._packages = Packages(around)
         self.path = path
         self._skip_missing = skip_missing
         use_stand_ins(wanted=skip_missing)
+        forget_stand_ins()
         self.description, self.main = load_file(path)
         self._arguments = dict(arguments or {})
         self._steps: list[Step] | None = None

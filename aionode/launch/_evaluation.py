@@ -24,6 +24,7 @@ from aionode.errors import (
 )
 from aionode.launch._frontend import description_of
 from aionode.launch._markup import read_xml, read_yaml
+from aionode.launch._stand_ins import StandIn, missing_module, with_stand_ins
 from aionode.launch.plan import Opaque, Step, Timer, Watch
 from aionode.rclpy.missing import advice
 from launch.actions import (
@@ -147,7 +148,8 @@ def module_in(path: str) -> Any:
     wrote = sys.dont_write_bytecode
     sys.dont_write_bytecode = True  # a launch file leaves no file beside it
     try:
-        exec(compile(Path(path).read_bytes(), str(path), "exec"), vars(module))  # noqa: S102  # the user's own program
+        code = compile(Path(path).read_bytes(), str(path), "exec")
+        with_stand_ins(lambda: exec(code, vars(module)))  # noqa: S102  # the user's own program
     except Exception as error:
         raise failure(path, error) from error
     finally:
@@ -176,9 +178,11 @@ def description_in(module: Any, path: str) -> Any:
     if function is None:
         raise LaunchFileError(path, f"has neither {FUNCTION}() nor `async def main(system)`")
     try:
-        description = function()
+        description = with_stand_ins(function)
     except Exception as error:
         raise failure(path, error) from error
+    if isinstance(description, StandIn):
+        return LaunchDescription([description])
     if not isinstance(description, LaunchDescription):
         problem = f"{FUNCTION}() returned {description!r}; a LaunchDescription fits"
         raise LaunchFileError(path, problem)
@@ -390,7 +394,7 @@ def missing_package(error: BaseException | None) -> str | None:
             return error.name
         if isinstance(error, ExecutableNotFoundError):
             return f"{error.package} {error.name}"
-        package = package_of_stand_in(str(error))
+        package = missing_module(error) or package_of_stand_in(str(error))
         if package is not None:
             return package
         error = error.__cause__ or error.__context__

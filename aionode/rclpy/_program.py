@@ -23,6 +23,7 @@ Runs a program that imports rclpy, with aionode in the place of ROS 2.
 
   --interfaces FOLDER  message packages that the program uses; may be repeated
   --workspace FOLDER   the packages that the program uses; else those around the program
+  --stand-ins          a package that is not there has a folder that does not exist
   --path FOLDER        where modules are looked for, in the place of the current folder
   -m MODULE            run a module, as python -m does; with :FUNCTION, call that function, as
                        the executable of a package does
@@ -32,6 +33,7 @@ Runs a program that imports rclpy, with aionode in the place of ROS 2.
 
 
 CHECK = "--check"
+STAND_INS = "--stand-ins"
 FOLDERS = ("--interfaces", "--workspace", "--path")
 """The options with a folder."""
 
@@ -87,7 +89,11 @@ def parsed(argv: Sequence[str]) -> Parsed:
         if first in {"-h", "--help"}:
             sys.stdout.write(USAGE)
             raise SystemExit(0)
-        if first in FOLDERS and given:
+        if first == STAND_INS:
+            from aionode._packages import use_stand_ins  # for the commands of launch files
+
+            use_stand_ins(wanted=True)
+        elif first in FOLDERS and given:
             folders[first].append(given.pop(0))
         elif first == CHECK and given:
             return Parsed(folders, False, CHECK, given)

@@ -149,3 +149,125 @@ def test_a_container_of_nodes_that_aionode_has_needs_no_process(files: Files) ->
         "aionode.programs._relay:Relay",
     ]
     assert not any("argv" in each for each in found)
+
+
+MODULES = """
+import sys
+try:
+    import colour_of_the_robot
+except ImportError:
+    colour_of_the_robot = None
+from moveit_configs_elsewhere import MoveItConfigsBuilder
+from moveit_configs_elsewhere.launches import generate_demo_launch, Settings
+from launch import LaunchDescription
+from launch.actions import ExecuteProcess, OpaqueFunction
+from launch_ros.actions import Node
+
+
+class Mine(Settings):
+    value: int = 1
+
+
+def later(context):
+    from settings_of_the_robot import speed
+    return [ExecuteProcess(cmd=["echo", str(speed)])]
+
+
+def generate_launch_description():
+    config = MoveItConfigsBuilder("panda").robot_description(file_path="x").to_moveit_configs()
+    others = [generate_demo_launch(config), *config.nodes]
+    mine = Mine(value=2)
+    return LaunchDescription([
+        ExecuteProcess(cmd=["echo", str(colour_of_the_robot)]),
+        Node(package="tf2_ros", executable="static_transform_publisher", name="tf",
+             arguments=["0", "0", "0", "0", "0", "0", "a", "b"]),
+        Node(package="tf2_ros", executable="static_transform_publisher",
+             parameters=[config.robot_description], name=mine.name),
+        OpaqueFunction(function=later),
+        *others,
+    ])
+"""
+
+
+def test_what_is_made_by_a_module_that_is_not_there_is_left_out(files: Files) -> None:
+    """Many launch files begin by importing helpers of a package, for some of their nodes."""
+    found = records(files, MODULES)
+
+    started = [each["argv"] for each in found if "argv" in each]
+    assert started[0] == ["echo", "None"], "an import that may fail does fail"
+    assert [argv[-1] for argv in started[1:]] == ["__node:=tf"]
+    helpers, settings = (each["log"] for each in found if "log" in each)
+    file = files.folder / "a.launch.py"
+    assert helpers == (
+        "package 'moveit_configs_elsewhere' is not there; left out: static_transform_publisher "
+        f"({file}:31), moveit_configs_elsewhere.launches.generate_demo_launch() ({file}:25)"
+    )
+    assert settings.startswith("package 'settings_of_the_robot' is not there; left out: Opaque")
+
+
+def test_a_file_whose_description_comes_from_a_module_that_is_not_there_starts_nothing(
+    files: Files,
+) -> None:
+    """As those that MoveIt's assistant writes."""
+    text = """
+def generate_launch_description():
+    from moveit_configs_elsewhere.launches import generate_rsp_launch
+    return generate_rsp_launch("panda")
+"""
+    (log,) = records(files, text)
+    assert log["log"].startswith("package 'moveit_configs_elsewhere' is not there; left out:")
+
+    with pytest.raises(LaunchFileError, match="no module moveit_configs_elsewhere"):
+        Plan(files.write("a.launch.py", text))
+
+
+def test_a_name_that_aionode_does_not_have_stays_an_error(files: Files) -> None:
+    """The package is there; leaving things out would hide a mistake."""
+    text = "from launch.acions import Node\n"
+
+    with pytest.raises(LaunchFileError, match="launch"):
+        records(files, text)
+
+
+def test_a_command_that_looks_for_a_package_that_is_not_there_is_left_out(files: Files) -> None:
+    """Such as xacro, of a description that includes another one's."""
+    pytest.importorskip("xacro")
+    files.write(
+        "robot.urdf.xacro",
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+        '<xacro:include filename="$(find create3)/urdf/create3.urdf.xacro"/></robot>',
+    )
+    text = """
+from launch import LaunchDescription
+from launch.substitutions import Command, PathJoinSubstitution, ThisLaunchFileDir
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    file = PathJoinSubstitution([ThisLaunchFileDir(), "robot.urdf.xacro"])
+    return LaunchDescription([
+        Node(package="robot_state_publisher", executable="robot_state_publisher",
+             parameters=[{"robot_description": Command(["xacro ", file])}]),
+    ])
+"""
+    (log,) = records(files, text)
+    assert log["log"].startswith("package 'create3' is not there; left out:")
+
+
+def test_a_node_is_left_out_whose_parameters_are_in_a_package_that_is_not_there(
+    files: Files,
+) -> None:
+    """Without them it would be another node than the one that is meant."""
+    text = """
+import os
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    file = os.path.join(get_package_share_directory("nowhere"), "config", "twist_mux.yaml")
+    return LaunchDescription([
+        Node(package="twist_mux", executable="twist_mux", parameters=[file]),
+    ])
+"""
+    (log,) = records(files, text)
+    assert log["log"].startswith("package 'nowhere' is not there; left out: twist_mux")

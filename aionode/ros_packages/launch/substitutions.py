@@ -333,9 +333,10 @@ class Command(Substitution):
         program = program_of(words[0], context)
         if program is None:
             raise SubstitutionFailure(f"command {line!r}: {missing_program(words[0])}")
+        options = () if context.left_out is None else ("--stand-ins",)
         try:
             process = subprocess.Popen(  # noqa: S603  # the command of the user's file
-                [*context.packages.starter(Path(program)), *words[1:]],
+                [*context.packages.starter(Path(program), options), *words[1:]],
                 stdout=subprocess.PIPE,
                 stderr=stderr,
                 env=context.environment,

@@ -8,8 +8,10 @@ from typing import Any
 
 import yaml
 
+from aionode._packages import package_of_stand_in
 from aionode._process.bounded_files import read_file
 from aionode._process.bounded_yaml import loaded_yaml
+from aionode.errors import PackageNotFoundError
 from aionode.launch.plan import Log, ParameterValues
 from launch.launch_context import LaunchContext
 from launch.substitution import (
@@ -57,6 +59,8 @@ def parameter_arguments(
             arguments += ["--params-file", ParameterValues(content)]
         elif isinstance(file, ParameterValues) or Path(file).is_file():
             arguments += ["--params-file", file]
+        elif (package := package_of_stand_in(str(file))) is not None:
+            raise PackageNotFoundError(package, (), ())
         else:
             # ROS's launch goes on, too: files that only some robots have are common.
             context.steps.append(Log(f"no parameter file {file}: the node starts without", "WARN"))
