@@ -13,7 +13,15 @@ from aionode.clock._clocks import (
     TimeJump,
 )
 from aionode.clock._silence import SilenceAlarm
-from aionode.clock._time_base import Alarm, MachineTime, TimeBase, perf_ns, thread_ns
+from aionode.clock._time_base import (
+    Alarm,
+    MachineTime,
+    TimeBase,
+    perf_ns,
+    process_ns,
+    thread_ns,
+    thread_waited_ns,
+)
 from aionode.clock._values import CONST_INFINITE_NS, S_TO_NS, ClockType, Duration, Infinite, Time
 
 __all__ = [
@@ -35,5 +43,7 @@ __all__ = [
     "TimeBase",
     "TimeJump",
     "perf_ns",
+    "process_ns",
     "thread_ns",
+    "thread_waited_ns",
 ]

@@ -7,6 +7,7 @@ can replace it.
 from __future__ import annotations
 
 import asyncio
+import os
 import time
 from abc import ABC, abstractmethod
 from contextlib import suppress
@@ -21,10 +22,35 @@ if TYPE_CHECKING:
 
     from aionode.clock._timerfd import KernelAlarms
 
-__all__ = ["Alarm", "MachineTime", "TimeBase", "perf_ns", "thread_ns"]
+__all__ = [
+    "Alarm",
+    "MachineTime",
+    "TimeBase",
+    "perf_ns",
+    "process_ns",
+    "thread_ns",
+    "thread_waited_ns",
+]
 
 perf_ns = time.perf_counter_ns  # for statistics only; not driven by a manual clock
 thread_ns = time.thread_time_ns  # likewise; the CPU time of the current thread
+process_ns = time.process_time_ns  # likewise; that of all threads
+
+
+def thread_waited_ns() -> int | None:
+    """Return for how long the current thread was ready to run and had no processor.
+
+    None where the system does not tell: it needs Linux with its statistics of the scheduler.
+    """
+    try:
+        file = os.open("/proc/thread-self/schedstat", os.O_RDONLY)
+        try:
+            return int(os.read(file, 80).split()[1])
+        finally:
+            os.close(file)
+    except (OSError, ValueError, IndexError):
+        return None
+
 
 # uvloop rounds waits to the nearest millisecond, so half of them end early; selector loops are
 # early by at most the 1 ns they add for rounding. A remainder below SPIN_S is spent in iterations

@@ -10,11 +10,13 @@ import asyncio
 import functools
 import inspect
 import os
+import sys
 from collections.abc import Awaitable, Callable, Coroutine, Generator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from aionode._process.concurrency import SLICE_NS, checkpoint, is_cancelled_task, run_in_thread
+from aionode._process.processor_waits import WAITS
 from aionode._process.tracebacks import traceback_text
 from aionode.clock import perf_ns
 from aionode.endpoints.core.node_tasks import create_own_task
@@ -51,6 +53,10 @@ REFUSED_SEC = 1.0
 
 REPORT_INTERVAL_NS = 1_000_000_000
 """Minimum time between two reports of slow callbacks of one entity."""
+
+
+LOOKED_AT_NS = 1_000_000_000
+"""From how long on a callback that hardly ran may have been stopped in a debugger."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -287,21 +293,37 @@ class CallbackRunner:
     def _record_sync(self, took_ns: int, ended_ns: int = 0) -> None:
         self.stats._record_took(took_ns)
         if took_ns > self.budget_ns:
-            self.report_blocking(took_ns)
+            self.report_blocking(took_ns, self.thread_time.waited_ns())
             self.thread_time.read(perf_ns())
         elif ended_ns >= self.thread_time.due_ns:
             self.thread_time.read(ended_ns)
 
-    def report_blocking(self, took_ns: int) -> None:
-        """Warn that the loop was blocked for too long, at most once per second."""
+    def report_blocking(self, took_ns: int, waited_ns: int | None) -> None:
+        """Warn that the loop was blocked for too long, at most once per second.
+
+        The time for which the thread waited for a processor is not the callback's, which could do
+        nothing about it; nor is that for which a person looks at it in a debugger.
+
+        Args:
+            took_ns: How long the callback held the loop.
+            waited_ns: How much of that its thread was ready without a processor; None if unknown.
+        """
         now_ns = perf_ns()
-        if now_ns - self._last_report_ns < REPORT_INTERVAL_NS:
+        own_ns = took_ns - min(waited_ns or 0, took_ns)
+        if own_ns <= self.budget_ns:
+            WAITS.note(took_ns - own_ns, now_ns)
+        ran_ns = self.thread_time.ran_ns()
+        if (
+            own_ns <= self.budget_ns
+            or now_ns - self._last_report_ns < REPORT_INTERVAL_NS
+            or is_debugged(own_ns, ran_ns)
+        ):
             return
         self._last_report_ns = now_ns
         self._callbacks.logger.warning(
-            f"{self.subject} blocked the event loop for {took_ns / 1e6:.1f} ms "
+            f"{self.subject} blocked the event loop for {own_ns / 1e6:.1f} ms "
             f"(budget {self.budget_ns / 1e6:g} ms): nothing else could run. "
-            f"{advice(took_ns, self.thread_time.ran_ns())}"
+            f"{advice(own_ns, ran_ns, knows_waits=waited_ns is not None)}"
         )
 
 
@@ -371,6 +393,7 @@ class _Measured:
         runner.waiting.add(self)
         began_ns = perf_ns()
         longest_ns = 0
+        waited_ns: int | None = None  # of the longest stretch, for a processor
         thrown: BaseException | None = None
         try:
             while True:
@@ -379,7 +402,11 @@ class _Measured:
                     # asyncio only ever sends None to a coroutine, or throws into it.
                     waits_for = next(steps) if thrown is None else steps.throw(thrown)
                 finally:
-                    longest_ns = max(longest_ns, perf_ns() - step_ns)
+                    took_ns = perf_ns() - step_ns
+                    if took_ns > longest_ns:
+                        longest_ns = took_ns
+                        if took_ns > runner.budget_ns:
+                            waited_ns = runner.thread_time.waited_ns()
                 thrown = None
                 try:
                     yield waits_for
@@ -393,7 +420,7 @@ class _Measured:
             runner.stats.run_time.record(ended_ns - began_ns)
             runner.stats.blocking.record(longest_ns)
             if longest_ns > runner.budget_ns:
-                runner.report_blocking(longest_ns)
+                runner.report_blocking(longest_ns, waited_ns)
             if ended_ns >= runner.thread_time.due_ns:
                 runner.thread_time.read(ended_ns)
 
@@ -491,12 +518,21 @@ async def _consume_concurrently(
 # Reports
 
 
-def advice(took_ns: int, ran_ns: int | None) -> str:
+def is_debugged(took_ns: int, ran_ns: int | None) -> bool:
+    """Return whether somebody may have looked at a callback in Python's debugger meanwhile."""
+    bdb = sys.modules.get("bdb")
+    if bdb is not None and isinstance(getattr(sys.gettrace(), "__self__", None), bdb.Bdb):
+        return True
+    return "pdb" in sys.modules and took_ns > LOOKED_AT_NS and 2 * (ran_ns or took_ns) < took_ns
+
+
+def advice(took_ns: int, ran_ns: int | None, *, knows_waits: bool = False) -> str:
     """Return the advice in a report of a slow callback: where its time went, and what helps.
 
     Args:
         took_ns: How long the callback blocked the loop.
         ran_ns: How long its thread ran meanwhile; None if unknown.
+        knows_waits: Whether waits for a processor are left out of this time.
     """
     move = (
         "Move the work off the loop: offload=True runs a sync callback in a thread, a coroutine "
@@ -506,7 +542,7 @@ def advice(took_ns: int, ran_ns: int | None) -> str:
         return move
     waited_for = "a lock, I/O or a sleep"
     load, cores = os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0, os.cpu_count() or 1
-    if load > cores:
+    if load > cores and not knows_waits:
         waited_for += f", or for a processor: the load is {load:.1f} on {cores} cores"
     return (
         f"Its thread ran for {ran_ns / 1e6:.1f} ms and waited for the rest ({waited_for}). {move}"

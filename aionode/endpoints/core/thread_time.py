@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import threading
 
-from aionode.clock import perf_ns, thread_ns
+from aionode.clock import perf_ns, thread_ns, thread_waited_ns
 
 __all__ = ["ThreadTime"]
 
 INTERVAL_NS = 5_000_000
-"""Maximum age of a reading: it costs about a microsecond, too much for each callback."""
+"""Maximum age of a reading: it costs some microseconds, too much for each callback."""
 
 
 class ThreadTime:
@@ -23,7 +23,7 @@ class ThreadTime:
             a call per callback would cost as much as it saves.
     """
 
-    __slots__ = ("_read_ns", "_thread", "due_ns")
+    __slots__ = ("_read_ns", "_thread", "_waited_ns", "due_ns")
 
     def __init__(self) -> None:
         self.read(perf_ns())
@@ -32,7 +32,19 @@ class ThreadTime:
         """Read the time of the current thread at the `perf_ns` time `now_ns`."""
         self._thread = threading.get_ident()
         self._read_ns = thread_ns()
+        self._waited_ns = thread_waited_ns()
         self.due_ns = now_ns + INTERVAL_NS
+
+    def waited_ns(self) -> int | None:
+        """Return how long the current thread was ready without a processor since the reading.
+
+        None if the system does not tell, or the reading was taken in another thread.
+        """
+        before_ns = self._waited_ns
+        if before_ns is None or threading.get_ident() != self._thread:
+            return None
+        now_ns = thread_waited_ns()
+        return None if now_ns is None else now_ns - before_ns
 
     def ran_ns(self) -> int | None:
         """Return how long the current thread ran since the reading, in nanoseconds.

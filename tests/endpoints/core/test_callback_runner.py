@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import asyncio
 import functools
+import pdb  # noqa: T100  # what it looks at is not reported
 import re
+import sys
 import threading
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
 from aionode._process.concurrency import checkpoint
-from aionode.clock import perf_ns
+from aionode._process.processor_waits import ProcessorWaits
+from aionode.clock import perf_ns, thread_ns
 from aionode.endpoints.core import callback_runner
 from aionode.endpoints.core.callback_runner import CallbackContext
 from aionode.endpoints.core.thread_time import ThreadTime
@@ -32,8 +36,8 @@ if TYPE_CHECKING:
 
 def busy(milliseconds: float) -> None:
     """Keep the loop from running, as a computation does."""
-    inline_deadline_ns = perf_ns() + round(milliseconds * 1e6)
-    while perf_ns() < inline_deadline_ns:
+    deadline_ns = thread_ns() + round(milliseconds * 1e6)  # what others take is not counted
+    while thread_ns() < deadline_ns:
         pass
 
 
@@ -259,13 +263,23 @@ async def test_a_callback_that_blocks_the_loop_is_reported_once_a_second(
 
 @pytest.mark.parametrize("kind", ["sync", "async"])
 @pytest.mark.parametrize(
-    ("load", "said"),
+    ("load", "waited_ns", "said"),
     [
         (
             0.5,
+            0,
             r"Its thread ran for \d+\.\d ms and waited for the rest \(a lock, I/O or a sleep\)\. ",
         ),
-        (99.0, r"a sleep, or for a processor: the load is 99\.0 on \d+ cores\)\. Move the work"),
+        (
+            99.0,
+            0,
+            r"Its thread ran for \d+\.\d ms and waited for the rest \(a lock, I/O or a sleep\)\. ",
+        ),
+        (
+            99.0,
+            None,
+            r"sleep, or for a processor: the load is 99\.0 on \d+ cores\)\. Move the work",
+        ),
     ],
 )
 async def test_a_report_says_if_the_thread_did_not_run(
@@ -274,10 +288,12 @@ async def test_a_report_says_if_the_thread_did_not_run(
     monkeypatch: pytest.MonkeyPatch,
     kind: str,
     load: float,
+    waited_ns: int | None,
     said: str,
 ) -> None:
-    """A callback that others kept from the processor is not slow itself."""
+    """Where the system does not tell who kept it from running, the load is a hint."""
     monkeypatch.setattr("os.getloadavg", lambda: (load, load, load))
+    monkeypatch.setattr("aionode.endpoints.core.thread_time.thread_waited_ns", lambda: waited_ns)
 
     def wait(msg: Int32) -> None:
         threading.Event().wait(0.1)  # long beside the time of the test itself
@@ -291,6 +307,98 @@ async def test_a_report_says_if_the_thread_did_not_run(
         await settle()
 
     assert re.search(said, capfd.readouterr().err)
+
+
+@pytest.fixture
+def processor(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """How long the thread has waited for a processor, as a test says; and what is counted."""
+    now = SimpleNamespace(waited_ns=0, waits=ProcessorWaits())
+    monkeypatch.setattr(
+        "aionode.endpoints.core.thread_time.thread_waited_ns", lambda: now.waited_ns
+    )
+    monkeypatch.setattr(callback_runner, "WAITS", now.waits)
+    return now
+
+
+@pytest.mark.parametrize("kind", ["sync", "async"])
+async def test_a_wait_for_a_processor_is_counted_and_not_reported_as_blocking(
+    context: Context, caplog: pytest.LogCaptureFixture, processor: SimpleNamespace, kind: str
+) -> None:
+    """Work moved off the loop would wait as well: one line a minute says so for the process."""
+
+    def starved(msg: Int32) -> None:
+        threading.Event().wait(0.03)
+        processor.waited_ns += 29_000_000
+
+    async def starved_async(msg: Int32) -> None:
+        starved(msg)
+
+    async with Node("node", context=context, callback_budget_ms=10) as node:
+        listen(node, starved if kind == "sync" else starved_async)
+        send(node, 3)
+        await settle()
+
+    assert "blocked" not in caplog.text
+    assert processor.waits.count == 3
+    assert 80e6 < processor.waits.total_ns < 90e6
+    (line,) = [text for text in caplog.messages if "wait for a processor" in text]
+    assert re.search(r"wait for a processor: 1 since .*; the load is \d+\.\d on \d+ cores", line)
+
+
+async def test_a_sleep_beside_a_wait_for_a_processor_is_reported(
+    context: Context, capfd: pytest.CaptureFixture[str], processor: SimpleNamespace
+) -> None:
+    """Only what the program can mend is in the figure."""
+
+    def sleepy(msg: Int32) -> None:
+        threading.Event().wait(0.1)
+        processor.waited_ns += 60_000_000
+
+    async with Node("node", context=context, callback_budget_ms=10) as node:
+        listen(node, sleepy)
+        send(node)
+        await settle()
+
+    found = re.search(r"blocked the event loop for (\d+\.\d) ms", capfd.readouterr().err)
+    assert found is not None
+    assert 30 < float(found[1]) < 60
+
+
+def test_waits_are_reported_once_a_minute(caplog: pytest.LogCaptureFixture) -> None:
+    """With what has come since the last line."""
+    waits = ProcessorWaits()
+
+    for second in range(61):
+        waits.note(20_000_000, second * 1_000_000_000)
+
+    first, second_line = [text for text in caplog.messages if "wait for a processor" in text]
+    assert ": 1 since the last such line, 20 ms in all" in first
+    assert ": 60 since the last such line, 1200 ms in all" in second_line
+    assert (waits.count, waits.longest_ns) == (61, 20_000_000)
+
+
+def test_a_callback_that_somebody_debugs_is_not_reported() -> None:
+    """They know that it stands still."""
+
+    class Debugger(pdb.Pdb):
+        def trace(self, *_: object) -> None:
+            pass
+
+    before = sys.gettrace()
+    sys.settrace(Debugger().trace)
+    try:
+        is_debugged = callback_runner.is_debugged(20_000_000, 19_000_000)
+    finally:
+        sys.settrace(before)
+
+    assert is_debugged
+
+
+def test_a_long_stop_at_a_breakpoint_is_taken_for_one() -> None:
+    """After the debugger has let the program go on, nothing but the time is left of it."""
+    assert callback_runner.is_debugged(5_000_000_000, 1_000_000)
+    assert not callback_runner.is_debugged(5_000_000_000, 4_900_000_000)
+    assert not callback_runner.is_debugged(50_000_000, 1_000_000)
 
 
 async def test_a_report_of_a_computation_does_not_speak_of_waiting() -> None:

@@ -1,0 +1,61 @@
+"""How long the loops of this process have waited for a processor, and the report of that."""
+
+from __future__ import annotations
+
+import logging
+import os
+from typing import Final
+
+__all__ = ["WAITS", "ProcessorWaits"]
+
+REPORT_NS: Final = 60_000_000_000
+"""Minimum time between two reports, in nanoseconds."""
+
+logger = logging.getLogger("aionode.load")
+
+
+class ProcessorWaits:
+    """Counts callbacks that took long because their thread was ready to run and had no processor.
+
+    Nothing in the program mends that, so the log has one line a minute for the whole process.
+
+    Attributes:
+        count: How many callbacks have waited so for longer than their budget.
+        total_ns: How long in all.
+        longest_ns: The longest of them.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.total_ns = 0
+        self.longest_ns = 0
+        self._reported_ns = -REPORT_NS
+        self._reported = (0, 0)
+
+    def note(self, waited_ns: int, now_ns: int) -> None:
+        """Count one such callback, and report it if no report was within a minute.
+
+        Args:
+            waited_ns: How long its thread was ready without a processor.
+            now_ns: The time.
+        """
+        self.count += 1
+        self.total_ns += waited_ns
+        self.longest_ns = max(self.longest_ns, waited_ns)
+        if now_ns - self._reported_ns < REPORT_NS:
+            return
+        count, total_ns = self._reported
+        self._reported, self._reported_ns = (self.count, self.total_ns), now_ns
+        times = self.count - count
+        logger.warning(
+            "callbacks of this process wait for a processor: %d since the last such line, %.0f ms "
+            "in all; the load is %.1f on %d cores, which is more than these can do at a time",
+            times,
+            (self.total_ns - total_ns) / 1e6,
+            os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0,
+            os.cpu_count() or 1,
+        )
+
+
+WAITS: Final = ProcessorWaits()
+"""Those of this process."""
