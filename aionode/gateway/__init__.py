@@ -13,7 +13,7 @@ them may do is said in one file; see `Policy`.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from aionode._process.first_use import imported_on_first_use
 
@@ -56,7 +56,6 @@ __all__ = [
 ]
 
 PLACES: Final = {
-    "Assistant": "mcp.assistant",
     "Credentials": "policy.identity",
     "Gateway": "_gateway",
     "GatewayStats": "_clients",
@@ -66,6 +65,11 @@ PLACES: Final = {
 }
 """The module of each public name that is not in that of the policy, which needs no web server."""
 
-__getattr__ = imported_on_first_use(
+_OF_GATEWAY = imported_on_first_use(
     __name__, dict.fromkeys(__all__, "policy.policy") | PLACES, "gateway"
 )
+_OF_ASSISTANT = imported_on_first_use(__name__, {"Assistant": "mcp.assistant"}, "mcp")
+
+
+def __getattr__(name: str) -> Any:
+    return _OF_ASSISTANT(name) if name == "Assistant" else _OF_GATEWAY(name)

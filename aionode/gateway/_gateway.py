@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
     from aionode.bag import Player
-    from aionode.gateway.mcp.http import McpOverHttp
+    from aionode.gateway.mcp import McpOverHttp
     from aionode.gateway.session.robot import Ask
     from aionode.gateway.session.session import Session
     from aionode.node import Node
@@ -92,7 +92,7 @@ class Gateway(Clients):
         self._player = player
         self._mcp: McpOverHttp | None = None
         if mcp:
-            from aionode.gateway.mcp.http import McpOverHttp  # takes a second, and few want it
+            from aionode.gateway.mcp import McpOverHttp  # takes a second, and few want it
 
             self._mcp = McpOverHttp(self, about, bags)
         self.host = host
@@ -150,6 +150,18 @@ class Gateway(Clients):
         if isinstance(error, Exception):
             kind = error = traceback = None  # the group of tasks would wrap the program's error
         await to_the_end(self._stack.__aexit__(kind, error, traceback))
+
+    def tell(self, text: str) -> None:
+        """Tell clients of MCP that listen of an event, such as ``the battery is low``.
+
+        They read it in the resource ``robot://events``, with the warnings of the robot's log.
+
+        Raises:
+            RuntimeError: the gateway serves no clients of MCP.
+        """
+        if self._mcp is None:
+            raise RuntimeError("gateway: give it mcp=True to tell its assistants something")
+        self._mcp.mcp.events.tell(text)
 
     async def _stop(self, server: Server, serving: asyncio.Task[None]) -> None:
         for session in list(self._sessions):

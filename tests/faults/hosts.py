@@ -15,7 +15,7 @@ from tests.faults.faults import Fault, replace
 from tests.faults.harness import Case, Skipped, Stage
 from tests.faults.roles import Hear, Publish, Role
 
-__all__ = ["NAMING", "ROUTER", "TwoHosts", "host_cases"]
+__all__ = ["ADDRESSES", "NAMING", "ROUTER", "TwoHosts", "host_cases"]
 
 ADDRESSES = ("10.213.0.1", "10.213.0.2")
 PORT = 7447

@@ -95,7 +95,8 @@ class Assistant(Clients):
         """
         self._check_node()
         async with AsyncExitStack() as stack:
-            await self._open(stack)
+            tasks = await self._open(stack)
+            stack.callback(tasks.create_task(self._mcp.run()).cancel)
             stack.push_async_callback(self._end)
             self._stack = stack.pop_all()
         return self
@@ -115,6 +116,13 @@ class Assistant(Clients):
         for session in self.sessions:
             session.ended.set()
         await self.robot.commands.close()
+
+    def tell(self, text: str) -> None:
+        """Tell clients that listen of an event, such as ``the battery is low``.
+
+        They read it in the resource ``robot://events``, with the warnings of the robot's log.
+        """
+        self._mcp.events.tell(text)
 
     async def serve_stdio(self) -> None:
         """Serve one client over the standard streams of this process, until it closes them."""

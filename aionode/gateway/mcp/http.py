@@ -56,9 +56,11 @@ class McpOverHttp:
     async def run(self) -> None:
         """Keep the sessions of the older revisions, until `stop`."""
         # In a task of its own: the SDK has to leave in the task in which it has entered.
-        async with self._manager.run():
+        async with self._manager.run(), asyncio.TaskGroup() as tasks:
+            telling = tasks.create_task(self.mcp.run())
             self._has_started.set()
             await self._has_to_end.wait()
+            telling.cancel()
 
     async def started(self) -> None:
         """Wait until requests can be served."""

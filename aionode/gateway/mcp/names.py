@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from aionode.gateway.policy.policy import Verb
     from aionode.gateway.session.session import Session
 
-__all__ = ["MOST_CHARACTERS", "may", "rights", "tool_name", "topic_of", "user_names"]
+__all__ = ["MOST_CHARACTERS", "allowed", "commands_of", "limits_of", "may", "rights"]
+__all__ += ["tool_name", "topic_of", "user_names"]
 
 MOST_CHARACTERS: Final = 40
 """The longest name of a tool: some clients cut names at 64 characters, with a prefix of theirs."""
@@ -71,6 +72,26 @@ def limits_of(rule: Any) -> str:
     if rule.ask:
         parts.append("a person is asked each time")
     return f" ({'; '.join(parts)})" if parts else ""
+
+
+def allowed(session: Session, kind: Literal["services", "actions"]) -> dict[str, str]:
+    """Return the services or actions that a client may use, with their types."""
+    verb: Literal["call", "goal"] = "call" if kind == "services" else "goal"
+    return {
+        name: types_of[0]
+        for name, types_of in user_names(session)[kind].items()
+        if may(session, verb, name, types_of[0])
+    }
+
+
+def commands_of(session: Session) -> dict[str, str]:
+    """Return the topics that a client may move something by, with their types."""
+    found = {}
+    for topic, types_of in user_names(session)["topics"].items():
+        decision = session.rights.decision("publish", topic, types_of[0])
+        if decision.allowed and decision.lease is not None:
+            found[topic] = types_of[0]
+    return found
 
 
 def topic_of(session: Session, name: str) -> str:

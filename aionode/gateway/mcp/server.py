@@ -8,14 +8,23 @@ from contextlib import asynccontextmanager
 from typing import TYPE_CHECKING, Any, Final
 
 import mcp_types as types
-from mcp.server.lowlevel import Server
+from mcp.server.lowlevel import NotificationOptions, Server
+from mcp.shared.exceptions import MCPError
 
 from aionode._process.concurrency import to_the_end
-from aionode.errors import AionodeError, RefusedError
+from aionode.errors import AionodeError, RefusedError, ToolError
 from aionode.gateway.mcp.answers import failure
 from aionode.gateway.mcp.call import Call, while_client_is_there
 from aionode.gateway.mcp.confirming import Asker, Question, Questions
+from aionode.gateway.mcp.events import EVENTS, Events
 from aionode.gateway.mcp.motions import Motions
+from aionode.gateway.mcp.resources import (
+    PROMPT,
+    how_to_move,
+    read_resource,
+    resources_of,
+    templates,
+)
 from aionode.gateway.mcp.tools import Tools
 from aionode.names import is_hidden
 
@@ -48,7 +57,8 @@ class RobotServer(Server[Any]):
     def create_initialization_options(self, *args: Any, **options: Any) -> InitializationOptions:
         """Return what clients of the older revisions are told at first."""
         self.instructions = self._describe()
-        return super().create_initialization_options(*args, **options)
+        changing = NotificationOptions(tools_changed=True, resources_changed=True)
+        return super().create_initialization_options(*(args or (changing,)), **options)
 
     async def _describe_first(self, ctx: Any, call_next: Any) -> Any:
         """Make the instructions anew before a client of 2026-07-28 is told them."""
@@ -69,12 +79,14 @@ class McpServer:
     Attributes:
         server: The server of the SDK.
         motions: What its clients move.
+        events: What has happened to the robot.
     """
 
     def __init__(
         self, clients: Clients, identity: Callable[[], Identity], about: str = "", bags: str = ""
     ) -> None:
         self.motions = Motions()
+        self.events = Events(clients)
         self._clients = clients
         self._identity = identity
         self._about = about
@@ -87,7 +99,19 @@ class McpServer:
             title="Robot",
             on_list_tools=self._list_tools,
             on_call_tool=self._call_tool,
+            on_list_resources=self._list_resources,
+            on_list_resource_templates=self._list_templates,
+            on_read_resource=self._read_resource,
+            on_subscribe_resource=self._subscribe,
+            on_unsubscribe_resource=self._unsubscribe,
+            on_subscriptions_listen=self._listen,
+            on_list_prompts=self._list_prompts,
+            on_get_prompt=self._get_prompt,
         )
+
+    async def run(self) -> None:
+        """Tell clients what changes, until it is cancelled."""
+        await self.events.run()
 
     def instructions(self) -> str:
         """Return what a model is told at first: which robot this is, and how it moves."""
@@ -143,6 +167,7 @@ class McpServer:
         async with self.session(context) as session:
             await session.graph.turn()
             tools = await self._tools.of(session)
+        self.events.note(context)
         return types.ListToolsResult(tools=[tool.listed() for tool in tools.values()])
 
     async def _call_tool(
@@ -183,3 +208,64 @@ class McpServer:
                 duration_ns=session.steady_ns() - began_ns, way=WAY,
             )  # fmt: skip
         return result
+
+    # Resources and the prompt
+
+    async def _list_resources(self, context: Any, _params: Any) -> types.ListResourcesResult:
+        async with self._asked(context) as session:
+            return types.ListResourcesResult(resources=resources_of(session))
+
+    async def _list_templates(self, _context: Any, _params: Any) -> Any:
+        return types.ListResourceTemplatesResult(resource_templates=templates())
+
+    async def _read_resource(
+        self, context: Any, params: types.ReadResourceRequestParams
+    ) -> types.ReadResourceResult:
+        uri = str(params.uri)
+        async with self._asked(context) as session:
+            self._clients.robot.audit.note(session.identity, "resource", uri, way=WAY)
+            about = self.instructions()
+            read = await read_resource(session, uri, about, self.events)
+        return types.ReadResourceResult(contents=[read])
+
+    async def _subscribe(self, context: Any, params: Any) -> types.EmptyResult:
+        async with self._asked(context):
+            if str(params.uri) != EVENTS:
+                raise ToolError(str(params.uri)[:200], f"only {EVENTS} changes by itself")
+            self.events.subscribe(context)
+        return types.EmptyResult()
+
+    async def _unsubscribe(self, context: Any, _params: Any) -> types.EmptyResult:
+        self.events.unsubscribe(context)
+        return types.EmptyResult()
+
+    async def _listen(self, context: Any, params: Any) -> types.SubscriptionsListenResult:
+        async with self._asked(context):
+            self.events.follow_log()
+        return await self.events.listen(context, params)
+
+    async def _list_prompts(self, _context: Any, _params: Any) -> types.ListPromptsResult:
+        return types.ListPromptsResult(prompts=[PROMPT])
+
+    async def _get_prompt(
+        self, context: Any, params: types.GetPromptRequestParams
+    ) -> types.GetPromptResult:
+        async with self._asked(context) as session:
+            if params.name != PROMPT.name:
+                raise ToolError(params.name[:100], f"there is {PROMPT.name}", "not_found")
+            text = types.TextContent(type="text", text=how_to_move(session))
+        message = types.PromptMessage(role="user", content=text)
+        return types.GetPromptResult(description=PROMPT.description, messages=[message])
+
+    @asynccontextmanager
+    async def _asked(self, context: Any) -> AsyncIterator[Session]:
+        """Yield the session of a request that is no call; its errors are those of the protocol.
+
+        Raises:
+            MCPError: what was asked for is refused, or not there.
+        """
+        try:
+            async with self.session(context) as session:
+                yield session
+        except (AionodeError, ValueError) as error:
+            raise MCPError(types.INVALID_PARAMS, str(error)) from error

@@ -13,7 +13,13 @@ from aionode.errors import MessageError, ToolError
 from aionode.gateway.http.offers import classes_of
 from aionode.gateway.mcp import moving, reading
 from aionode.gateway.mcp.arguments import Arguments, Nothing, fitting, meant, schema_of
-from aionode.gateway.mcp.names import limits_of, may, tool_name, user_names
+from aionode.gateway.mcp.names import (
+    allowed,
+    commands_of,
+    limits_of,
+    tool_name,
+    user_names,
+)
 from aionode.message import documentation, json_schema
 
 if TYPE_CHECKING:
@@ -208,26 +214,6 @@ class Tools:
                     )
                     return found[0] if found else None
         return None
-
-
-def allowed(session: Session, kind: Literal["services", "actions"]) -> dict[str, str]:
-    """Return the services or actions that a client may use, with their types."""
-    verb: Literal["call", "goal"] = "call" if kind == "services" else "goal"
-    return {
-        name: types_of[0]
-        for name, types_of in user_names(session)[kind].items()
-        if may(session, verb, name, types_of[0])
-    }
-
-
-def commands_of(session: Session) -> dict[str, str]:
-    """Return the topics that a client may move something by, with their types."""
-    found = {}
-    for topic, types_of in user_names(session)["topics"].items():
-        decision = session.rights.decision("publish", topic, types_of[0])
-        if decision.allowed and decision.lease is not None:
-            found[topic] = types_of[0]
-    return found
 
 
 async def move_tool(session: Session, commanded: dict[str, str]) -> Tool:

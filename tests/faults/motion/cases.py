@@ -11,7 +11,7 @@ from typing import Any
 
 import msgspec
 
-from tests.faults.hosts import NAMING, TwoHosts
+from tests.faults.hosts import ADDRESSES, NAMING, TwoHosts
 from tests.faults.hosts import ROUTER as HOST_ROUTER
 from tests.faults.motion.case import Motion, Place, Switch
 from tests.faults.motion.goings import (
@@ -26,6 +26,7 @@ from tests.faults.motion.goings import (
     interrupted_twice,
     killed,
     killed_beside_another,
+    leaves,
     run_into,
     signalled,
 )
@@ -514,6 +515,63 @@ def gateways() -> Iterator[Motion]:
     )
 
 
+ASSISTANTS = Role("gateway", command=("-m", "tests.faults.motion.gateway", "assistants"))
+ERAS = {"new": "2026-07-28", "old": "2025-11-25"}
+NOTICED_S = 0.1
+"""The longest time from what a gateway can notice until the stop."""
+
+CEILING_S = 4.0
+
+
+def assistants() -> Iterator[Motion]:
+    """Yield what happens to the wheels that a model's program moves by MCP."""
+    place = Place("assistants", "By an assistant", "longest", roles=(ASSISTANTS,))
+    ways: tuple[Way, ...] = ("mcp stdio new", "mcp stdio old", "mcp http new", "mcp http old")
+    for way in ways:
+        _, transport, era = way.split()
+        for asks, what in (("publisher", "a move"), ("goal", "a goal")):
+            who = f"an assistant with {what} over {transport} of {ERAS[era]}"
+            common: dict[str, Any] = {
+                "wheel": SERVER if asks == "goal" else TOPIC,
+                "limit_s": NOTICED_S,
+            }
+            drives = mover(program="page", asks=asks, way=way)
+            frozen_mover = mover(program="page", asks=asks, way=way, seconds=CEILING_S)
+            ended = "the end of the call"
+            yield case(
+                place, who, "gives up", ended, mover=drives, strike=run_into("cancel"), **common
+            )
+            yield case(
+                place, who, "is killed", ended, mover=drives, strike=killed, ends=True, **common
+            )
+            if transport == "stdio":
+                yield case(
+                    place, who, "closes its streams", ended, mover=drives, strike=leaves, **common
+                )
+            yield case(
+                place, who, "is frozen for 5 s", "the seconds of the call", mover=frozen_mover,
+                strike=frozen(5.0), lasts_s=5.0, **{**common, "limit_s": CEILING_S},
+            )  # fmt: skip
+            if transport == "http":
+                yield assistant_out_of_reach(who, mover(
+                    program="page", asks=asks, way=way, host=ADDRESSES[0],
+                ), common)  # fmt: skip
+
+
+def assistant_out_of_reach(who: str, drives: Role, common: dict[str, Any]) -> Motion:
+    """Return what happens to wheels on one host when the assistant on the other is cut off."""
+    hosts = TwoHosts()
+    place = Place(
+        f"cut, {who}", "By an assistant", "longest", partial(beyond, hosts),
+        hosts.placed((HOST_ROUTER, ASSISTANTS)), hosts, together=True,
+    )  # fmt: skip
+    return case(
+        place, who, "is cut off for 8 s", "the gateway, which hears of TCP that nobody is there",
+        mover=drives, strike=at_once(hosts.cut(8)), lasts_s=8.0,
+        **{**common, "limit_s": LOST_S, "allowed_s": 1.0},
+    )  # fmt: skip
+
+
 INTERFACES = Path(__file__).with_name("interfaces")
 
 
@@ -625,6 +683,7 @@ def motions() -> list[Motion]:
         *(motion for place in places for kind in kinds for motion in kind(place)),
         *limits(places[0]),
         *gateways(),
+        *assistants(),
         *defaults(),
         *launches(places[0]),
         *cables(),

@@ -68,11 +68,12 @@ def port_file() -> Path:
 
 
 async def serve() -> None:
-    """Serve until a signal."""
+    """Serve until a signal; with an argument, on all addresses, and assistants as well."""
+    more: dict[str, Any] = {"host": "0.0.0.0", "mcp": True} if sys.argv[1:] else {}  # noqa: S104
     async with (
         Context() as context,
         Node("gateway", context=context) as node,
-        Gateway(node, Policy.parse(POLICY), port=0) as gateway,
+        Gateway(node, Policy.parse(POLICY), port=0, **more) as gateway,
     ):
         port_file().write_text(str(gateway.port), encoding="ascii")
         await asyncio.Event().wait()
@@ -202,11 +203,17 @@ def drive(mover: Mover, reporter: Reporter) -> None:
     async def main() -> None:
         port = 0
         ends_s = time.monotonic() + 60.0
-        while not port and time.monotonic() < ends_s:
+        is_alone = mover.way.startswith("mcp stdio")
+        while not (port or is_alone) and time.monotonic() < ends_s:
             with suppress(OSError, ValueError):
                 port = int(port_file().read_text(encoding="ascii"))
             await asyncio.sleep(0.05)
-        await Page(mover, reporter, port).run()
+        if mover.way.startswith("mcp"):
+            from tests.faults.motion.assistant import Assistant  # what it imports takes a second
+
+            await Assistant(mover, reporter, f"http://{mover.host}:{port}").run()
+        else:
+            await Page(mover, reporter, port).run()
 
     aionode.run(main, reporter.go_on, args=[])
 

@@ -23,6 +23,7 @@ __all__ = [
     "interrupted_twice",
     "killed",
     "killed_beside_another",
+    "leaves",
     "run_into",
     "signalled",
 ]
@@ -154,6 +155,12 @@ async def killed_beside_another(play: Play) -> None:
     await asyncio.sleep(1.0)
     play.struck()
     play.child.send(signal.SIGKILL)
+
+
+async def leaves(play: Play) -> None:
+    """Have it close its connection, as at its end."""
+    play.struck()
+    play.child.tell("leave")
 
 
 async def comes_near(play: Play) -> None:

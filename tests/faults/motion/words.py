@@ -21,8 +21,17 @@ Program = Literal["run", "asyncio", "uvicorn", "page"]
 """How it runs: by `aionode.run`, `asyncio.run`, in a route of FastAPI, or as a client of a gateway.
 """
 
-Way = Literal["rosbridge", "foxglove json", "foxglove cdr", "http"]
-"""By which way in it is a client of a gateway."""
+Way = Literal[
+    "rosbridge",
+    "foxglove json",
+    "foxglove cdr",
+    "http",
+    "mcp stdio new",
+    "mcp stdio old",
+    "mcp http new",
+    "mcp http old",
+]
+"""By which way in it is a client of a gateway; by MCP, with which transport and revision."""
 
 What = Literal["move", "stop", "silence"]
 """A command to move; a command to stop, or the end of a goal; a call of ``on_silence``."""
@@ -47,6 +56,8 @@ class Mover(msgspec.Struct, frozen=True):
             soon it comes: what aionode's handling of signals is compared with.
         way: By which way in it drives through a gateway.
         client: Who it is there, and its token.
+        host: Where the gateway is.
+        seconds: For how long a call by MCP moves at most.
         has_defaults: Whether it sends what has defaults in its definition, which only the wheels
             have: see `Wheel`.
         sends_zeros: Whether it sends zeros in their place.
@@ -65,6 +76,8 @@ class Mover(msgspec.Struct, frozen=True):
     old_signals: bool = False
     way: Way = "rosbridge"
     client: str = "page"
+    host: str = "127.0.0.1"
+    seconds: float = 10.0
     has_defaults: bool = False
     sends_zeros: bool = False
 

@@ -1,0 +1,157 @@
+"""What happens to the robot, for clients that listen: its warnings, and what its program tells."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from typing import TYPE_CHECKING, Any, Final
+
+import anyio
+from mcp.server.subscriptions import (
+    InMemorySubscriptionBus,
+    ListenHandler,
+    ResourcesListChanged,
+    ResourceUpdated,
+    ToolsListChanged,
+)
+from mcp.shared.exceptions import MCPError
+from mcp_types.version import MODERN_PROTOCOL_VERSIONS
+
+from aionode._process.recent import Recent
+from aionode.interfaces.rcl_interfaces.msg import Log
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from aionode.gateway._clients import Clients
+    from aionode.gateway.session.feed import Received
+
+__all__ = ["EVENTS", "Events"]
+
+EVENTS: Final = "robot://events"
+"""The resource with the events."""
+
+MOST_EVENTS: Final = 100
+"""Events that are kept, the newest ones."""
+
+MOST_TEXT: Final = 500
+"""The longest text of an event, in characters."""
+
+MOST_SESSIONS: Final = 1000
+"""Sessions of the older revisions that are told of changes, the newest ones."""
+
+PERIOD_SEC: Final = 0.5
+"""The least time between two notifications, in seconds: clients then read what there is."""
+
+WARNING: Final = 30
+LEVELS: Final = {30: "warn", 40: "error", 50: "fatal"}
+
+LOG: Final = "/rosout"
+
+
+class Events:
+    """Keeps what happens, and tells clients that there is something new.
+
+    Args:
+        clients: All clients of the robot.
+
+    Attributes:
+        listen: Serves those who listen by the newest revision.
+    """
+
+    def __init__(self, clients: Clients) -> None:
+        self._clients = clients
+        self._bus = InMemorySubscriptionBus()
+        self.listen = ListenHandler(self._bus, max_subscriptions=clients.policy.limits.clients)
+        self._kept: deque[dict[str, Any]] = deque(maxlen=MOST_EVENTS)
+        self._happened = asyncio.Event()
+        self._sessions: Recent[int, Any] = Recent(MOST_SESSIONS)
+        self._subscribed: Recent[int, Any] = Recent(MOST_SESSIONS)
+        self._leave: Callable[[], None] | None = None
+
+    def tell(self, text: str, level: str = "info", source: str = "") -> None:
+        """Keep an event, and have clients read it."""
+        time = round(self._clients.robot.time_base.system_ns() / 1e9, 3)
+        event = {"time": time, "level": level, "source": source, "text": text[:MOST_TEXT]}
+        self._kept.append(event)
+        self._happened.set()
+
+    def seen(self, *, with_log: bool) -> list[dict[str, Any]]:
+        """Return the events, the oldest first.
+
+        Args:
+            with_log: Whether those of the robot's log are among them.
+        """
+        return [event for event in self._kept if with_log or not event["source"]]
+
+    def follow_log(self) -> None:
+        """Keep the warnings of the robot's log from now on, and those that its nodes still have."""
+        if self._leave is None:
+            self._leave = self._clients.robot.feeds.add(LOG, Log, None, self._take)
+
+    def _take(self, received: Received) -> None:
+        message = received.message
+        if message.level >= WARNING and message.name != self._clients.node.get_logger().name:
+            self.tell(message.msg, LEVELS.get(message.level, "fatal"), message.name)
+
+    # Clients of the older revisions
+
+    def note(self, context: Any) -> None:
+        """Tell the client of a request of other tools from now on, if it is of an older one."""
+        if context.protocol_version not in MODERN_PROTOCOL_VERSIONS:
+            self._sessions.put(id(context.session._connection), context.session)
+
+    def subscribe(self, context: Any) -> None:
+        """Tell the client of a request of events from now on."""
+        self.follow_log()
+        self._subscribed.put(id(context.session._connection), context.session)
+
+    def unsubscribe(self, context: Any) -> None:
+        """Tell the client of a request of events no more."""
+        self._subscribed.pop(id(context.session._connection), None)
+
+    # Telling
+
+    async def run(self) -> None:
+        """Tell clients of events, and of other tools, until it is cancelled."""
+        try:
+            async with asyncio.TaskGroup() as tasks:
+                tasks.create_task(self._tell_events())
+                tasks.create_task(self._tell_changes())
+        finally:
+            self.listen.close()
+            if self._leave is not None:
+                self._leave()
+
+    async def _tell_events(self) -> None:
+        while True:
+            await self._happened.wait()
+            self._happened.clear()
+            await self._bus.publish(ResourceUpdated(EVENTS))
+            for key, session in list(self._subscribed.items()):
+                if not await reached(session.send_resource_updated(EVENTS)):
+                    self._subscribed.pop(key, None)
+            await self._clients.robot.clock.sleep(PERIOD_SEC)
+
+    async def _tell_changes(self) -> None:
+        graph, before = self._clients.node.graph, None
+        while True:
+            now = (graph.changes, self._clients.policy)
+            if before is not None and now != before:
+                for event in (ToolsListChanged(), ResourcesListChanged()):
+                    await self._bus.publish(event)
+                for key, session in list(self._sessions.items()):
+                    if not await reached(session.send_tool_list_changed()):
+                        self._sessions.pop(key, None)
+            before = now
+            await self._clients.robot.clock.sleep(2 * PERIOD_SEC)
+
+
+async def reached(sending: Any) -> bool:
+    """Return whether a notification could be sent; a client may be gone, or not read."""
+    try:
+        async with asyncio.timeout(PERIOD_SEC):
+            await sending
+    except (MCPError, TimeoutError, anyio.ClosedResourceError, anyio.BrokenResourceError):
+        return False
+    return True
