@@ -15,7 +15,12 @@ from aionode._packages._executables import (
     runs_in_this_python,
 )
 from aionode._packages._share import share_of
-from aionode._packages._standard import remark_on, standard_executables, standard_plugin
+from aionode._packages._standard import (
+    remark_on,
+    standard_executables,
+    standard_packages,
+    standard_plugin,
+)
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 
@@ -89,7 +94,7 @@ class Packages:
             standard = standard_executables(name)
             if standard:
                 return standard
-            raise self.not_found(name)
+            raise self.not_found(name, standard_packages())
         installed = {} if prefix is None else installed_executables(prefix, name)
         return installed | ({} if source is None else executables_in(source, name))
 
@@ -169,11 +174,13 @@ class Packages:
         folders += [folder for name, folder in sources.items() if name != module]
         return next(filter(None, (module_root(folder, module) for folder in folders)), None)
 
-    def not_found(self, name: str) -> PackageNotFoundError:
-        """Return the error for a package that is not there."""
+    def not_found(self, name: str, supplied: Sequence[str] = ()) -> PackageNotFoundError:
+        """Return the error for a package that is not there, or supplied by aionode."""
         places = [] if self.workspace is None else [str(self.workspace)]
         places += map(str, prefixes())
-        return PackageNotFoundError(name, tuple(places), self.names(), remark_on(name))
+        return PackageNotFoundError(
+            name, tuple(places), self.names(), remark_on(name), supplied=supplied
+        )
 
 
 def source_folder(workspace: Path) -> Path:

@@ -6,7 +6,13 @@ from typing import Final
 
 from aionode._packages._executables import Executable
 
-__all__ = ["program_module", "remark_on", "standard_executables", "standard_plugin"]
+__all__ = [
+    "program_module",
+    "remark_on",
+    "standard_executables",
+    "standard_packages",
+    "standard_plugin",
+]
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "diagnostic_aggregator": {"aggregator_node": "_diagnostics.aggregator_node"},
@@ -134,6 +140,11 @@ def program_module(package: str, name: str) -> str | None:
     """Return the name of the module that is an executable of a package, if aionode has it."""
     module = MODULES.get(package, {}).get(name)
     return None if module is None else f"aionode.programs.{module}"
+
+
+def standard_packages() -> list[str]:
+    """Return the names of the packages of which aionode has programs."""
+    return sorted(MODULES)
 
 
 def standard_plugin(package: str, plugin: str) -> tuple[str, str] | None:

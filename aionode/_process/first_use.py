@@ -11,7 +11,7 @@ __all__ = ["imported_on_first_use"]
 
 
 def imported_on_first_use(
-    package: str, places: Mapping[str, str], extra: str
+    package: str, places: Mapping[str, str], extra: str = "all"
 ) -> Callable[[str], Any]:
     """Return the ``__getattr__`` of a package, which imports a public name and keeps it.
 
@@ -21,7 +21,7 @@ def imported_on_first_use(
     Args:
         package: The name of the package.
         places: The module of each public name, within the package.
-        extra: The extra of aionode that installs what these modules need.
+        extra: The extra of aionode that installs what these modules need, if they need anything.
     """
 
     def find(name: str) -> Any:

@@ -26,12 +26,18 @@ class PackageNotFoundError(AionodeError, LookupError):
     """
 
     def __init__(
-        self, name: str, places: tuple[str, ...], known: Sequence[str], remark: str = ""
+        self,
+        name: str,
+        places: tuple[str, ...],
+        known: Sequence[str],
+        remark: str = "",
+        *,
+        supplied: Sequence[str] = (),
     ) -> None:
         self.name = name
         self.places = places
         self.remark = remark
-        self.suggestions, hint = offered(name, "packages there", known)
+        self.suggestions, hint = offered(name, "packages there", known, supplied)
         if remark:
             hint = f"it is {remark}"
         super().__init__(
@@ -65,11 +71,20 @@ class ExecutableNotFoundError(AionodeError, LookupError):
         )
 
 
-def offered(name: str, what: str, known: Sequence[str]) -> tuple[tuple[str, ...], str]:
-    """Return the names close to `name`, and a hint with them, or else with the first ten."""
+def offered(
+    name: str, what: str, known: Sequence[str], supplied: Sequence[str] = ()
+) -> tuple[tuple[str, ...], str]:
+    """Return the names close to `name`, and a hint with them, or else with the first ten.
+
+    Args:
+        name: The name that was looked up.
+        what: What the known names are of.
+        known: The names of what is there.
+        supplied: The names of what aionode itself has, which may be close as well.
+    """
     import difflib  # needed only for errors
 
-    near = tuple(difflib.get_close_matches(name, known, 1))
+    near = tuple(difflib.get_close_matches(name, [*known, *supplied], 1))
     more = f" and {len(known) - 10} more" if len(known) > 10 else ""
     hint = f"did you mean {near[0]}?" if near else f"{what}: {', '.join(known[:10]) or 'none'}"
     return near, hint if near else hint + more

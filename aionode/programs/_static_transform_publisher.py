@@ -17,7 +17,7 @@ from aionode.errors import CommandError
 from aionode.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 from aionode.tf import StaticTransformBroadcaster
-from aionode.tf.apply import from_angles
+from aionode.tf.apply import given_transform
 
 __all__ = ["Given", "StaticTransformPublisher", "main"]
 
@@ -86,18 +86,13 @@ class Given:
             values = dict(zip(OLD_STYLES[len(others)], others, strict=True))
         elif others:
             raise ValueError("Extra unparsed arguments on command-line")
-        if not values.keys().isdisjoint(QUATERNION) and not values.keys().isdisjoint(ANGLES):
-            raise ValueError("Cannot specify both quaternion and Euler rotations")
         numbers = {name: number(name, text) for name, text in values.items() if name not in FRAMES}
         frame_id, child_frame_id = (values.get(name, "") for name in FRAMES)
         if not frame_id:
             raise ValueError("Frame id must not be empty")
         if not child_frame_id:
             raise ValueError("Child frame id must not be empty")
-        rotation: tuple[float, ...] = from_angles(*(numbers.get(a, 0.0) for a in ANGLES))
-        if not numbers.keys().isdisjoint(QUATERNION):
-            rotation = tuple(numbers.get(name, float(name == "qw")) for name in QUATERNION)
-        translation = tuple(numbers.get(name, 0.0) for name in TRANSLATION)
+        translation, rotation = given_transform(numbers)
         return cls(translation, rotation, frame_id, child_frame_id, bool(others))
 
 

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Final
 
 from aionode._packages import around
+from aionode.idl.search import has_interfaces, module_name, names_in
 from aionode.rclpy._finder import FINDER, KINDS, SUPPLIED, exists, gives_way
-from aionode.rclpy.interface_search import has_interfaces, module_name, names_in
 from aionode.rclpy.missing import advice
 
 __all__ = ["check"]

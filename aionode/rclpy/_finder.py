@@ -12,8 +12,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, Final
 
+from aionode.idl.search import add_folder, has_interfaces, module_name, names_in
 from aionode.interfaces import shipped_packages
-from aionode.rclpy.interface_search import add_folder, has_interfaces, module_name, names_in
 
 __all__ = ["SUPPLIED", "install", "provide"]
 

@@ -11,10 +11,10 @@ from math import acos, cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
 __all__ = ["IDENTITY", "Edge", "Pose", "chained", "composed"]
-__all__ += ["from_angles", "interpolated", "inverted", "unit"]
+__all__ += ["from_angles", "given_transform", "interpolated", "inverted", "unit"]
 
 Pose = tuple[float, float, float, float, float, float, float]
 """Translation x, y, z, and rotation x, y, z, w."""
@@ -125,3 +125,26 @@ def from_angles(roll: float, pitch: float, yaw: float) -> tuple[float, float, fl
         cr * cp * sy - sr * sp * cy,
         cr * cp * cy + sr * sp * sy,
     )
+
+
+def given_transform(
+    numbers: Mapping[str, float],
+) -> tuple[tuple[float, float, float], tuple[float, float, float, float]]:
+    """Return the translation and the quaternion that options of static_transform_publisher say.
+
+    Args:
+        numbers: ``x``, ``y`` and ``z`` in metres; and ``qx``, ``qy``, ``qz`` and ``qw``, or
+            ``roll``, ``pitch`` and ``yaw`` in radians. What is left out is 0, and ``qw`` is 1.
+
+    Raises:
+        ValueError: both a quaternion and angles are given.
+    """
+    angles = numbers.keys() & {"roll", "pitch", "yaw"}
+    has_quaternion = bool(numbers.keys() & {"qx", "qy", "qz", "qw"})
+    if has_quaternion and angles:
+        raise ValueError("give either a quaternion or angles (roll, pitch, yaw), not both")
+    x, y, z, qx, qy, qz = (numbers.get(name, 0.0) for name in ("x", "y", "z", "qx", "qy", "qz"))
+    if has_quaternion:
+        return (x, y, z), (qx, qy, qz, numbers.get("qw", 1.0))
+    roll, pitch, yaw = (numbers.get(name, 0.0) for name in ("roll", "pitch", "yaw"))
+    return (x, y, z), from_angles(roll, pitch, yaw)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from aionode.interfaces.geometry_msgs import msg as geometry
 from aionode.interfaces.sensor_msgs.msg import PointCloud2
-from aionode.tf._arithmetic import Pose, composed, from_angles, unit
+from aionode.tf._arithmetic import Pose, composed, from_angles, given_transform, unit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -19,6 +19,7 @@ __all__ = [
     "composed",
     "do_transform",
     "from_angles",
+    "given_transform",
     "register_transform",
     "rotation_matrix",
     "transformer_of",

@@ -221,6 +221,11 @@ def test_classes_of_nodes_are_found_in_packages(workspace: Path) -> None:
     ("args", "error", "says"),
     [
         (["my_robto", "mover"], PackageNotFoundError, "did you mean my_robot?"),
+        (
+            ["teleop_twist_keybord", "x"],
+            PackageNotFoundError,
+            "did you mean teleop_twist_keyboard?",
+        ),
         (["my_robot", "movre"], ExecutableNotFoundError, "did you mean mover?"),
         (["my_robot"], CommandError, "give an executable of this package: mover"),
         (["my_robot", "-x"], CommandError, "give an executable of this package: mover"),

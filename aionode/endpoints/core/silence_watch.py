@@ -24,6 +24,7 @@ from aionode._process.recent import Recent
 from aionode.clock import S_TO_NS, Clock, SilenceAlarm, perf_ns
 from aionode.endpoints.core.callback_runner import accepts
 from aionode.endpoints.core.node_tasks import create_own_task
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 from aionode.engine.rules.publication_times import PublicationTimes
 from aionode.errors import brief
 from aionode.qos import DurabilityPolicy
@@ -42,9 +43,6 @@ __all__ = ["SILENCE_SEC", "Silence", "SilenceWatch"]
 
 SILENCE_SEC = 0.3
 """Default for the longest silence of a topic: three commands at 10 Hz."""
-
-REMEMBERED_PUBLISHERS = 1024
-"""For how many publishers the time of the last message is remembered."""
 
 NOTICE_S = 0.3
 """After how long a cancelled callback that delays `on_silence` is named in the log."""

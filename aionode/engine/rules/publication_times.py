@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from aionode._process.recent import Recent
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 
 __all__ = ["PublicationTimes"]
-
-REMEMBERED_PUBLISHERS = 1024
-"""Of how many publishers it is remembered how far apart the clocks are."""
 
 SHORTEST_NS = 500_000
 """Messages that were published in a shorter time say nothing about the pace at which they came."""

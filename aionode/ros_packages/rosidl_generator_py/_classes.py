@@ -13,9 +13,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any, Final
 
+from aionode.idl.search import module_name
 from aionode.message import DTYPES, Field, Message, ServiceType, fields, type_name
 from aionode.message import constants as constants_of
-from aionode.rclpy.interface_search import module_name
 from rosidl_generator_py._field_types import TYPE_CODES, field_text, is_numeric, slot_type
 from rosidl_parser.definition import AbstractSequence, BasicType
 

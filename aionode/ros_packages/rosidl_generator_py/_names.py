@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from aionode.idl.search import find
 from aionode.message import ActionType, Message, ServiceType, type_name
-from aionode.rclpy.interface_search import find
 from rosidl_generator_py import _classes
 from rosidl_generator_py._classes import ACTION_PARTS, SERVICE_PARTS, python_class
 

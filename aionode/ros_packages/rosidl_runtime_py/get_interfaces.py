@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from pathlib import Path
 
+from aionode.idl.search import has_interfaces, names_in
 from aionode.interfaces import shipped_packages
-from aionode.rclpy.interface_search import has_interfaces, names_in
 from ament_index_python import get_resources, has_resource
 
 __all__ = [

@@ -13,7 +13,7 @@ from aionode.cli._support.options import hertz, seconds
 from aionode.clock import Clock, ClockType, Time
 from aionode.errors import TransformException
 from aionode.tf import Buffer, StaticTransformBroadcaster, TimeoutException
-from aionode.tf.apply import from_angles, matrix_of, pose_of
+from aionode.tf.apply import given_transform, matrix_of, pose_of
 
 if TYPE_CHECKING:
     from aionode.cli._support.output import Output
@@ -261,23 +261,17 @@ def static_transform(
     )
     from aionode.interfaces.std_msgs.msg import Header
 
-    quaternion = [numbers[name] for name in ("qx", "qy", "qz", "qw")]
-    angles = [numbers[name] for name in ("roll", "pitch", "yaw")]
-    if any(number is not None for number in quaternion) and any(
-        number is not None for number in angles
-    ):
-        raise click.UsageError("give either --qx --qy --qz --qw or --roll --pitch --yaw, not both")
+    given = {name: number for name, number in numbers.items() if number is not None}
+    try:
+        (x, y, z), (i, j, k, w) = given_transform(given)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
     if not frame_id.removeprefix("/") or frame_id == child_frame_id or not child_frame_id:
         raise click.UsageError("--frame-id and --child-frame-id must be different")
-    i, j, k, w = from_angles(*(angle or 0.0 for angle in angles))
-    if any(number is not None for number in quaternion):
-        i, j, k = (number or 0.0 for number in quaternion[:3])
-        w = 1.0 if quaternion[3] is None else quaternion[3]
     if abs(i * i + j * j + k * k + w * w - 1.0) >= 0.01:
         raise click.UsageError(
             "the quaternion is not normalized (length 1), so every buffer rejects it"
         )
-    x, y, z = (numbers[name] or 0.0 for name in "xyz")
     return TransformStamped(
         header=Header(frame_id=frame_id),
         child_frame_id=child_frame_id,

@@ -8,6 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode._process.recent import Recent
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 from aionode.engine.transport.base import StopSender, Writer
 from aionode.engine.transport.rcl._bindings import UNNUMBERED, ByteArray, MessageInfo, load, view
 from aionode.engine.transport.rcl._state import RclDeclaration
@@ -33,9 +34,6 @@ BULK_BYTES: Final = 60_000
 """From this size on a message is sent by a thread; after the first one, a subscription takes all of
 its messages without the GIL.
 """
-
-REMEMBERED_PUBLISHERS: Final = 1024
-"""Publishers whose messages are counted."""
 
 GIVE_UP_TRIES: Final = 20
 """Tries of a publisher that is being destroyed to send one more message (0.1 s each)."""

@@ -11,15 +11,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from aionode._process.recent import Recent
+from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
 __all__ = ["TargetNumbers"]
-
-REMEMBERED_PUBLISHERS: Final = 1_024
-"""Number of publishers whose numbers are remembered."""
-
 
 STEADY: Final = 5
 """After so many equal rises, what looks like losses was the number of targets: one came and went
