@@ -13,6 +13,7 @@ import aionode
 from aionode import Node
 from aionode.errors import CommandError, LeaseExpiredError
 from aionode.interfaces.geometry_msgs.msg import Twist, TwistStamped, Vector3
+from aionode.interfaces.rcl_interfaces.msg import ParameterDescriptor
 
 __all__ = ["Keys", "Teleop", "main", "terminal"]
 
@@ -117,12 +118,14 @@ class Teleop(Node):
 
     def __init__(self, show: Callable[[str], object]) -> None:
         super().__init__("teleop_twist_keyboard")
-        self.is_stamped = self.declare_parameter("stamped", False).value
-        self.frame_id = self.declare_parameter("frame_id", "").value
+        fixed = ParameterDescriptor(read_only=True)
+        self.is_stamped = self.declare_parameter("stamped", False, fixed).value
+        self.frame_id = self.declare_parameter("frame_id", "", fixed).value
         if self.frame_id and not self.is_stamped:
             raise CommandError("'frame_id' can only be set when 'stamped' is True")
         self.keys = Keys(
-            self.declare_parameter("speed", 0.5).value, self.declare_parameter("turn", 1.0).value
+            self.declare_parameter("speed", 0.5, fixed).value,
+            self.declare_parameter("turn", 1.0, fixed).value,
         )
         kind: Any = TwistStamped if self.is_stamped else Twist
         self.publisher = self.create_publisher(kind, "cmd_vel", 10)

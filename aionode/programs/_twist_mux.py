@@ -73,7 +73,9 @@ class TwistMux(Node):
             automatically_declare_parameters_from_overrides=True,
         )
         if not self.has_parameter("use_stamped"):
-            self.declare_parameter("use_stamped", False, ParameterDescriptor())
+            # Humble's twist_mux, 4.3, knows Twist alone; since 4.4 TwistStamped is the default.
+            is_stamped = self.context.ros_distro != "humble"
+            self.declare_parameter("use_stamped", is_stamped, ParameterDescriptor())
         kind: Any = TwistStamped if self.get_parameter("use_stamped").value else Twist
         self.commands = self.sources("topics")
         self.locks = self.sources("locks")

@@ -71,6 +71,8 @@ def robot(
     """Start the program, with its lock of life fed."""
 
     async def make(kind: Any = Twist, **more: Any) -> Robot:
+        if kind is Twist:
+            more["use_stamped"] = False
         await manual_clock.advance(100.0)
         start(TwistMux, **PARAMETERS | more)
         robot = Robot(node_factory("people"), kind)
@@ -114,11 +116,19 @@ async def test_a_lock_that_falls_silent_locks(
     assert await people.drive("joy", 0.2) == []
 
 
-async def test_stamped_commands_are_an_option(robot: Callable[..., Any]) -> None:
-    """As since Jazzy."""
-    people = await robot(TwistStamped, use_stamped=True)
+async def test_commands_are_stamped_by_default(robot: Callable[..., Any]) -> None:
+    """As since version 4.4, which Jazzy and Kilted have."""
+    people = await robot(TwistStamped)
 
     assert await people.drive("nav", 0.1) == [0.1]
+
+
+async def test_commands_of_humble_have_no_header(
+    start: Start, aionode_context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its version, 4.3, has no such parameter."""
+    monkeypatch.setattr(aionode_context, "ros_distro", "humble")
+    assert start(TwistMux, **PARAMETERS).get_parameter("use_stamped").value is False
 
 
 async def test_diagnostics_say_who_is_heard(
