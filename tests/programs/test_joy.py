@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Any, NamedTuple
 
 import pytest
@@ -18,6 +19,8 @@ from aionode.programs._joy.joystick import Joystick, input_devices
 from aionode.programs._joy.teleop_node import TeleopTwistJoy
 from aionode.testing import ManualClock, settle
 from tests.programs.conftest import Start
+from tests.programs.test_teleop_twist_keyboard import LISTENER
+from tests.support.peers import isolated_environment
 
 KEY, ABS = 1, 3
 X, Y, TRIGGER, HAT_X, HAT_Y = 0, 1, 2, 0x10, 0x11
@@ -393,3 +396,59 @@ async def test_stamped_commands_are_an_option(base: Callable[..., Any]) -> None:
 
     assert wheels.speeds == [0.5]
     assert wheels.twists[-1].header.frame_id == "base"
+
+
+# In processes
+
+
+@pytest.fixture
+def driving() -> Iterator[dict[str, Any]]:
+    """Drive at 0.5 m/s: the wheels, the program, and a joystick that is held."""
+    pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
+    env = {**os.environ, **isolated_environment(), "PYTHONUNBUFFERED": "1"}
+    held = "{axes: [0.0, 1.0], buttons: [0, 0, 0, 0, 0, 1]}"
+    commands = {
+        "wheels": ["-c", LISTENER],
+        "program": [
+            *("-m", "aionode", "run", "teleop_twist_joy", "teleop_node"),
+            *("--ros-args", "-p", "axis_linear.x:=1"),
+        ],
+        "joystick": [
+            *("-m", "aionode", "topic", "pub", "-r", "20", "/joy", "sensor_msgs/msg/Joy", held)
+        ],
+    }
+    terminals = {
+        name: pexpect.spawn(sys.executable, words, env=env, encoding="utf-8", timeout=30)
+        for name, words in commands.items()
+    }
+    terminals["wheels"].expect("speed 0.5")
+    yield terminals
+    for terminal in terminals.values():
+        terminal.kill(signal.SIGKILL)
+        terminal.wait()
+
+
+IN_PROCESSES = [pytest.mark.timeout(90), pytest.mark.one_loop]
+
+
+@pytest.mark.parametrize(
+    ("who", "number", "told"),
+    [
+        pytest.param("program", signal.SIGINT, "speed 0.0", marks=IN_PROCESSES),
+        pytest.param("program", signal.SIGHUP, "speed 0.0", marks=IN_PROCESSES),
+        pytest.param("program", signal.SIGKILL, "silence", marks=IN_PROCESSES),
+        pytest.param("program", signal.SIGSTOP, "silence", marks=IN_PROCESSES),
+        pytest.param("joystick", signal.SIGKILL, "speed 0.0|silence", marks=IN_PROCESSES),
+        pytest.param("joystick", signal.SIGSTOP, "speed 0.0|silence", marks=IN_PROCESSES),
+    ],
+)
+def test_the_wheels_stop_whoever_goes(
+    driving: dict[str, Any], who: str, number: signal.Signals, told: str
+) -> None:
+    """By the lease; where it cannot say anything any more, by the silence that the base notices.
+
+    Both take 0.3 s, so either may be the first where the joystick goes.
+    """
+    os.kill(driving[who].pid, number)
+
+    driving["wheels"].expect(told, timeout=10)
