@@ -1,0 +1,173 @@
+"""``aionode mcp``: the settings of programs, tools without a model, and what it starts with."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import mcp
+import pytest
+
+from aionode.cli._main import main
+from aionode.cli._nouns.mcp import kept, policy_of, settings, try_tool, words_of
+from aionode.errors import CommandError
+from aionode.gateway.mcp.hosts import HOSTS, settings_for
+from aionode.interfaces.std_msgs.msg import String
+from aionode.node import Node
+from aionode.testing import settle
+from tests.cli.conftest import Screen
+from tests.support.peers import isolated_environment
+
+OPTIONS: dict[str, Any] = {"name": "", "about": "", "bags": ""}
+
+
+async def test_a_tool_is_called_without_a_model(
+    tool: Node, screen: Screen, node_factory: Callable[..., Node]
+) -> None:
+    """Its answer is printed."""
+    node_factory("talker").create_publisher(String, "/text", 10)
+    await settle()
+    status = await try_tool(
+        tool, screen.output, tool="list", arguments=["kind=topics"],
+        policy=policy_of(None, allow_write=False), **OPTIONS,
+    )  # fmt: skip
+
+    assert status == 0
+    assert json.loads(screen.text)["topics"]["/text"] == ["std_msgs/msg/String"]
+
+
+async def test_without_a_tool_they_are_listed(tool: Node, screen: Screen) -> None:
+    """With what they do; without a policy none that changes anything."""
+    await try_tool(
+        tool, screen.output, tool=None, arguments=[],
+        policy=policy_of(None, allow_write=False), **OPTIONS,
+    )  # fmt: skip
+
+    assert "stop: Stop all that you move" in screen.text
+    assert "publish" not in [line.partition(":")[0] for line in screen.text.splitlines()]
+
+
+async def test_a_tool_that_fails_has_status_1(tool: Node, screen: Screen) -> None:
+    """As with any command."""
+    status = await try_tool(
+        tool, screen.output, tool="read", arguments=["topic=/nothing"],
+        policy=policy_of(None, allow_write=False), **OPTIONS,
+    )  # fmt: skip
+
+    assert status == 1
+    assert "no such topic" in screen.text
+
+
+def test_arguments_are_json_or_text() -> None:
+    """A topic needs no quotes."""
+    words = ["topic=/cmd_vel", "seconds=1", 'message={"linear": {"x": 0.1}}', "name=a=b"]
+
+    assert words_of(words) == {
+        "topic": "/cmd_vel", "seconds": 1, "message": {"linear": {"x": 0.1}}, "name": "a=b",
+    }  # fmt: skip
+    with pytest.raises(CommandError, match="NAME=VALUE"):
+        words_of(["seconds"])
+
+
+COMMAND = ["python", "-m", "aionode", "mcp", "--policy", 'a "b".toml']
+
+
+@pytest.mark.parametrize("host", ["claude-desktop", "cursor", "vscode", "windsurf", "gemini-cli"])
+def test_the_settings_of_a_program_are_json(host: str) -> None:
+    """Below the line that says where they go."""
+    lines = settings_for(host, COMMAND).splitlines()
+    (servers,) = json.loads("\n".join(lines[1:])).values()
+
+    assert lines[0].startswith("# ")
+    assert servers["robot"]["command"] == "python"
+    assert servers["robot"]["args"] == COMMAND[1:]
+
+
+def test_the_settings_of_codex_are_toml() -> None:
+    """Also with quotes in a name."""
+    values = tomllib.loads(settings_for("codex", COMMAND))
+
+    assert values["mcp_servers"]["robot"] == {"command": "python", "args": COMMAND[1:]}
+
+
+def test_the_settings_have_whole_paths_and_the_options_given() -> None:
+    """The program starts the command in a folder of its own."""
+    text = settings("claude-code", ["mcp", "--policy", "p.toml", "--domain", "7", "--print-config"])
+
+    assert f"mcp --policy {Path.cwd() / 'p.toml'} --domain 7" in text
+    assert "print-config" not in text
+    assert kept(["mcp", "--print-config", "zed", "--domain", "7"]) == ["mcp", "--domain", "7"]
+    assert kept(["mcp", "--print-config=zed"]) == ["mcp"]
+    assert all(f"# {place}" in settings("all", ["mcp"]) for place, _ in HOSTS.values())
+    with pytest.raises(CommandError, match="claude-desktop"):
+        settings("netscape", [])
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (["--as", "arm"], "--as is the name of a [[who]]"),
+        (["--policy", "x.toml", "--allow-write"], "--allow-write is for"),
+        (["--bags", "/nowhere"], "no such folder"),
+        (["--about", "@/nowhere"], "cannot be read"),
+        (["--policy", "/nowhere.toml"], "cannot be read"),
+        (["--domain", "300"], "300"),
+    ],
+)
+def test_a_wrong_option_says_what_fits(
+    words: list[str], expected: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """On stderr, as stdout belongs to the protocol."""
+    assert main(["mcp", *words]) != 0
+    shown = capsys.readouterr()
+    assert expected in shown.err
+    assert shown.out == ""
+
+
+async def test_it_serves_over_standard_streams_in_the_domain_given() -> None:
+    """A program of the desktop passes no variable of the environment on."""
+    words = ["-m", "aionode", "mcp", "--domain", "7"]
+    server = mcp.StdioServerParameters(
+        command=sys.executable, args=words, env=isolated_environment()
+    )
+    async with mcp.Client(server) as client:
+        answered = await client.call_tool("list", {})
+        assert "domain 7, which shows no nodes" in str(client.instructions)
+
+    assert not answered.is_error
+
+
+def test_nothing_of_mcp_is_imported_unless_asked_for() -> None:
+    """It takes a second, and 60 MB."""
+    program = (
+        "import sys, aionode, aionode.gateway, aionode.cli._main\n"
+        "from aionode.gateway import Gateway, Policy\n"
+        "import aionode.cli._nouns.gateway, aionode.cli._nouns.mcp\n"
+        "print([name for name in sys.modules if name.partition('.')[0] in "
+        "{'mcp', 'mcp_types', 'pydantic', 'uvicorn'}])\n"
+    )
+    shown = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True
+    )
+
+    assert shown.stdout == "[]\n"
+
+
+def test_a_missing_extra_is_named() -> None:
+    """It is another one than that of the gateway."""
+    program = (
+        "import sys\nsys.modules['mcp'] = None\n"
+        "from aionode.cli import main\nsys.exit(main(['mcp']))\n"
+    )
+    shown = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False,
+        env={**isolated_environment(), "PATH": "/usr/bin"},
+    )  # fmt: skip
+
+    assert shown.returncode == 1
+    assert "pip install 'aionode[mcp]'" in shown.stderr
