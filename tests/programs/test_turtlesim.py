@@ -411,3 +411,29 @@ def test_the_commands_of_the_tutorials_work_word_for_word(environment: dict[str,
     said = say("action", "send_goal", "/turtle1/rotate_absolute", *rotate)
     assert "remaining" in said
     assert "SUCCEEDED" in said
+
+
+@pytest.mark.timeout(90)
+@pytest.mark.one_loop
+def test_arrow_keys_of_a_terminal_move_the_turtle(environment: dict[str, str]) -> None:
+    """And 'q' ends the program."""
+    pexpect = pytest.importorskip("pexpect", reason="pseudo-terminals are of Unix")
+
+    def open_terminal(*words: str) -> Any:
+        return pexpect.spawn(
+            *(AIONODE[0], [*AIONODE[1:], *words]), env=environment, encoding="utf-8", timeout=30
+        )
+
+    pose = open_terminal("topic", "echo", "/turtle1/pose")
+    keys = open_terminal("run", "turtlesim", "turtle_teleop_key")
+    try:
+        pose.expect(r"x: 5\.5444")
+        keys.expect("'Q' to quit.")
+        keys.send("\x1b[A")
+        pose.expect(r"x: [67]\.")
+        keys.send("q")
+        keys.expect(pexpect.EOF)
+        assert "Traceback" not in keys.before
+    finally:
+        for terminal in (pose, keys):
+            terminal.close(force=True)

@@ -95,8 +95,10 @@ class Picture:
             background: The color where nothing is.
             turtles: Where each is, its direction in radians, and the number of its shell.
         """
-        pixels = np.where(self.is_drawn[..., np.newaxis], self.lines, np.uint8(0))
-        pixels[~self.is_drawn] = background
+        pixels = np.empty_like(self.lines)
+        pixels[:] = background
+        drawn = np.flatnonzero(self.is_drawn)
+        pixels.reshape(-1, 3)[drawn] = self.lines.reshape(-1, 3)[drawn]
         for x, y, direction, shell in turtles:
             columns, rows = within(x - REACH, x + REACH), within(y - REACH, y + REACH)
             right = np.arange(columns.start, columns.stop)[np.newaxis, :] - x
