@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from typing import Any
 
@@ -15,7 +16,7 @@ from aionode.errors import AionodeError, CommandError
 from aionode.interfaces import get_message
 from aionode.qos import qos_profile_sensor_data
 
-__all__ = ["Transform", "main", "parser"]
+__all__ = ["Transform", "add_qos", "main", "parser"]
 
 SEARCH_SEC = 0.1
 """How often the type of the input is asked for."""
@@ -31,12 +32,25 @@ class Transform(Node):
         CommandError: The expression, a module or a type is none.
     """
 
+    tool = "transform"
+
     def __init__(self, arguments: argparse.Namespace) -> None:
-        super().__init__(f"transform_{os.getpid()}")
+        super().__init__(f"{self.tool}_{os.getpid()}")
         self.arguments = arguments
         self.fields = [part for part in (arguments.field or "").split(".") if part]
         if arguments.field is not None and not self.fields:
             raise CommandError(f"Invalid field value '{arguments.field}'")
+        self.function = self.compiled(arguments)
+        self.type = get_message(arguments.output_type)
+        self.output: Publisher[Any] | None = None
+        self.timer = self.create_timer(SEARCH_SEC, self.begin)
+
+    def compiled(self, arguments: argparse.Namespace) -> Callable[[Any], Any]:
+        """Return the expression as a function.
+
+        Raises:
+            CommandError: It is none, or a module is.
+        """
         names: dict[str, Any] = {}
         for module in arguments.modules:
             try:
@@ -47,10 +61,8 @@ class Transform(Node):
             code = compile(f"lambda m: ({arguments.expression})", "<expression>", "eval")
         except SyntaxError as error:
             raise CommandError(f"Wrong expression: {arguments.expression}: {error.msg}") from None
-        self.function = eval(code, names)  # noqa: S307  # the user's own program
-        self.type = get_message(arguments.output_type)
-        self.output: Publisher[Any] | None = None
-        self.timer = self.create_timer(SEARCH_SEC, self.begin)
+        function: Callable[[Any], Any] = eval(code, names)  # noqa: S307  # the user's own program
+        return function
 
     async def begin(self) -> None:
         """Subscribe as soon as the type of the input is known."""
@@ -116,14 +128,19 @@ def parser() -> argparse.ArgumentParser:
         "expression", nargs="?", default="m", help="Python expression of the message m."
     )
     found.add_argument("-i", "--import", dest="modules", nargs="+", default=["numpy"])
+    found.add_argument("--field", help="A field of the message, such as orientation.x.")
+    add_qos(found)
+    return found
+
+
+def add_qos(found: argparse.ArgumentParser) -> None:
+    """Add the options on how the input is subscribed to."""
     found.add_argument(
         "--wait-for-start", action="store_true", help="Accepted: the input is always waited for."
     )
-    found.add_argument("--field", help="A field of the message, such as orientation.x.")
     found.add_argument("--qos-depth", type=int, metavar="N")
     found.add_argument("--qos-reliability", choices=["reliable", "best_effort"])
     found.add_argument("--qos-durability", choices=["volatile", "transient_local"])
-    return found
 
 
 def main() -> None:

@@ -10,13 +10,15 @@ import pytest
 from aionode import Node
 from aionode.errors import CommandError
 from aionode.interfaces.sensor_msgs.msg import Imu
-from aionode.interfaces.std_msgs.msg import Float64, String
+from aionode.interfaces.std_msgs.msg import Float64, Header, String
 from aionode.programs._delay import Delay
 from aionode.programs._demux import SERVICES as DEMUX_SERVICES
 from aionode.programs._demux import Demux
 from aionode.programs._drop import Drop
 from aionode.programs._mux import SERVICES, Mux
 from aionode.programs._relay import Relay
+from aionode.programs._relay_field import RelayField
+from aionode.programs._relay_field import parser as relay_field_parser
 from aionode.programs._throttle import Throttle
 from aionode.programs._transform import Transform, parser
 from aionode.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -301,3 +303,26 @@ async def test_demux_needs_an_output(start: Start) -> None:
     """It would publish nowhere."""
     with pytest.raises(CommandError, match="parameter 'output_topics' is needed"):
         start(Demux)
+
+
+async def test_relay_field_fills_a_message_with_expressions(
+    bench: Bench, start: Start, ready: Callable[[], Awaitable[None]]
+) -> None:
+    """What is no expression is a text, and a stamp may be now."""
+    publisher = bench.node.create_publisher(String, "in", 10)
+    words = ["in", "out", "std_msgs/msg/Header", "{stamp: now, frame_id: m.data + '_frame'}"]
+    heard: list[Header] = []
+    start(RelayField, relay_field_parser().parse_args(words))
+    bench.node.create_subscription(Header, "out", heard.append)
+    await ready()
+    await bench.say(publisher, "arm")
+
+    assert heard == [Header(stamp=bench.node.get_clock().now().to_msg(), frame_id="arm_frame")]
+
+
+@pytest.mark.parametrize("expression", ["m.data", "{a: [", "[1]"])
+async def test_relay_field_needs_fields(start: Start, expression: str) -> None:
+    """The original fails at the first message."""
+    words = ["in", "out", "std_msgs/msg/Header", expression]
+    with pytest.raises(CommandError, match="Wrong expression"):
+        start(RelayField, relay_field_parser().parse_args(words))
