@@ -55,10 +55,17 @@ class GatewayStats(msgspec.Struct, frozen=True):
 
 
 class Clients:
-    """The clients of a robot: the part of `Gateway` and `Assistant` that the ways in use.
+    """The clients of a robot, and the rules that hold for them: what the ways in share.
+
+    `Gateway` and `Assistant` open and end it; each way in makes sessions, which it counts.
+
+    Args:
+        node: The node by which the clients take part in the graph.
+        policy: Who may do what.
+        ask: Asks a person; None if there is nobody to ask.
 
     Attributes:
-        node: The node by which the gateway takes part.
+        node: The node.
     """
 
     def __init__(self, node: Node, policy: Policy, ask: Ask | None = None) -> None:
@@ -69,7 +76,7 @@ class Clients:
         self._refused = 0
         self._robot: Robot | None = None
 
-    def _check_node(self) -> None:
+    def check_node(self) -> None:
         """Refuse to begin with a node that does not run.
 
         Raises:
@@ -78,7 +85,7 @@ class Clients:
         if not self.node.is_running:
             raise RuntimeError(f"gateway: {self.node!r} does not run; enter it first")
 
-    async def _open(self, stack: AsyncExitStack) -> asyncio.TaskGroup:
+    async def open(self, stack: AsyncExitStack) -> asyncio.TaskGroup:
         """Make what the sessions share, until a stack ends, and return the group of its tasks."""
         tasks = await stack.enter_async_context(asyncio.TaskGroup())
         audit = Audit(self.node, self._policy.audit_file)
@@ -90,6 +97,11 @@ class Clients:
             stack.callback(tasks.create_task(work).cancel)
         return tasks
 
+    def end(self) -> None:
+        """Have the sessions of all clients end."""
+        for session in self.sessions:
+            session.ended.set()
+
     def _doubt_all(self, is_long: bool) -> None:
         """Doubt all clients after a standstill: what they have sent in it was not read meanwhile.
 
@@ -98,7 +110,7 @@ class Clients:
         Args:
             is_long: Whether calls and goals are too old after it as well.
         """
-        for session in list(self._sessions):
+        for session in self.sessions:
             session.doubt(stood_still=is_long)
 
     @property
@@ -236,7 +248,7 @@ class Clients:
             self.robot.audit.use_file(policy.audit_file)
             log.info(f"gateway: the audit log goes to {policy.audit_file or 'no file'} from now on")
         self._policy = self.robot.policy = policy
-        for session in list(self._sessions):
+        for session in self.sessions:
             session.check_again()
         log.info("gateway: the policy was read again")
 

@@ -14,7 +14,7 @@ from starlette.routing import WebSocketRoute
 
 from aionode._process.concurrency import to_the_end
 from aionode.errors import ConfigurationError, RefusedError
-from aionode.gateway._clients import Clients
+from aionode.gateway._clients import Clients, GatewayStats
 from aionode.gateway.foxglove import websocket as _foxglove
 from aionode.gateway.http import routes as _http
 from aionode.gateway.page import files as _page_files
@@ -46,7 +46,7 @@ REFUSALS_PER_SEC: Final = 50.0
 """Frames that are read in a second of a client whose frames are refused."""
 
 
-class Gateway(Clients):
+class Gateway:
     """Serves a robot to browsers, programs and apps: ``async with Gateway(node) as gateway:``.
 
     Args:
@@ -71,6 +71,7 @@ class Gateway(Clients):
 
     Attributes:
         node: The node.
+        clients: The clients, the policy that holds for them, and the robot as they share it.
         host: The address on which the gateway listens.
         port: The port on which the gateway listens.
     """
@@ -88,22 +89,28 @@ class Gateway(Clients):
         about: str = "",
         bags: str = "",
     ) -> None:
-        super().__init__(node, Policy.default() if policy is None else policy, ask)
+        self.node = node
+        self.clients = Clients(node, Policy.default() if policy is None else policy, ask)
         self._player = player
         self._mcp: McpOverHttp | None = None
         if mcp:
             from aionode.gateway.mcp import McpOverHttp  # takes a second, and few want it
 
-            self._mcp = McpOverHttp(self, about, bags)
+            self._mcp = McpOverHttp(self.clients, about, bags)
         self.host = host
         self.port = port
-        if not is_loopback(host) and not self._policy.knows_secrets:
+        if not is_loopback(host) and not self.clients.policy.knows_secrets:
             raise ConfigurationError(
                 "gateway's host",
                 host,
                 "other machines can connect there, and the policy knows no client by a token or "
                 "certificate; add [[who]] with a token, or listen on 127.0.0.1",
             )
+
+    @property
+    def stats(self) -> GatewayStats:
+        """Counts of its work."""
+        return self.clients.stats
 
     # Lifetime
 
@@ -114,16 +121,16 @@ class Gateway(Clients):
             OSError: the address cannot be listened on: another program does, for example.
             RuntimeError: the node does not run.
         """
-        self._check_node()
+        self.clients.check_node()
         listener = bound(self.host, self.port)
         self.port = listener.getsockname()[1]
         async with AsyncExitStack() as stack:
             stack.callback(listener.close)
-            tasks = await self._open(stack)
+            tasks = await self.clients.open(stack)
             self._client_list = ClientList(self.node)
             stack.callback(self._client_list.close)
-            app = Door(self._application(), self)
-            self._server = server = Server(app, lambda: self._policy)
+            app = Door(self._application(), self.clients)
+            self._server = server = Server(app, lambda: self.clients.policy)
             serving = tasks.create_task(server.serve(listener))
             stack.push_async_callback(self._stop, server, serving)
             if self._mcp is not None:
@@ -133,7 +140,7 @@ class Gateway(Clients):
             await server.has_started.wait()
             self._stack = stack.pop_all()
         self.node.get_logger().info(f"gateway: listening on {self.host}:{self.port}")
-        if not self._policy.who:
+        if not self.clients.policy.who:
             self.node.get_logger().warning(
                 "gateway: the policy has no [[who]], so nobody can connect; add clients with a "
                 "token, or programs of this host with loopback = true"
@@ -164,11 +171,11 @@ class Gateway(Clients):
         self._mcp.mcp.events.tell(text)
 
     async def _stop(self, server: Server, serving: asyncio.Task[None]) -> None:
-        for session in list(self._sessions):
-            session.ended.set()
+        self.clients.end()
         server.stop()
         await serving
-        await self.robot.commands.close()  # those of requests, which have no session any more
+        # Those of requests, which have no session any more:
+        await self.clients.robot.commands.close()
 
     # Routes
 
@@ -176,7 +183,7 @@ class Gateway(Clients):
         routes: list[BaseRoute] = [
             WebSocketRoute("/", self._websocket),
             WebSocketRoute("/ws", self._websocket),
-            *_http.routes(self),
+            *_http.routes(self.clients),
             *_page_files.routes(),
             *(self._mcp.routes() if self._mcp is not None else ()),
             WebSocketRoute("/{path:path}", _http.answer_other_websocket),
@@ -186,14 +193,13 @@ class Gateway(Clients):
     async def _websocket(self, websocket: WebSocket) -> None:
         """Serve a WebSocket by the protocol that its client asks for."""
         kind, chosen = protocol_of(websocket.scope["subprotocols"])
-        async with self.session_of(websocket.scope, kind) as session:
+        async with self.clients.session_of(websocket.scope, kind) as session:
             connection = websocket.scope["state"]["aionode_connection"]
             session.arrivals.connection = connection
             connection.note = session.rights.note
             session.outbox.direct = connection.send_now
-            websocket._receive = paced(
-                websocket._receive, self._policy.limits.frames_per_sec, self.robot, session
-            )
+            rate_hz, robot = self.clients.policy.limits.frames_per_sec, self.clients.robot
+            websocket._receive = paced(websocket._receive, rate_hz, robot, session)
             if kind == "foxglove" and chosen is not None:
                 serving = _foxglove.serve(websocket, session, chosen, self._player)
                 await until(session.ended, serving, self._watch(session))
@@ -209,9 +215,10 @@ class Gateway(Clients):
 
         And that of a client that does not read its answers: it reads no goodbye either.
         """
+        robot = self.clients.robot
         while True:
-            limit = self._policy.limits.client_lost_sec
-            await self.robot.clock.sleep(limit / 3)
+            limit = self.clients.policy.limits.client_lost_sec
+            await robot.clock.sleep(limit / 3)
             connection = session.arrivals.connection
             if connection is None:
                 continue
@@ -219,7 +226,7 @@ class Gateway(Clients):
             if session.has_goals or (session.arrivals.is_doubtful and session.publishes):
                 session.arrivals.ask_for_sign()
                 # After a standstill of its own, the gateway first hears what has arrived in it.
-                silent_sec = min(connection.silent_sec(), self.robot.standstills.since_sec())
+                silent_sec = min(connection.silent_sec(), robot.standstills.since_sec())
                 if not is_lost and silent_sec > limit and not connection.has_unread():
                     is_lost = True
                     reason = f"it gave no sign for {limit:g} s, with goals or commands under way"

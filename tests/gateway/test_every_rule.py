@@ -338,14 +338,14 @@ class Table:
         """Ask for what a row lets pass, and for what it refuses."""
         opened, closed = names_of(row, verb)
         given = ROWS[row]
-        self._gateway.robot.ask = self._person
-        self._gateway.robot.time_base = self._robot.context.time_base
+        self._gateway.clients.robot.ask = self._person
+        self._gateway.clients.robot.time_base = self._robot.context.time_base
         who = "seer" if verb == "see" else "staff"
         await self._attempt(f"{verb}, {row}, open", self._pass(row, verb, opened, who))
         if row == "silence":
             return  # the first name has shown all, and takes its time
         if row == "nobody":
-            self._gateway.robot.ask = None
+            self._gateway.clients.robot.ask = None
         if not given.code:
             work = self._pass(row, verb, closed, who, given.number, given.arrives)
         elif (self._way, row, verb) in UNTOLD:
@@ -453,7 +453,7 @@ class Table:
     async def _person(self, _who: Identity, _verb: str, name: str, _message: Any) -> bool:
         """Say yes or no; for `arrival` say yes a minute later."""
         if name == names_of("arrival", "publish")[1]:
-            robot = self._gateway.robot
+            robot = self._gateway.clients.robot
             robot.time_base = cast("Any", LateTime(robot.node.context.time_base))
             return True
         return name.endswith("open")
@@ -468,7 +468,7 @@ async def table_of(context: Context, way: str) -> AsyncIterator[Table]:
         policy = Policy.parse(policy_text())
         gateway = await stack.enter_async_context(Gateway(node, policy, port=0))
         pilot = Identity("pilot", frozenset({"users"}))
-        session = await stack.enter_async_context(gateway.session(pilot, "program"))
+        session = await stack.enter_async_context(gateway.clients.session(pilot, "program"))
         clients = {
             who: await stack.enter_async_context(
                 way_in(way, gateway.port, {"Authorization": f"Bearer {who}"})

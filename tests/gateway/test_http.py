@@ -210,7 +210,7 @@ async def test_a_stream_ends_with_the_rights_of_its_caller(
         lines = answer.aiter_lines()
         assert await anext(lines) == ": alive"
 
-        gateway.use_policy(Policy.parse(""))
+        gateway.clients.use_policy(Policy.parse(""))
 
         assert [line async for line in lines] == [""]
     assert [record for record in caplog.records if record.levelname == "ERROR"] == []

@@ -370,7 +370,7 @@ async def test_what_is_hidden_by_its_type_is_not_counted_for_the_caller(
         Robot(aionode_context),
         Node("gateway", context=aionode_context) as node,
         Gateway(node, Policy.parse(policy), port=0) as gateway,
-        gateway.session(Identity("other"), "test") as session,
+        gateway.clients.session(Identity("other"), "test") as session,
         http_client(gateway.port) as client,
     ):
         for topic in ("/status", "/cmd_vel"):

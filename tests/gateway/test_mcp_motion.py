@@ -12,7 +12,6 @@ import mcp
 import pytest
 
 from aionode.gateway import Gateway
-from aionode.gateway._clients import Clients
 from tests.support.mcp_bench import POLICY, Bench, bench_of
 from tests.support.waiting import until
 
@@ -82,7 +81,7 @@ async def giving_up(client: Any, tool: str, arguments: dict[str, Any]) -> None:
 
 
 @asynccontextmanager
-async def raw_call(gateway: Clients, tool: str, arguments: dict[str, Any]) -> AsyncIterator[None]:
+async def raw_call(gateway: object, tool: str, arguments: dict[str, Any]) -> AsyncIterator[None]:
     """Call a tool by the revision with sessions, and close the connection, as a kill does."""
     assert isinstance(gateway, Gateway)
     address = f"http://127.0.0.1:{gateway.port}/mcp"
@@ -111,7 +110,7 @@ async def test_a_client_that_disconnects_ends_it_in_the_older_revision_too(what:
     """By specification its call goes on; but nobody would stop the robot any more."""
     async with bench_of(over_http=True) as bench:
         tool, arguments = MOVING[what]
-        async with raw_call(bench.clients, tool, arguments):
+        async with raw_call(bench.served, tool, arguments):
             await until(lambda: is_under_way(bench, what))
         await has_ended(bench, what)
 

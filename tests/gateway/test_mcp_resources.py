@@ -10,7 +10,6 @@ import mcp
 import pytest
 from mcp.shared.exceptions import MCPDeprecationWarning
 
-from aionode.gateway import Assistant, Gateway
 from aionode.interfaces.std_msgs.msg import String
 from aionode.interfaces.std_srvs.srv import Trigger
 from tests.support.mcp_bench import POLICY, Bench, bench_of
@@ -19,8 +18,7 @@ from tests.support.waiting import until
 
 def tell(bench: Bench, text: str) -> None:
     """Have the program of the robot tell an event."""
-    assert isinstance(bench.clients, Assistant | Gateway)
-    bench.clients.tell(text)
+    bench.served.tell(text)
 
 
 async def read(client: Any, uri: str) -> Any:

@@ -120,7 +120,7 @@ async def test_an_answer_over_http_ends_with_the_right_to_its_topic(
         asked = tasks.create_task(client.get(path, headers={"Accept": accept}))
         await robot.graph.until(lambda: publisher.get_subscription_count() == 1)
         await settle()
-        gateway.use_policy(LESS)
+        gateway.clients.use_policy(LESS)
         answer = await asked
     assert answer.status_code == status
     assert text in answer.text
@@ -146,7 +146,7 @@ async def test_a_request_that_arrives_slowly_is_judged_by_the_policy_of_now(
         ]
         writer.write("\r\n".join([*head, "", ""]).encode())
         assert b"100 Continue" in await reader.readuntil(b"\r\n\r\n")  # it has been let in
-        gateway.use_policy(Policy.parse(known.format("new")))
+        gateway.clients.use_policy(Policy.parse(known.format("new")))
         writer.write(b"1")
         answer = await reader.readline()
         writer.close()

@@ -19,7 +19,7 @@ from websockets.typing import Origin
 
 from aionode.engine.context import Context
 from aionode.errors import ConfigurationError, RefusedError
-from aionode.gateway import Gateway, Identity, Policy, _gateway
+from aionode.gateway import Gateway, Identity, Policy
 from aionode.gateway._gateway import paced
 from aionode.gateway.server.door import Guesses
 from aionode.interfaces.geometry_msgs.msg import Twist
@@ -399,7 +399,7 @@ async def test_the_process_is_left_as_it_was() -> None:
 @pytest.fixture
 def quickly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Have the gateway look at its policy file each hundredth of a second."""
-    monkeypatch.setattr(_gateway, "RELOAD_SEC", 0.01)
+    monkeypatch.setattr("aionode.gateway._clients.RELOAD_SEC", 0.01)
 
 
 @pytest.mark.usefixtures("quickly")
@@ -413,9 +413,9 @@ async def test_a_policy_file_is_read_again(
         await until(lambda: gateway.stats.sessions)
         path.write_text("[[allow]]\nsee = 5")
         await until(lambda: "keeps the policy that it has" in caplog.text)
-        assert gateway.policy.allow
+        assert gateway.clients.policy.allow
         path.write_text("[[who]]\nname = 'local'\nloopback = true")
-        await until(lambda: not gateway.policy.allow)
+        await until(lambda: not gateway.clients.policy.allow)
         session = session_of(gateway)
         with pytest.raises(RefusedError):
             session.rights.decide("publish", "/x", "")
@@ -456,7 +456,7 @@ async def test_what_a_changed_policy_file_cannot_change_is_said(
 async def test_a_program_has_sessions_of_its_own() -> None:
     """Of another way in, such as one for language models."""
     async with serving() as gateway:
-        async with gateway.session(Identity("program"), "own") as session:
+        async with gateway.clients.session(Identity("program"), "own") as session:
             assert "/rosout" in session.graph.topics()
             assert gateway.stats.sessions == {"own": 1}
         assert gateway.stats.sessions == {}

@@ -47,7 +47,7 @@ def address(gateway: Gateway, path: str = "/") -> str:
 
 def sessions_of(gateway: Gateway) -> list[Session]:
     """Return the sessions of the clients, of which `stats` has the numbers only."""
-    return list(gateway._sessions)
+    return gateway.clients.sessions
 
 
 def session_of(gateway: Gateway) -> Session:

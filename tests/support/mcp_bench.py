@@ -12,7 +12,6 @@ import mcp
 
 from aionode.action import ActionServer
 from aionode.gateway import Assistant, Gateway, Policy
-from aionode.gateway._clients import Clients
 from aionode.interfaces.example_interfaces.action import Fibonacci
 from aionode.interfaces.geometry_msgs.msg import Twist
 from aionode.interfaces.std_msgs.msg import String
@@ -105,13 +104,15 @@ class Bench:
 
     Attributes:
         base: The robot.
-        clients: The assistant or gateway.
+        served: The assistant or gateway.
+        clients: Its clients.
         audit: The lines of the audit log.
     """
 
-    def __init__(self, base: Base, clients: Clients, tasks: asyncio.TaskGroup) -> None:
+    def __init__(self, base: Base, served: Assistant | Gateway, tasks: asyncio.TaskGroup) -> None:
         self.base = base
-        self.clients = clients
+        self.served = served
+        self.clients = served.clients
         self.audit: list[dict[str, Any]] = []
         self.closing = asyncio.Event()
         self._tasks = tasks
@@ -137,10 +138,9 @@ class Bench:
 
     def target(self) -> Any:
         """Return what a client connects to."""
-        if isinstance(self.clients, Gateway):
-            return f"http://127.0.0.1:{self.clients.port}/mcp"
-        assert isinstance(self.clients, Assistant)
-        return self.clients.server
+        if isinstance(self.served, Gateway):
+            return f"http://127.0.0.1:{self.served.port}/mcp"
+        return self.served.server
 
     def use(self, policy: str) -> None:
         """Apply another policy."""
@@ -159,15 +159,15 @@ async def bench_of(
         AsyncExitStack() as serving,
     ):
         rules = Policy.parse(policy)
-        clients: Clients
+        served: Assistant | Gateway
         if over_http:
-            clients = await serving.enter_async_context(
+            served = await serving.enter_async_context(
                 Gateway(node, rules, port=0, mcp=True, **options)
             )
         else:
-            clients = await serving.enter_async_context(Assistant(node, rules, **options))
+            served = await serving.enter_async_context(Assistant(node, rules, **options))
         async with asyncio.TaskGroup() as tasks:
-            bench = Bench(base, clients, tasks)
+            bench = Bench(base, served, tasks)
             await settle()
             try:
                 yield bench

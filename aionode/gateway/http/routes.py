@@ -71,9 +71,9 @@ nothing of the client is refused."""
 Handler = Callable[[Asked], Awaitable[Response]]
 
 
-def routes(gateway: Clients) -> list[BaseRoute]:
+def routes(clients: Clients) -> list[BaseRoute]:
     """Return the routes of HTTP, for a Starlette application."""
-    api = HttpApi(gateway)
+    api = HttpApi(clients)
     table: list[tuple[str, str, Handler]] = [
         ("GET", "/topics", list_topics),
         ("GET", "/services", list_services),
@@ -91,7 +91,7 @@ def routes(gateway: Clients) -> list[BaseRoute]:
     ]
     return [
         *(
-            Route(path, Endpoint(gateway, handler), methods=[method])
+            Route(path, Endpoint(clients, handler), methods=[method])
             for method, path, handler in table
         ),
         Route("/healthz", api.healthz, methods=["GET"]),
@@ -101,8 +101,8 @@ def routes(gateway: Clients) -> list[BaseRoute]:
 class Endpoint:
     """One route: opens a session for the request, and answers errors in JSON."""
 
-    def __init__(self, gateway: Clients, handler: Handler) -> None:
-        self._gateway = gateway
+    def __init__(self, clients: Clients, handler: Handler) -> None:
+        self._clients = clients
         self._handler = handler
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -110,14 +110,14 @@ class Endpoint:
         request = Request(scope, receive)
         has_session = False
         try:
-            body = await body_of(request, self._gateway.policy.limits.handshake_sec)
+            body = await body_of(request, self._clients.policy.limits.handshake_sec)
             async with (
-                self._gateway.session_of(scope, "http") as session,
+                self._clients.session_of(scope, "http") as session,
                 until_disconnected(request),
             ):
                 has_session = True
                 session.owner = caller_of(request, session)
-                self._gateway.robot.standstills.look()
+                self._clients.robot.standstills.look()
                 session.arrivals.note_arrival(scope["state"]["aionode_connection"].silent_sec())
                 session.on_policy = partial(end_with, session)
                 async with until_ended(session):
@@ -132,7 +132,7 @@ class Endpoint:
                 if not isinstance(error, HTTPException) or error.status_code not in EXPECTED:
                     session.rights.note_failure(error, f"{scope['method']} {scope['path']}")
             elif isinstance(error, RefusedError):
-                self._gateway.note_refusal(scope["aionode.credentials"], error)
+                self._clients.note_refusal(scope["aionode.credentials"], error)
             await error_response(error)(scope, receive, send)
 
 
@@ -212,33 +212,33 @@ class HttpApi:
     """The routes that need more than the session of their request.
 
     Args:
-        gateway: The gateway.
+        clients: The clients, whose counts it shows.
     """
 
-    def __init__(self, gateway: Clients) -> None:
-        self._gateway = gateway
+    def __init__(self, clients: Clients) -> None:
+        self._clients = clients
 
     async def openapi(self, asked: Asked) -> Response:
         """Return the document of the requests that the caller may send; ``?all=1`` has all."""
         user_only = asked.request.query_params.get("all", "0") in {"0", "false", ""}
         offered = await offers(asked.session, user_only=user_only)
         version = importlib.metadata.version("aionode")
-        title = f"aionode gateway {self._gateway.node.get_fully_qualified_name()}"
+        title = f"aionode gateway {self._clients.node.get_fully_qualified_name()}"
         return json_response(openapi(title, version, offered))
 
     async def metrics(self, asked: Asked) -> Response:
         """Return the counts of nodes and of the gateway, for Prometheus."""
-        nodes = [node for node in self._gateway.node.context._nodes if isinstance(node, Node)]
+        nodes = [node for node in self._clients.node.context._nodes if isinstance(node, Node)]
 
         def sees(name: str, type_name: str) -> bool:
             return asked.session.graph.sees(name, type_name)
 
-        families = [*gateway_metrics(self._gateway.stats, sees), *node_metrics(nodes, sees)]
+        families = [*gateway_metrics(self._clients.stats, sees), *node_metrics(nodes, sees)]
         return Response(prometheus(families), headers=HEADERS, media_type=MEDIA_TYPE)
 
     async def healthz(self, _request: Request) -> Response:
         """Return whether the gateway's node runs: to all who reach it, as it says nothing else."""
-        ok = self._gateway.node.is_running
+        ok = self._clients.node.is_running
         return json_response({"ok": ok}, 200 if ok else 503)
 
 

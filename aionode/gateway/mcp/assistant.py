@@ -26,7 +26,7 @@ LOOPBACK = Credentials(address="127.0.0.1", host="127.0.0.1")
 """What a program of this host shows that shows nothing else."""
 
 
-class Assistant(Clients):
+class Assistant:
     """Lets a model's client of MCP use a robot: ``async with Assistant(node) as assistant:``.
 
     The tools, their limits and what they may reach are those of the policy; see `Policy`. It needs
@@ -47,6 +47,7 @@ class Assistant(Clients):
 
     Attributes:
         node: The node.
+        clients: The sessions of the clients, the policy that holds for them, and the robot.
     """
 
     def __init__(
@@ -59,11 +60,12 @@ class Assistant(Clients):
         about: str = "",
         bags: str = "",
     ) -> None:
-        super().__init__(node, Policy.default() if policy is None else policy, ask)
+        self.node = node
+        self.clients = Clients(node, Policy.default() if policy is None else policy, ask)
         self._name = name
         if name:
             self.identity()
-        self._mcp = McpServer(self, self.identity, about, bags)
+        self._mcp = McpServer(self.clients, self.identity, about, bags)
 
     @property
     def server(self) -> Any:
@@ -78,11 +80,11 @@ class Assistant(Clients):
             RefusedError: the policy knows no programs of this host.
         """
         if not self._name:
-            return self.policy.identify(LOOPBACK)
-        for who in self.policy.who:
+            return self.clients.policy.identify(LOOPBACK)
+        for who in self.clients.policy.who:
             if who.name == self._name:
                 return Identity(who.name, frozenset(who.groups), LOOPBACK.address)
-        known = ", ".join(who.name for who in self.policy.who) or "none"
+        known = ", ".join(who.name for who in self.clients.policy.who) or "none"
         raise ConfigurationError(
             "assistant's name", self._name, f"no [[who]] of the policy has it; there is {known}"
         )
@@ -93,9 +95,9 @@ class Assistant(Clients):
         Raises:
             RuntimeError: the node does not run.
         """
-        self._check_node()
+        self.clients.check_node()
         async with AsyncExitStack() as stack:
-            tasks = await self._open(stack)
+            tasks = await self.clients.open(stack)
             stack.callback(tasks.create_task(self._mcp.run()).cancel)
             stack.push_async_callback(self._end)
             self._stack = stack.pop_all()
@@ -113,9 +115,8 @@ class Assistant(Clients):
         await to_the_end(self._stack.__aexit__(kind, error, traceback))
 
     async def _end(self) -> None:
-        for session in self.sessions:
-            session.ended.set()
-        await self.robot.commands.close()
+        self.clients.end()
+        await self.clients.robot.commands.close()
 
     def tell(self, text: str) -> None:
         """Tell clients that listen of an event, such as ``the battery is low``.

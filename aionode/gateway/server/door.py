@@ -64,11 +64,11 @@ class Door:
     In the scope it leaves ``aionode.credentials``.
     """
 
-    def __init__(self, app: Any, gateway: Clients) -> None:
+    def __init__(self, app: Any, clients: Clients) -> None:
         self._app = app
-        self._gateway = gateway
-        self._guesses = Guesses(gateway.robot.time_base.steady_ns)
-        self._of_pages = Guesses(gateway.robot.time_base.steady_ns)
+        self._clients = clients
+        self._guesses = Guesses(clients.robot.time_base.steady_ns)
+        self._of_pages = Guesses(clients.robot.time_base.steady_ns)
 
     async def __call__(self, scope: Message, receive: Receive, send: Send) -> None:
         """Serve one request, or one WebSocket."""
@@ -78,7 +78,7 @@ class Door:
         token = take_token(scope)
         credentials = from_scope(scope, token)
         is_in_address = len(scope["query_string"]) < address_bytes
-        policy = self._gateway.policy
+        policy = self._clients.policy
         answer = Answer(send, allowed_origin(credentials.origin, policy.page_origins))
         try:
             # Before its token is looked at: what another page sends says nothing about who guesses.
@@ -97,7 +97,7 @@ class Door:
             limited = limit_body(scope, receive, policy.limits.frame_bytes)
             await self._app(scope, limited, answer)
         except RefusedError as error:
-            self._gateway.note_refusal(credentials, error)
+            self._clients.note_refusal(credentials, error)
             if not answer.has_begun:
                 await refuse(scope, answer, error)
 
@@ -110,7 +110,7 @@ class Door:
         if credentials.token:
             guesses.check(credentials.address)
         try:
-            self._gateway.policy.identify(credentials)
+            self._clients.policy.identify(credentials)
         except RefusedError:
             if credentials.token:
                 guesses.note_wrong(credentials.address)
