@@ -53,6 +53,18 @@ class Distribution:
             f"p99_ns={self.p99_ns}, max_ns={self.max_ns})"
         )
 
+    @classmethod
+    def of(cls, buckets: dict[int, int], max_ns: int) -> Distribution:
+        """Create one from the buckets of another process, and the longest duration there."""
+        distribution = cls()
+        distribution._merge(buckets, max_ns)
+        return distribution
+
+    @property
+    def buckets(self) -> dict[int, int]:
+        """How many durations there are by the number of their bucket, to be sent elsewhere."""
+        return dict(self._read())
+
     def record(self, duration_ns: int) -> None:
         """Add one duration, which must not be negative."""
         if duration_ns > self._max_ns:  # noqa: PLR1730  # max() is a call, on the hot path

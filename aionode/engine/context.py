@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from aionode.clock import TimeBase
+    from aionode.engine.observation import NodeReport, ProcessReport
     from aionode.qos import QoSProfile
 
 __all__ = ["Context", "openings"]
@@ -220,6 +221,7 @@ class Context:
         self._next_id = 0  # of a node or endpoint
         self._users = 0  # running nodes and `async with` blocks; the transports close at 0
         self._shut_down = False  # set by `shutdown`, and never reset
+        self._reporters: dict[object, Callable[[], NodeReport]] = {}
         self._open = False  # whether the transports are open
         self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
         self._affinity = LoopAffinity()  # the same while it is in use, for calls of other threads
@@ -414,6 +416,7 @@ class Context:
         try:
             for transport in self._transports:
                 opened.append(transport)
+                transport.tell(self._encoded_report)
                 await transport.open(self.graph)
             self._hint_at_rcl()
         except BaseException:
@@ -509,7 +512,29 @@ class Context:
             context._abandon()
         cls._parent_has_connected = cls._has_connected
 
+    # For tools
+
+    def report(self) -> ProcessReport:
+        """Return what this context tells tools of its nodes, endpoints and callbacks."""
+        from aionode.engine.observation import process_report  # nobody may ever ask
+
+        return process_report(self.participant, self.dropped, list(self._reporters.values()))
+
+    def _encoded_report(self) -> bytes:
+        from aionode.engine.observation import encoded  # as above
+
+        return encoded(self.report())
+
     # For nodes
+
+    def add_reporter(self, node: object, report: Callable[[], NodeReport]) -> Callable[[], None]:
+        """Have reports of this context tell of a node; returns a function that ends that."""
+        self._reporters[node] = report
+
+        def end() -> None:
+            self._reporters.pop(node, None)
+
+        return end
 
     def _add_node(self, node: ContextNode, abandon: Callable[[], None]) -> None:
         """Add `node`, which `shutdown` destroys.

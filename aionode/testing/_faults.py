@@ -87,6 +87,14 @@ class FaultyTransport(Transport):
         """Open the inner transport."""
         await self.inner.open(graph)
 
+    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
+        """Ask through the inner transport."""
+        return await self.inner.observe(timeout_s)
+
+    def tell(self, report: Callable[[], bytes]) -> None:
+        """Answer through the inner transport."""
+        self.inner.tell(report)
+
     async def link_status(self) -> LinkStatus:
         """Ask through the inner transport."""
         return await self.inner.link_status()

@@ -48,12 +48,12 @@ report_progress trigger_activate trigger_cleanup trigger_configure trigger_deact
 trigger_shutdown
 """
 CONTEXT = """
-arguments as_default default domain_id dropped drops graph network new_uuid ok participant
-ros_distro seed shutdown time_base transports
+add_reporter arguments as_default default domain_id dropped drops graph network new_uuid ok
+participant report ros_distro seed shutdown time_base transports
 """
 TRANSPORT = """
 abandon all_known close create_node create_reader create_requester create_server create_writer
-drops link_status open send_rest silent_processes
+drops link_status observe open other_domains send_rest silent_processes tell
 """
 
 

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from aionode.endpoints.core.entity import Entity
     from aionode.engine.context import Context, ContextNode
+    from aionode.engine.observation import NodeReport
     from aionode.engine.transport.base import Registration
 
 __all__ = ["HasCore", "NodeCore", "core_of", "in_loop_thread", "in_thread_of_node", "is_named"]
@@ -181,6 +182,16 @@ class NodeCore:
             lambda transport: transport.create_node(self.info)
         )
         self.context.graph.add_node(self.info)
+        self.at_end.append(self.context.add_reporter(self, self._report))
+
+    def _report(self) -> NodeReport:
+        """Return what tools are told of the node."""
+        # Nobody may ever ask.
+        from aionode.endpoints.core.reports import entity_reports
+        from aionode.engine.observation import NodeReport
+
+        name, unfinished = self.info.fully_qualified_name, len(self.callbacks.waiting)
+        return NodeReport(name, self.running, unfinished, entity_reports(self.entities))
 
     async def start(self) -> None:
         """Open the context and start calling callbacks.

@@ -421,6 +421,17 @@ class Transport(ABC):
         Called in the child, which never uses this transport again.
         """
 
+    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:  # noqa: ARG002
+        """Ask the other contexts of the domain for their reports, by participant. For tools.
+
+        An empty answer is that of a context that keeps no reports, such as one of an older aionode;
+        None stands for one of aionode that has not answered within `timeout_s` seconds.
+        """
+        return {}
+
+    def tell(self, report: Callable[[], bytes]) -> None:  # noqa: B027  # most have no one to tell
+        """Answer other contexts that ask for the report of this one, as `report` returns it."""
+
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have. For tools."""
         return LinkStatus(set(), set())

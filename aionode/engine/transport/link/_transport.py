@@ -19,6 +19,8 @@ from aionode.engine.wire import cdr
 from aionode.errors import TransportError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from aionode.clock import TimeBase
     from aionode.engine.transport.base import (
         LinkStatus,
@@ -114,6 +116,14 @@ class LinkTransport(Transport):
     def silent_processes(self) -> list[str]:
         """Return who does not answer."""
         return self.zenoh.silent_processes()
+
+    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
+        """Ask the other contexts of the domain, linked or not, for their reports."""
+        return await self.zenoh.observe(timeout_s)
+
+    def tell(self, report: Callable[[], bytes]) -> None:
+        """Answer other contexts that ask for the report of this one."""
+        self.zenoh.tell(report)
 
     async def link_status(self) -> LinkStatus:
         """Return which contexts can be linked, and which are; all of them are asked."""

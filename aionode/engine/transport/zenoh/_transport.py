@@ -21,6 +21,7 @@ from aionode.engine.transport.zenoh._defects.stale_transports import StaleTransp
 from aionode.engine.transport.zenoh._session_state import SessionState
 from aionode.engine.transport.zenoh.connections.sockets import arrived_bytes, pair_of
 from aionode.engine.transport.zenoh.discovery.graph_watcher import NodeDeclaration, Watcher
+from aionode.engine.transport.zenoh.discovery.observed import Observed
 from aionode.engine.transport.zenoh.discovery.other_domains import other_domains
 from aionode.engine.transport.zenoh.discovery.peer_directory import ZenohPeerDirectory
 from aionode.engine.transport.zenoh.discovery.router_matching import RouterMatching
@@ -39,6 +40,7 @@ from aionode.engine.transport.zenoh.session.session import (
 if TYPE_CHECKING:
     import socket
     from collections import Counter
+    from collections.abc import Callable
     from collections.abc import Set as AbstractSet
 
     from aionode.clock import TimeBase
@@ -97,6 +99,7 @@ class ZenohTransport(Transport):
         self._watcher = Watcher(self._state)
         self._router_matching = RouterMatching(self._state, network)
         self.peer_directory = ZenohPeerDirectory(self._state, self._router_matching)
+        self._observed = Observed(self._state, self.peer_directory)
         # Done when the tokens of all connected peers are in the graph.
         self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
@@ -137,6 +140,14 @@ class ZenohTransport(Transport):
             return await run_in_own_thread(partial(other_domains, session, self.network))
         return frozenset()
 
+    async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
+        """Ask the other contexts of the domain for their reports."""
+        return await self._observed.ask(timeout_s)
+
+    def tell(self, report: Callable[[], bytes]) -> None:
+        """Answer other contexts that ask for the report of this one."""
+        self._observed.report = report
+
     async def link_status(self) -> LinkStatus:
         """Ask all contexts which links they offer and have."""
         return await self.peer_directory.link_status()
@@ -164,6 +175,7 @@ class ZenohTransport(Transport):
         self._socket_options = SocketOptions(session)
         self._watcher.start(session)
         self.peer_directory.start(session)
+        self._observed.start(session)
         self._recovery.start(session)
         self._stale_transports.start(session)
         await self._state.connections.wait_until_connected(expected)
@@ -290,6 +302,7 @@ class ZenohTransport(Transport):
         self._state.connections.stop()
         self._recovery.stop()
         self._stale_transports.stop()
+        self._observed.stop()
         self.peer_directory.stop()
         self._watcher.stop()
         session = state.disconnect()

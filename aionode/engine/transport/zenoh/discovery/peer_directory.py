@@ -144,6 +144,14 @@ class ZenohPeerDirectory:
         self._has_plain_peers = False
         self.has_unannounced_peers = False
 
+    def contexts(self) -> set[str]:
+        """Return the other contexts that have announced themselves, whether they answer or not."""
+        return {
+            zid
+            for zid, keys in self._known.items()
+            if any(key.startswith(PREFIX) for key in keys) and zid != self._state.participant
+        }
+
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send `data` to another context from a thread; not dropped while both are open.
 

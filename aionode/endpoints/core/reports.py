@@ -1,0 +1,71 @@
+"""What a node tells tools of its endpoints, timers and actions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from aionode.endpoints.core.callback_runner import callback_name
+from aionode.engine.observation import DurationReport, EntityReport
+from aionode.graph import is_infrastructure
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+__all__ = ["entity_reports"]
+
+KINDS: Final = {
+    "Publisher": "publisher",
+    "Subscription": "subscription",
+    "Service": "service",
+    "Client": "client",
+    "Timer": "timer",
+    "ActionServer": "action server",
+}
+"""What entities with stats are called, by the names of their classes, which import this package."""
+
+COUNTS: Final = (
+    "published",
+    "calls",
+    "received",
+    "dropped",
+    "expired",
+    "filtered",
+    "lost",
+    "errors",
+)
+DURATIONS: Final = ("queue_wait", "run_time", "blocking")
+
+
+def entity_reports(entities: Iterable[Any]) -> list[EntityReport]:
+    """Return the counts of what the author of a node has written, without infrastructure."""
+    reports = (entity_report(entity) for entity in list(entities))
+    return [report for report in reports if report is not None]
+
+
+def entity_report(entity: Any) -> EntityReport | None:
+    """Return the counts of an entity; None for infrastructure, and for what counts nothing."""
+    names = (cls.__name__ for cls in type(entity).__mro__)
+    kind = next((KINDS[name] for name in names if name in KINDS), None)
+    if kind is None:
+        return None
+    name = type_name = ""
+    if hasattr(entity, "_endpoint"):
+        if is_infrastructure(entity._endpoint):
+            return None
+        name, type_name = entity._endpoint.name, entity._endpoint.type_name
+    elif hasattr(entity, "action_type"):
+        name, type_name = entity.action_name, entity.action_type.__ros_type__
+    runner = getattr(entity, "_runner", None) or getattr(entity, "_execute", None)
+    stats = entity.stats
+    return EntityReport(
+        kind,
+        name,
+        type_name,
+        "" if runner is None else callback_name(runner.callback),
+        {count: getattr(stats, count) for count in COUNTS if hasattr(stats, count)},
+        {
+            duration: DurationReport(measured.buckets, measured.max_ns)
+            for duration in DURATIONS
+            if (measured := getattr(stats, duration, None)) is not None
+        },
+    )

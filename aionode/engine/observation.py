@@ -1,0 +1,183 @@
+"""What a context tells of itself when somebody asks: the counts of its endpoints and callbacks.
+
+Everything here is counted anyway. Nothing is collected, sent or computed before a tool asks, and
+durations go as histograms, so that the one who asks computes the percentiles.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import socket
+import sys
+from functools import cache
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Final
+
+import msgspec
+
+from aionode._process.processor_waits import WAITS
+from aionode.clock import perf_ns, process_ns
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+__all__ = [
+    "DurationReport",
+    "EntityReport",
+    "NodeReport",
+    "ProcessReport",
+    "decoded",
+    "encoded",
+    "process_report",
+]
+
+LARGEST_REPORT: Final = 16 * 2**20
+"""The most bytes of a report of another process that are read."""
+
+MOST_TEXT: Final = 300
+"""Most characters of the command line of a process."""
+
+
+class DurationReport(msgspec.Struct, array_like=True):
+    """A histogram of durations.
+
+    Attributes:
+        buckets: How many durations there were, by the number of their bucket.
+        max_ns: The longest, in nanoseconds.
+    """
+
+    buckets: dict[int, int] = {}
+    max_ns: int = 0
+
+
+class EntityReport(msgspec.Struct):
+    """The counts of one endpoint, timer or action.
+
+    Attributes:
+        kind: ``publisher``, ``subscription``, ``service``, ``client``, ``timer`` or ``action
+            server``.
+        name: Its full name; empty for a timer.
+        type_name: The name of its type; empty for a timer.
+        callback: The name of its callback; empty if it has none.
+        counts: The counts of its `stats`, by their names.
+        durations: The durations of its `stats`, by their names.
+    """
+
+    kind: str
+    name: str
+    type_name: str
+    callback: str
+    counts: dict[str, int]
+    durations: dict[str, DurationReport] = {}
+
+
+class NodeReport(msgspec.Struct):
+    """One node.
+
+    Attributes:
+        name: Its full name.
+        is_running: Whether it calls callbacks.
+        unfinished: How many callbacks have begun and await something.
+        entities: Its endpoints, timers and actions, without infrastructure.
+    """
+
+    name: str
+    is_running: bool
+    unfinished: int
+    entities: list[EntityReport]
+
+
+class ProcessReport(msgspec.Struct):
+    """One context, and the process in which it is.
+
+    Attributes:
+        participant: The id of the context in the graph, in hexadecimal.
+        host: The name of the host.
+        pid: The id of the process.
+        program: The command line, shortened.
+        version: The version of aionode.
+        python: The version of Python.
+        now_ns: When this was told, by a clock of the process that counts from anywhere.
+        cpu_ns: Processor time of the process, in nanoseconds.
+        memory_bytes: Memory of the process that is in use; 0 if unknown.
+        load: The load of the host over a minute; 0 if unknown.
+        cores: The processors of the host.
+        processor_waits: How many callbacks took too long since no processor was free.
+        processor_waited_ns: How long these waited in all, in nanoseconds.
+        dropped: What of others was dropped or refused, by the reason: see `Context.dropped`.
+        nodes: Its nodes.
+    """
+
+    participant: str
+    host: str
+    pid: int
+    program: str
+    version: str
+    python: str
+    now_ns: int
+    cpu_ns: int
+    memory_bytes: int
+    load: float
+    cores: int
+    processor_waits: int
+    processor_waited_ns: int
+    dropped: dict[str, int]
+    nodes: list[NodeReport]
+
+
+@cache
+def own_version() -> str:
+    """Return the version of aionode; looking it up reads files."""
+    return version("aionode")
+
+
+def process_report(
+    participant: str, dropped: Mapping[str, int], reporters: Iterable[Callable[[], NodeReport]]
+) -> ProcessReport:
+    """Return the report of a context, whose nodes are told by `reporters`."""
+    return ProcessReport(
+        participant=participant,
+        host=socket.gethostname(),
+        pid=os.getpid(),
+        program=" ".join(sys.argv)[:MOST_TEXT] or sys.executable,
+        version=own_version(),
+        python=platform.python_version(),
+        now_ns=perf_ns(),
+        cpu_ns=process_ns(),
+        memory_bytes=memory_bytes(),
+        load=os.getloadavg()[0] if hasattr(os, "getloadavg") else 0.0,
+        cores=os.cpu_count() or 1,
+        processor_waits=WAITS.count,
+        processor_waited_ns=WAITS.total_ns,
+        dropped=dict(dropped),
+        nodes=[report() for report in reporters],
+    )
+
+
+def memory_bytes() -> int:
+    """Return how much memory of this process is in use; 0 where the system does not tell."""
+    try:
+        with open("/proc/self/statm", "rb") as file:  # noqa: PTH123  # no path is made of it
+            return int(file.read(200).split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError, IndexError):
+        return 0
+
+
+ENCODER: Final = msgspec.msgpack.Encoder()
+DECODER: Final = msgspec.msgpack.Decoder(ProcessReport)
+
+
+def encoded(report: ProcessReport) -> bytes:
+    """Return a report as bytes."""
+    return ENCODER.encode(report)
+
+
+def decoded(data: bytes) -> ProcessReport | None:
+    """Return the report in an answer of another process; None if it is none that is known here."""
+    if len(data) > LARGEST_REPORT:
+        return None
+    try:
+        return DECODER.decode(data)
+    except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
+        return None

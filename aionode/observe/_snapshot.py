@@ -1,0 +1,81 @@
+"""One look at all processes of a system."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from aionode.engine.observation import ProcessReport, decoded
+from aionode.names import is_hidden
+
+if TYPE_CHECKING:
+    from aionode.node import Node
+
+__all__ = ["Snapshot", "observe"]
+
+ANSWER_S: Final = 0.5
+"""Time in which a process answers that can answer at all, in seconds; most take milliseconds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Snapshot:
+    """What the processes of a system have counted so far.
+
+    Attributes:
+        processes: The reports of all contexts that have answered, this one's first.
+        silent: Those that have not: frozen, blocked, or dead and not missed yet; each with the
+            names of its nodes, as far as the graph knows them.
+        older: Those whose aionode keeps no reports, in the same form.
+        unreached: In words, processes that take no connection, so that their nodes are unknown.
+        foreign: Nodes of others, such as those of ROS 2, which keep none either.
+        unreadable: Those whose report has another form than is known here.
+    """
+
+    processes: list[ProcessReport]
+    silent: dict[str, list[str]]
+    older: dict[str, list[str]]
+    unreached: list[str]
+    foreign: list[str]
+    unreadable: dict[str, list[str]]
+
+
+async def observe(node: Node, *, timeout_sec: float = ANSWER_S) -> Snapshot:
+    """Ask all processes of aionode in the domain what they have counted.
+
+    All are asked at once, and one that does not answer delays the others by `timeout_sec` at most.
+    Hidden nodes, such as those of tools, are left out of reports. Cancelling is safe.
+
+    Args:
+        node: A running node.
+        timeout_sec: The longest wait for answers.
+    """
+    context = node.context
+    named: dict[str, list[str]] = {}
+    for info in context.graph.nodes():
+        if not is_hidden(info.fully_qualified_name):
+            named.setdefault(info.participant, []).append(info.fully_qualified_name)
+    answers: dict[str, bytes | None] = {}
+    unreached: list[str] = []
+    for transport in context.transports:
+        answers |= await transport.observe(timeout_sec)
+        unreached += transport.silent_processes()
+    found = Snapshot([context.report()], {}, {}, [], [], {})
+    found.unreached.extend(dict.fromkeys(unreached))
+    for participant, answer in sorted(answers.items()):
+        nodes = sorted(named.get(participant, []))
+        if answer is None:
+            if nodes:  # others have just ended, or are tools
+                found.silent[participant] = nodes
+        elif not answer:
+            found.older[participant] = nodes
+        elif (report := decoded(answer)) is not None:
+            found.processes.append(report)
+        else:
+            found.unreadable[participant] = nodes
+    for process in found.processes:
+        process.nodes = [each for each in process.nodes if not is_hidden(each.name)]
+    known = {*answers, context.participant}
+    found.foreign.extend(
+        sorted(name for each, names in named.items() if each not in known for name in names)
+    )
+    return found
