@@ -37,16 +37,23 @@ MAX_TURN = 2.0
 WHEEL_RADIUS = 0.06
 WHEEL_TRACK = 0.30
 RANGE_MAX = 8.0
-ANGLES = np.linspace(-math.pi, math.pi, 180, endpoint=False)
+ANGLES = np.linspace(0.0, 2 * math.pi, 180, endpoint=False)
 CAMERA_AHEAD = 0.12
 
 
 class Settings(msgspec.Struct):
-    """The parameters of the simulator."""
+    """The parameters of the simulator; with other names, it is the base of another robot."""
 
     rate: Annotated[
         float, Meta(gt=0.0, le=100.0, description="simulated seconds a second, on /clock")
     ] = 1.0
+    base_frame: Annotated[str, Meta(description="the frame that moves in odom")] = "base_link"
+    lidar_frame: Annotated[str, Meta(description="the frame of /scan")] = "lidar"
+    left_wheel: Annotated[str, Meta(description="its joint")] = "left_wheel_joint"
+    right_wheel: Annotated[str, Meta(description="its joint")] = "right_wheel_joint"
+    scan_from: Annotated[
+        float, Meta(ge=-math.pi, le=0.0, description="angle of the first ray, in rad; 0 is ahead")
+    ] = -math.pi
 
 
 class Simulator(Node):
@@ -56,6 +63,7 @@ class Simulator(Node):
         super().__init__("simulator", **options)
         self.settings = self.declare_struct(Settings)
         self.makes_time = bool(self.get_parameter("use_sim_time").value)
+        self.angles = ANGLES + self.settings.scan_from
         self.world = World()
         self.speed = self.turn = 0.0
         self.wheels = [0.0, 0.0]
@@ -136,7 +144,7 @@ class Simulator(Node):
         place, header = self.world.rover, self.header("odom")
         rotation = Quaternion(z=math.sin(place.heading / 2), w=math.cos(place.heading / 2))
 
-        odometry = Odometry(header=header, child_frame_id="base_link")
+        odometry = Odometry(header=header, child_frame_id=self.settings.base_frame)
         odometry.pose.pose.position.x = place.x
         odometry.pose.pose.position.y = place.y
         odometry.pose.pose.orientation = rotation
@@ -144,7 +152,7 @@ class Simulator(Node):
         odometry.twist.twist.angular.z = self.turn
         self.odometry.publish(odometry)
 
-        transform = TransformStamped(header=header, child_frame_id="base_link")
+        transform = TransformStamped(header=header, child_frame_id=self.settings.base_frame)
         transform.transform.translation.x = place.x
         transform.transform.translation.y = place.y
         transform.transform.rotation = rotation
@@ -153,17 +161,17 @@ class Simulator(Node):
         for number, side in enumerate((-1, 1)):
             speed = self.speed + side * self.turn * WHEEL_TRACK / 2
             self.wheels[number] += speed / WHEEL_RADIUS * STEP_SEC
-        names = ["left_wheel_joint", "right_wheel_joint"]
+        names = [self.settings.left_wheel, self.settings.right_wheel]
         self.joints.publish(JointState(header=header, name=names, position=self.wheels))
 
     def publish_scan(self) -> None:
         """Publish the distances all around; the lidar stands in the middle of the rover."""
-        ranges = self.world.scan(self.world.rover, ANGLES)
+        ranges = self.world.scan(self.world.rover, self.angles)
         self.scans.publish(
             LaserScan(
-                header=self.header("lidar"),
-                angle_min=float(ANGLES[0]),
-                angle_max=float(ANGLES[-1]),
+                header=self.header(self.settings.lidar_frame),
+                angle_min=float(self.angles[0]),
+                angle_max=float(self.angles[-1]),
                 angle_increment=float(ANGLES[1] - ANGLES[0]),
                 scan_time=STEPS_PER_SCAN * STEP_SEC,
                 range_min=0.05,
