@@ -1,4 +1,4 @@
-"""Logging: rclpy's loggers and rcutils' console, over the standard library's `logging`."""
+"""Logging: rclpy's loggers and rcutils' console output, on top of the standard `logging`."""
 
 from aionode.logging._console import LogEvent, get_logging_directory
 from aionode.logging._filters import LogOptions

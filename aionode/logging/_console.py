@@ -83,7 +83,7 @@ def name_of(record: logging.LogRecord) -> str:
 
 
 def stamp_of(record: logging.LogRecord) -> int:
-    """Return when it was logged, in nanoseconds."""
+    """Return the time of logging in nanoseconds."""
     return record.stamp_ns if isinstance(record, RosRecord) else int(record.created * S_TO_NS)
 
 
@@ -122,7 +122,7 @@ TOKENS: dict[str, Callable[[logging.LogRecord], object]] = {
 
 
 class LineFormatter(logging.Formatter):
-    """Formats lines as rcutils does: the format contains tokens such as ``{severity}``.
+    """Formats lines like rcutils: the format contains tokens such as ``{severity}``.
 
     Unknown tokens are left unchanged.
     """
@@ -169,13 +169,13 @@ class ConsoleSettings(NamedTuple):
         return cls(
             environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT,
             flag("RCUTILS_LOGGING_USE_STDOUT", environ) or False,
-            None if buffered is None else True,  # whether 0 or 1, lines are written one by one
+            None if buffered is None else True,  # either way, lines are written one by one
             flag("RCUTILS_COLORIZED_OUTPUT", environ),
         )
 
 
 def flag(variable: str, environ: Mapping[str, str]) -> bool | None:
-    """Return the value of a variable that is 0 or 1; None if it is not set."""
+    """Return the value of a variable that must be 0 or 1; None if it is not set."""
     value = environ.get(variable, "")
     if value not in {"", "0", "1"}:
         raise ConfigurationError(variable, value, "it must be 0 or 1")
@@ -183,10 +183,10 @@ def flag(variable: str, environ: Mapping[str, str]) -> bool | None:
 
 
 def is_shown_elsewhere(record: logging.LogRecord) -> bool:
-    """Return whether a handler of the application writes the record to the console.
+    """Return whether one of the application's handlers writes the record to the console.
 
-    Such a handler belongs to the root logger, as after `logging.basicConfig`, and gets the record
-    after the handlers of this package.
+    Such a handler is on the root logger, as after `logging.basicConfig`, and gets the record after
+    this package's handlers.
     """
     root = logging.getLogger()
     top = logging.getLogger(record.name.partition(".")[0])
@@ -207,9 +207,9 @@ def is_shown_elsewhere(record: logging.LogRecord) -> bool:
 
 
 class ConsoleHandler(logging.Handler):
-    """Writes each record once, to whatever sys.stderr (or sys.stdout) is at that time.
+    """Writes each record once, to the current sys.stderr (or sys.stdout).
 
-    Records that a handler of the application writes to the console are skipped.
+    Records that one of the application's handlers writes to the console are skipped.
     """
 
     def __init__(self, settings: ConsoleSettings) -> None:
@@ -219,13 +219,13 @@ class ConsoleHandler(logging.Handler):
 
     @property
     def stream(self) -> TextIO:
-        """The stream to write to now."""
+        """The current output stream."""
         return sys.stdout if self.settings.use_stdout else sys.stderr
 
     def emit(self, record: logging.LogRecord) -> None:
         """Write one line."""
         if record.__dict__.get("aionode_shown"):
-            return  # already handled: the logger and the root logger both have this handler
+            return  # already handled, as both the logger and the root logger have this handler
         record.aionode_shown = True
         if is_shown_elsewhere(record):
             return
@@ -243,10 +243,10 @@ class ConsoleHandler(logging.Handler):
 
 
 class SinkHandler(logging.Handler):
-    """Passes the records of one logger, and of its children, to a function.
+    """Passes the records of one logger and its children to a function.
 
-    A record is passed to the sink of the nearest logger only: with nodes ``/a`` and ``/a/b``, whose
-    loggers are ``a`` and ``a.b``, a record of ``a.b`` is not published by node ``/a`` as well.
+    A record is passed only to the sink of the nearest logger: with nodes ``/a`` and ``/a/b``, whose
+    loggers are ``a`` and ``a.b``, a record of ``a.b`` is not also published by node ``/a``.
     """
 
     def __init__(self, name: str, sink: Callable[[LogEvent], None]) -> None:

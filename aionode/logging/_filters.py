@@ -27,7 +27,7 @@ class LogOptions(TypedDict, total=False):
         once: Log only the first message of this call site.
         skip_first: Log all messages but the first.
         throttle_duration_sec: Log at most one message in this many seconds.
-        throttle_time_source_type: The clock for that; the system clock by default.
+        throttle_time_source_type: The clock for throttling; the system clock by default.
     """
 
     name: str | None
@@ -55,7 +55,7 @@ class CallSite:
         self.logged = False
 
     def check(self, name: str, options: LogOptions) -> None:
-        """Refuse a call that differs from the first one of this call site.
+        """Reject a call whose options differ from those of the first call at this call site.
 
         Raises:
             ValueError: Name or filters are not those of the first call.
@@ -77,7 +77,7 @@ class CallSite:
         """Return whether to log this message, and update the state.
 
         A filter that drops a message does not update the filters after it: with throttle and once,
-        the one message logged is the first that throttle passes.
+        the message that is logged is the first one to pass throttle.
         """
         options = self.options
         if "throttle_duration_sec" in options and not self._throttle(now_ns):
@@ -95,7 +95,7 @@ class CallSite:
         clock = self.options.get("throttle_time_source_type")
         now = now_ns() if clock is None else clock.now().nanoseconds
         period_ns = self.options["throttle_duration_sec"] * S_TO_NS
-        # A clock that is set back, as when a simulation restarts, must not silence the call site.
+        # A clock that jumps back, as when a simulation restarts, must not silence the call site.
         if self.last_ns <= now < self.last_ns + period_ns:
             return False
         self.last_ns = now
@@ -111,7 +111,7 @@ def checked(options: LogOptions) -> LogOptions:
     """
     for option in options:
         if option not in FILTERS:
-            # Of what a method of one severity fixes already, Python itself would say this.
+            # The error that Python raises for an argument which the method already fixes.
             message = f"got multiple values for argument {brief(option)}"
             if option == "severity":
                 raise TypeError(message)
@@ -139,8 +139,8 @@ class CallSites:
 
     def find(self, frame: FrameType, severity: int, name: str, options: LogOptions) -> CallSite:
         """Return the call site of `frame`: created on its first call, checked on later ones."""
-        # `(log.info if ok else log.error)(…)` is one place in the code, and two calls: of each
-        # severity, the filters have a state of their own. rclpy refuses the second, at run time.
+        # `(log.info if ok else log.error)(…)` is one place in the code but two calls, so the
+        # filters keep state per severity. rclpy rejects the second at run time.
         key = (id(frame.f_code), frame.f_lasti, severity)
         site = self._sites.get(key)
         if site is None:

@@ -1,9 +1,9 @@
-"""Loggers with ROS names, over the standard library's `logging`.
+"""Loggers with ROS names, on top of the standard library's `logging`.
 
 The ROS logger ``ns.talker`` is the logger ``ros.ns.talker`` of `logging`, so handlers, filters,
 pytest's caplog and other tools work with it. Loggers of aionode itself (``aionode.…``) have the
 same name in both. Nothing is installed until the first message or setting; then ``ros`` and
-``aionode`` get a handler that writes to the console as rcutils does.
+``aionode`` get a handler that writes to the console like rcutils.
 """
 
 from __future__ import annotations
@@ -46,14 +46,15 @@ ROOT, OWN = "ros", "aionode"
 EVERYTHING = 1  # not 0, which means the level of the root logger in `logging`
 
 MOST_LOGGERS = 1_000
-"""While there are so many loggers in the process, other nodes cannot have more of them made."""
+"""From this number of loggers in the process on, other nodes cannot create more."""
 
 LONGEST_NAME = 256
-"""Most characters in the name of a logger that another node makes: each of its parts makes a logger
-as well."""
+"""Maximum length of a logger name requested by another node, as each part of it creates a logger as
+well.
+"""
 
 machine = MachineTime()
-caller = sys._getframe  # inspect takes longer for it than the rest of a log call
+caller = sys._getframe  # with inspect it would take longer than the rest of a log call
 
 
 class RcutilsLogger:
@@ -110,7 +111,7 @@ class RcutilsLogger:
         self._logger.addHandler(handler)
         return lambda: self._logger.removeHandler(handler)
 
-    # Each method gets the frame of its caller itself, at a fixed depth of the stack.
+    # Each method gets its caller's frame itself, at a fixed stack depth.
 
     def log(
         self,
@@ -140,7 +141,7 @@ class RcutilsLogger:
         return self._log(message, 30, caller(1), options)
 
     def warn(self, message: str, **options: Unpack[LogOptions]) -> bool:
-        """Log `message` with severity WARN, as `warning` does."""
+        """Log `message` with severity WARN, like `warning`."""
         return self._log(message, 30, caller(1), options)
 
     def error(self, message: str, **options: Unpack[LogOptions]) -> bool:
@@ -177,14 +178,14 @@ def standard_logger(name: str) -> logging.Logger:
 
 
 def standard_name(name: str) -> str:
-    """Return what the standard library's logger for a ROS name is called."""
+    """Return the name of the standard library's logger for a ROS name."""
     if name == OWN or name.startswith(f"{OWN}."):
         return name
     return f"{ROOT}.{name}" if name else ROOT
 
 
 def known_logger(name: str) -> logging.Logger | None:
-    """Return the same if there is one."""
+    """Return the standard library's logger for a ROS name, if it exists."""
     existing = logging.Logger.manager.loggerDict.get(standard_name(name))
     return existing if isinstance(existing, logging.Logger) else None
 
@@ -194,7 +195,7 @@ def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> R
 
     Args:
         name: Its name; ``a.b`` is a child of ``a``.
-        now_ns: Where its time stamps come from.
+        now_ns: The source of its time stamps.
 
     Raises:
         ValueError: `name` is empty.
@@ -209,7 +210,7 @@ def get_logger(name: str, *, now_ns: Callable[[], int] = machine.system_ns) -> R
 
 
 def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bool = False) -> None:
-    """Set the level of a logger, which need not exist yet; the empty name is the root.
+    """Set the level of a logger, which need not exist yet; the empty name means the root.
 
     Raises:
         ValueError: `level` is not one of `LoggingSeverity`.
@@ -225,13 +226,13 @@ def set_logger_level(name: str, level: int | LoggingSeverity, detailed_error: bo
 
 
 def set_logger_level_for_others(name: str, level: int) -> None:
-    """Set the level of a logger as `set_logger_level`; another node asks for it.
+    """Set the level of a logger, like `set_logger_level`, on behalf of another node.
 
-    A logger stays for good, so others can have a limited number of them made.
+    Loggers are never removed, so other nodes can create only a limited number.
 
     Raises:
-        ValueError: `level` is not one of `LoggingSeverity`, or there is no such logger, and its
-            name is too long, or others have had too many made.
+        ValueError: `level` is not one of `LoggingSeverity`, or the logger does not exist and its
+            name is too long or there are too many already.
     """
     is_full = len(logging.Logger.manager.loggerDict) >= MOST_LOGGERS
     if name and known_logger(name) is None and (is_full or len(name) > LONGEST_NAME):
@@ -245,7 +246,7 @@ def set_logger_level_for_others(name: str, level: int) -> None:
 def get_logger_level(name: str) -> LoggingSeverity:
     """Return the level set for this logger; UNSET if none was set."""
     initialize()
-    known = known_logger(name)  # one that is made stays for good
+    known = known_logger(name)  # a logger that is created is never removed
     return LoggingSeverity.UNSET if known is None else nearest_severity(known.level)
 
 
@@ -256,7 +257,7 @@ def get_logger_effective_level(name: str) -> LoggingSeverity:
 
 
 def nearest_severity(level: int) -> LoggingSeverity:
-    """Return a level of `logging`, which may be any number, as a severity."""
+    """Convert a level of `logging`, which may be any number, to a severity."""
     return LoggingSeverity(min(max(level, 0) // 10 * 10, 50))
 
 
@@ -269,7 +270,7 @@ class SetUp:
     def __init__(self) -> None:
         self.ready = False
         self._installed: list[tuple[logging.Logger, logging.Handler]] = []
-        self._root_levels: tuple[int, int] | None = None  # before, and as it was set
+        self._root_levels: tuple[int, int] | None = None  # before, and as set
 
     def install(self, handler: logging.Handler, *names: str) -> None:
         """Add a handler to these loggers."""
@@ -279,13 +280,13 @@ class SetUp:
             self._installed.append((logger, handler))
 
     def take_root(self, level: int) -> None:
-        """Set the level of the root logger, as basicConfig would, for all other loggers."""
+        """Set the level of the root logger, like basicConfig, for all other loggers."""
         root = logging.getLogger()
         self._root_levels = root.level, level
         root.setLevel(level)
 
     def release_root(self) -> None:
-        """Take back what was set for all other loggers, unless the program has changed it."""
+        """Undo what was set for all other loggers, unless the program has changed it."""
         root = logging.getLogger()
         for logger, handler in self._installed:
             if logger is root:
@@ -297,7 +298,7 @@ class SetUp:
                 root.setLevel(before)
 
     def remove(self) -> None:
-        """Remove everything."""
+        """Remove all handlers and settings."""
         self.release_root()
         for logger, handler in self._installed:
             logger.removeHandler(handler)
@@ -310,7 +311,7 @@ set_up = SetUp()
 
 
 def initialize() -> None:
-    """Configure logging from the environment, unless that was done. Every use of a logger does.
+    """Configure logging from the environment, once; every use of a logger does this.
 
     Raises:
         ConfigurationError: An environment variable is invalid (a ValueError).
@@ -330,7 +331,7 @@ def configure(
     """Configure logging, replacing the previous configuration.
 
     Args:
-        level: Level of all loggers without a level of their own; INFO by default.
+        level: Level of all loggers that have none of their own; INFO by default.
         levels: Levels of individual loggers.
         console: Whether to log to the console.
         file_name: Also log to the file ``<file_name>_<pid>_<milliseconds>.log`` in
@@ -361,7 +362,7 @@ def configure(
 
 
 def log_file(prefix: str, line_format: str) -> logging.Handler:
-    """Return a handler that writes to a new file in the logging directory."""
+    """Create a handler that writes to a new file in the logging directory."""
     directory = get_logging_directory()
     directory.mkdir(parents=True, exist_ok=True)
     stamp_ms = machine.system_ns() // 1_000_000
@@ -373,7 +374,7 @@ def log_file(prefix: str, line_format: str) -> logging.Handler:
 
 
 def release_root() -> None:
-    """Take back what `configure` has set for all loggers of the process (``whole_process=True``).
+    """Undo what `configure` set for all loggers of the process (``whole_process=True``).
 
     aionode's own loggers stay configured. `aionode.run` calls this when it returns.
     """
