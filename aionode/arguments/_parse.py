@@ -1,4 +1,4 @@
-"""The arguments of a ROS program: those between ``--ros-args`` and ``--``.
+"""The ROS arguments of a program: those between ``--ros-args`` and ``--``.
 
 ::
 
@@ -35,7 +35,7 @@ from aionode.names import RemapRule
 __all__ = ["Arguments", "parse_arguments", "remove_ros_args"]
 
 START, END = "--ros-args", "--"
-VALUE = "value"  # the source of a value on the command line, in errors
+VALUE = "value"  # the source in errors about values on the command line
 
 ParameterFileReader = Callable[[str], Iterable[ParameterRule]]
 
@@ -48,7 +48,7 @@ class Arguments:
         remap_rules: In order; the first match wins.
         parameter_rules: From files and ``-p``, in order; the last match wins.
         params_files: Paths of the files that were read.
-        log_level: The level of loggers without one of their own.
+        log_level: The level of loggers that have none of their own.
         log_levels: Levels of individual loggers.
         log_config_file: A file to configure logging with.
         log_file_name: Prefix of the name of the log file.
@@ -81,10 +81,10 @@ class Arguments:
         return matching_parameters(self.parameter_rules, node_name)
 
     def log_file_prefix(self) -> str | None:
-        """Return the prefix of the name of the log file, or None to write none.
+        """Return the prefix of the log file's name, or None for no log file.
 
         A file is written only on request: by ``--log-file-name``, or by
-        ``--enable-external-lib-logs``, which gives it the name of the program.
+        ``--enable-external-lib-logs``, which names it after the program.
         """
         if self.external_lib_logs is None:
             return self.log_file_name
@@ -171,7 +171,7 @@ class Parser:
         self.warnings: list[str] = []
 
     def outside(self, word: str) -> None:
-        """Take an argument outside of ``--ros-args`` blocks."""
+        """Handle an argument outside of ``--ros-args`` blocks."""
         rule = deprecated_rule(word)
         if rule is None:
             self.own.append(word)
@@ -183,7 +183,7 @@ class Parser:
         )
 
     def inside(self, word: str, rest: list[str]) -> None:
-        """Take an argument inside a block, and its value, if any, from `rest`."""
+        """Handle an argument inside a block, and its value, if any, from `rest`."""
         if word in SWITCHES:
             setting, value = SWITCHES[word]
             self.switches[setting] = value
@@ -238,12 +238,12 @@ PARAMETER = (
 
 
 def add_remap(parser: Parser, text: str) -> None:
-    """Take the value of ``--remap``."""
+    """Handle the value of ``--remap``."""
     parser.remap_rules.append(RemapRule.parse(text))
 
 
 def add_parameter(parser: Parser, text: str) -> None:
-    """Take the value of ``--param``."""
+    """Handle the value of ``--param``."""
     parts = re.fullmatch(PARAMETER, text)
     if parts is None:
         message = "a parameter is 'name:=value' or 'node:name:=value'"
@@ -259,13 +259,13 @@ def add_parameter(parser: Parser, text: str) -> None:
 
 
 def add_file(parser: Parser, path: str) -> None:
-    """Take the value of ``--params-file``."""
+    """Handle the value of ``--params-file``."""
     parser.parameter_rules.extend(parser.read_file(path))
     parser.params_files.append(path)
 
 
 def set_log_level(parser: Parser, text: str) -> None:
-    """Take the value of ``--log-level``."""
+    """Handle the value of ``--log-level``."""
     name, separator, level = text.rpartition(":=")
     if separator and not name:
         message = "the name of the logger is empty; a level is 'LEVEL' or 'name:=LEVEL'"
@@ -320,7 +320,7 @@ SWITCHES = {
 
 
 def deprecated_rule(word: str) -> RemapRule | None:
-    """Return the remap rule that an argument outside of blocks is, or None."""
+    """Parse an argument outside of blocks as a remap rule; None if it is not one."""
     if ":=" not in word:
         return None
     try:

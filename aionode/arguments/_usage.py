@@ -1,4 +1,4 @@
-"""Reports arguments that no node has used: a typo in a name would otherwise go unnoticed."""
+"""Reports arguments that no node has used, so that a typo in a name does not go unnoticed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ CHECK_AFTER_NS = 1_000_000_000
 
 
 class NodeParameters(Protocol):
-    """The part of a node's `ParameterStore` that is read here. The store imports this package."""
+    """The part of a `ParameterStore` used here; a protocol, as the store imports this package."""
 
     node_name: str
     allow_undeclared: bool
@@ -31,7 +31,7 @@ class NodeParameters(Protocol):
 
 
 class Usage:
-    """Records which arguments nodes use, and logs once those that none has used.
+    """Records which arguments nodes use, and logs the unused ones once.
 
     Args:
         arguments: The arguments: their remap rules, and the parameters given by ``-p``.
@@ -39,7 +39,7 @@ class Usage:
 
     def __init__(self, arguments: Arguments) -> None:
         self.arguments = arguments
-        # Rules and parameters that are still unused, then the nodes so far.
+        # Rules and parameters that are still unused, and the nodes so far.
         self._rules = set(arguments.remap_rules)
         self._parameters = [rule for rule in arguments.parameter_rules if rule.typed]
         self._names: set[str] = set()
@@ -48,7 +48,7 @@ class Usage:
 
     @property
     def is_over(self) -> bool:
-        """Whether nothing is left to record: all were used, or the unused ones were logged."""
+        """Whether nothing is left to record: all were used, or the unused ones have been logged."""
         return not (self._rules or self._parameters)
 
     def note_node(self, name: str) -> None:
@@ -74,9 +74,9 @@ class Usage:
     def begin(
         self, time_base: TimeBase, is_alive: Callable[[], bool], warn: Callable[[str], Any]
     ) -> None:
-        """Check a second from now, and `warn` about unused arguments, if the node is still alive.
+        """Check in a second, and `warn` about unused arguments, if the node is still alive.
 
-        A program that ends sooner may not have created all of its names.
+        A program that ends sooner may not have created all its names.
         """
         if self._begun or self.is_over:
             return
@@ -94,7 +94,7 @@ class Usage:
         time_base.call_at(time_base.steady_ns() + CHECK_AFTER_NS, check)
 
     def unused(self) -> list[str]:
-        """Return a text for each argument that was not used so far."""
+        """Return a text for each argument that has not been used so far."""
         texts = [
             f"-r {rule}: has matched no name of this program's nodes so far, so it changes nothing"
             f"{meant(rule.match, self._names)}"
@@ -115,7 +115,7 @@ class Usage:
 
 
 def meant(word: str, known: Iterable[str]) -> str:
-    """Return a hint at the known word most like this one; empty if none is similar."""
+    """Return a hint with the most similar known word; empty if none is similar."""
     plain = {name.strip("/"): name for name in known}
     close = difflib.get_close_matches(word.strip("/"), plain, n=1)
     return f"; did you mean {plain[close[0]]!r}?" if close else ""
