@@ -1,1 +1,1 @@
-"""What belongs to the whole process: signals, standard streams, concurrency, its end."""
+"""Process-wide matters: signals, standard streams, concurrency, shutdown."""

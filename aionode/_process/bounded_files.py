@@ -1,4 +1,4 @@
-"""Files of others: read as far as they are files, and of a size that can be."""
+"""Read files from others, if they are regular files of a plausible size."""
 
 from __future__ import annotations
 
@@ -13,23 +13,27 @@ LARGEST_FILE: Final = 16 << 20
 """The largest file that is read at once, in bytes."""
 
 PIECE: Final = 64 << 10
-"""Bytes that are read at once, or as many as there were before: room is made for what is there."""
+"""Bytes that are read at once, or as many as were read so far, so that memory grows only with what
+is there.
+"""
 
 GIVEN: Final = ("/dev/fd/", "/dev/stdin", "/proc/self/fd/")
-"""Names of what a shell hands over, as in ``--params-file <(xacro ...)``, which may be a pipe."""
+"""Paths of a shell's process substitution, as in ``--params-file <(xacro ...)``, which may be
+pipes.
+"""
 
 
 def read_file(path: str | os.PathLike[str], most: int = LARGEST_FILE) -> bytes:
-    """Return the content of a file of configuration.
+    """Read a configuration file.
 
-    A pipe that has no writer would be waited for without end, and a device has none.
+    A pipe without a writer would block for ever, and a device may have no end.
 
     Args:
         path: The file.
         most: The largest size in bytes.
 
     Raises:
-        OSError: it cannot be read, is no file, or is larger.
+        OSError: it cannot be read, is not a file, or is larger.
     """
     name = os.fspath(path)
     is_given = name.startswith(GIVEN)

@@ -1,7 +1,8 @@
-"""YAML of others: read by PyYAML, within limits of size, depth and number.
+"""Read YAML from others with PyYAML, within limits of size, depth and number.
 
-A few lines with aliases of aliases stand for billions of values, deep nesting ends the process
-inside libyaml, and a number with colons takes minutes: what comes from a file is looked at first.
+A few lines with aliases of aliases stand for billions of values, deep nesting crashes the process
+inside libyaml, and a long number with colons takes minutes to parse; so text from a file is checked
+first.
 """
 
 from __future__ import annotations
@@ -23,17 +24,17 @@ __all__ = [
 ]
 
 LARGEST_TEXT: Final = 8 << 20
-"""The longest text, in bytes."""
+"""Maximum size of a text, in bytes."""
 
 MOST_VALUES: Final = 80_000
-"""The most values and keys, where each alias counts as all that it stands for: a second's work."""
+"""Maximum values and keys, about a second's work; each alias counts as all that it stands for."""
 
 VALUES_VARIABLE: Final = "AIONODE_YAML_VALUES"
-"""The variable of the environment that sets another number."""
+"""The environment variable that sets another limit."""
 
 DEEPEST: Final = 100
 LONGEST_NUMBER: Final = 400
-"""The longest word that may be a number: those of base 60 take the square of their length."""
+"""Maximum length of a number, as parsing base 60 takes time with the square of the length."""
 
 FROM_CONSTRUCTORS: Final = (
     ArithmeticError,
@@ -43,17 +44,17 @@ FROM_CONSTRUCTORS: Final = (
     TypeError,
     ValueError,
 )
-"""What PyYAML's constructors raise for an empty ``!!int``, a thirteenth month, and the like."""
+"""The exceptions of PyYAML's constructors, as for an empty ``!!int`` or a thirteenth month."""
 
 
 def most_values() -> int:
-    """Return how many values a text may have."""
+    """Return the maximum number of values in a text."""
     given = os.environ.get(VALUES_VARIABLE, "")
     return int(given) if given.isascii() and given.isdigit() else MOST_VALUES
 
 
 def checked_yaml(text: str | bytes) -> None:
-    """Raise `yaml.YAMLError` if a text is not YAML, or beyond the limits."""
+    """Raise `yaml.YAMLError` if a text is not YAML or exceeds the limits."""
     import yaml
 
     if len(text) > LARGEST_TEXT:
@@ -68,7 +69,7 @@ def checked_yaml(text: str | bytes) -> None:
 
 
 class Seen:
-    """Counts the values of a text, and how deep they are nested."""
+    """Counts the values of a text and their nesting depth."""
 
     def __init__(self) -> None:
         self.count = 0
@@ -76,10 +77,10 @@ class Seen:
         self.sizes: dict[str | None, int] = {}
         """How many values each anchor stands for."""
         self.open: list[tuple[str | None, int]] = []
-        """The anchors of the collections that have begun, and the count before each."""
+        """The anchors of the open collections, and the count before each."""
 
     def add(self, event: Any) -> None:
-        """Note what the parser has found; raise `yaml.YAMLError` beyond the limits."""
+        """Count an event of the parser; raise `yaml.YAMLError` beyond the limits."""
         import yaml
 
         if isinstance(event, yaml.AliasEvent):
@@ -106,7 +107,7 @@ class Seen:
         raise yaml.MarkedYAMLError(problem=what, problem_mark=event.start_mark)
 
     def expect_closed(self, alias: Any) -> None:
-        """Raise `yaml.YAMLError` for an alias within what it stands for, which has no end."""
+        """Raise `yaml.YAMLError` for an alias inside its own value, which would have no end."""
         import yaml
 
         if any(anchor == alias.anchor for anchor, _ in self.open):
@@ -115,7 +116,7 @@ class Seen:
 
 
 def expect_short(event: Any) -> None:
-    """Raise `yaml.YAMLError` if a value may be a number, and is a very long one."""
+    """Raise `yaml.YAMLError` if a value may be a very long number."""
     import yaml
 
     value = event.value
@@ -128,21 +129,21 @@ def expect_short(event: Any) -> None:
 
 
 def fast_loader() -> Any:
-    """Return PyYAML's safe loader, in C where libyaml is there."""
+    """Return PyYAML's safe loader, in C if libyaml is available."""
     import yaml
 
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 def loaded_yaml(text: str | bytes, loader: Any = None) -> Any:
-    """Return what a text of others describes, as plain values; None for an empty one.
+    """Parse YAML from others to plain values; None for an empty text.
 
     Args:
         text: The text.
-        loader: A safe loader of PyYAML in place of the usual one.
+        loader: A safe loader of PyYAML to use instead of the default.
 
     Raises:
-        yaml.YAMLError: it is no YAML, beyond the limits, or has a value that is none.
+        yaml.YAMLError: it is not YAML, exceeds the limits, or has an invalid value.
     """
     import yaml
 
@@ -154,7 +155,7 @@ def loaded_yaml(text: str | bytes, loader: Any = None) -> Any:
 
 
 def documents_in(text: str | bytes, loader: Any = None) -> list[Any]:
-    """Return what each document of a text describes; as `loaded_yaml`, which takes one."""
+    """Parse each document of a text, like `loaded_yaml`, which takes a single one."""
     import yaml
 
     checked_yaml(text)
@@ -165,10 +166,10 @@ def documents_in(text: str | bytes, loader: Any = None) -> list[Any]:
 
 
 def value_of_node(node: Any) -> Any:
-    """Return what a node of `composed_yaml` describes.
+    """Return the value of a node of `composed_yaml`.
 
     Raises:
-        yaml.YAMLError: it is a value that is none.
+        yaml.YAMLError: the value is invalid.
     """
     import yaml
 
@@ -183,10 +184,10 @@ def value_of_node(node: Any) -> Any:
 
 
 def composed_yaml(text: str | bytes) -> Any:
-    """Return the node of a text of others, which has the lines of its values.
+    """Parse YAML from others to a node, which knows the lines of its values.
 
     Raises:
-        yaml.YAMLError: it is no YAML, or beyond the limits.
+        yaml.YAMLError: it is not YAML, or exceeds the limits.
     """
     import yaml
 

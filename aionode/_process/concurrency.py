@@ -1,4 +1,4 @@
-"""Helpers for asyncio: a turn of the loop, calls in threads, and uninterruptible work."""
+"""Helpers for asyncio: yielding to the loop, calls in threads, and uninterruptible work."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 SLICE_NS = 1_000_000
-"""Time for which a queue is drained before timers, I/O and other callbacks get their turn."""
+"""How long a queue is drained before timers, I/O and other callbacks get a turn."""
 
 THREAD_CALLS: WeakKeyDictionary[asyncio.AbstractEventLoop, set[asyncio.Future[None]]] = (
     WeakKeyDictionary()
@@ -36,14 +36,14 @@ THREAD_CALLS: WeakKeyDictionary[asyncio.AbstractEventLoop, set[asyncio.Future[No
 
 @coroutine
 def checkpoint() -> Generator[None, None, None]:
-    """Wait for one turn of the event loop, in which everything else that is ready runs."""
+    """Wait for one iteration of the event loop, in which everything else that is ready runs."""
     yield
 
 
 def thread_calls(loop: asyncio.AbstractEventLoop) -> set[asyncio.Future[None]]:
-    """Return a future for each call of `run_in_thread` in `loop` that has not ended.
+    """Return the futures of the pending calls of `run_in_thread` in `loop`.
 
-    The futures are done when the calls end. Tests wait for them, as the loop does not show them.
+    They are done when the calls end. Tests wait for them, as the loop does not expose them.
     """
     return THREAD_CALLS.setdefault(loop, set())
 
@@ -77,22 +77,22 @@ async def run_in_thread(callback: Callable[P, T], *args: P.args, **kwargs: P.kwa
 def is_cancelled_task() -> bool:
     """Return whether the running task is being cancelled.
 
-    If not, a CancelledError that comes up to it is one of something that it awaited, or a mistake.
+    If not, a CancelledError that reaches it is that of something it awaited, or a mistake.
     """
     task = asyncio.current_task()
     return task is not None and task.cancelling() > 0
 
 
 async def to_the_end(work: Coroutine[Any, Any, T], raising: BaseException | None = None) -> T:
-    """Return the result of `work`, which goes on even if the caller is cancelled.
+    """Return the result of `work`, which continues even if the caller is cancelled.
 
-    For what has to finish however a task ends, such as closing connections.
+    For work that has to finish however a task ends, such as closing connections.
 
     Args:
-        work: What is run.
-        raising: The exception that the caller raises afterwards. A cancellation does not take its
-            place: a TaskGroup of Python 3.13 that raises the errors of its tasks in a cancelled
-            task cancels this task once more, so that the next ``await`` would lose these errors.
+        work: The work.
+        raising: The exception that the caller raises afterwards. A cancellation does not replace
+            it: a TaskGroup of Python 3.13 that raises its tasks' errors in a cancelled task cancels
+            that task once more, so the next ``await`` would lose these errors.
 
     Raises:
         CancelledError: the caller was cancelled, and `raising` is None or a CancelledError; raised
@@ -124,7 +124,7 @@ async def to_the_end(work: Coroutine[Any, Any, T], raising: BaseException | None
 def spin_before_blocking(
     loop: asyncio.AbstractEventLoop, spin_ns: int, now_ns: Callable[[], int], subject: str
 ) -> Callable[[], None]:
-    """Make `loop` poll for events for a while before its thread sleeps.
+    """Make `loop` poll for events for a while before its thread blocks.
 
     Args:
         loop: An event loop of asyncio's own.
@@ -136,7 +136,7 @@ def spin_before_blocking(
         A function that undoes it.
 
     Raises:
-        RuntimeError: the loop is of another kind, or spins already.
+        RuntimeError: the loop is of another kind, or already spins.
     """
     selector = getattr(loop, "_selector", None)
     if not isinstance(selector, selectors.BaseSelector):

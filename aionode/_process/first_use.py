@@ -1,4 +1,4 @@
-"""Public names of a package that are imported on first use: few programs need all of them."""
+"""Lazy import of a package's public names, as few programs need all of them."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["imported_on_first_use"]
 def imported_on_first_use(
     package: str, places: Mapping[str, str], extra: str = "all"
 ) -> Callable[[str], Any]:
-    """Return the ``__getattr__`` of a package, which imports a public name and keeps it.
+    """Create the ``__getattr__`` of a package, which imports a public name and caches it.
 
-    It raises an AttributeError if there is no such name, and a ModuleNotFoundError that says what
-    to install if a library is missing.
+    It raises AttributeError for an unknown name, and a ModuleNotFoundError that says what to
+    install if a library is missing.
 
     Args:
         package: The name of the package.

@@ -1,4 +1,4 @@
-"""One call that waits for its time."""
+"""A single delayed call."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Later"]
 
 
 class Later:
-    """A call that the running event loop makes in a while, unless it is cancelled before."""
+    """A delayed call in the running event loop, which can be replaced or cancelled."""
 
     __slots__ = ("_timer",)
 
@@ -21,11 +21,11 @@ class Later:
 
     @property
     def waits(self) -> bool:
-        """Whether there is such a call."""
+        """Whether a call is pending."""
         return self._timer is not None
 
     def call(self, delay_s: float, action: Callable[[], object]) -> None:
-        """Call `action` in so many seconds, in place of what waits."""
+        """Call `action` after a delay, instead of a pending call."""
         self.cancel()
 
         def run() -> None:
@@ -35,7 +35,7 @@ class Later:
         self._timer = asyncio.get_running_loop().call_later(delay_s, run)
 
     def cancel(self) -> None:
-        """Call nothing any more."""
+        """Cancel the pending call, if any."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None

@@ -1,30 +1,30 @@
 """An event loop that lends itself to other threads while its own thread sleeps.
 
-To hand work to a loop in another thread takes two wake-ups: of that thread, and, as it needs the
-interpreter, of the one that holds it. While the loop sleeps, nothing that belongs to it is used, so
-another thread may as well do the work itself. `LendableLoop.borrow` is how it asks; whatever
-belongs to the thread of the loop belongs to the borrower until `LendableLoop.give_back`.
+Handing work to a loop in another thread takes two wake-ups: of that thread and, since it needs the
+interpreter, of the one that holds the GIL. While the loop sleeps, nothing of it is in use, so
+another thread may as well do the work itself. It asks with `LendableLoop.borrow`; whatever belongs
+to the loop's thread belongs to the borrower until `LendableLoop.give_back`.
 
-A thread that waits for what the loop will read can go further, and wait for the loop's descriptors
-itself: `LendableLoop.readers`.
+A thread that waits for something the loop will read can go further and wait for the loop's
+descriptors itself: `LendableLoop.readers`.
 
 Between `LendableLoop.borrow` and `LendableLoop.give_back`, and between `Readers.begin` and
-`Readers.end`, the thread *holds* the loop: nothing else of it runs until the thread lets go. Python
-runs code of others between any two bytecodes of that thread all the same:
+`Readers.end`, the thread *holds* the loop: nothing else of it runs until the thread releases it.
+Even so, Python may run other code between any two bytecodes of that thread:
 
-- *A handler of a signal*, in the main thread. It may call what any thread may call at any time:
-  `call_soon_threadsafe`, whose callback runs once the loop is let go; `Readers.rouse`, which never
-  waits; `borrow` and `begin`, which answer False. It must wait for nothing that needs the loop,
-  which would be a wait for the thread that it has interrupted.
-- *An exception out of a handler*. Work that it leaves half done stays half done, but the loop is
-  let go if a ``finally`` does that. That is not enough in all places: an exception before the
-  ``try``, or at the first bytecode of `give_back` or `end` itself, leaves the loop held for ever.
-  So the main thread calls `borrow` and `begin` only while no handler is installed that may raise.
-- *The garbage collector*, in any thread: finalizers and callbacks of weak references. For them
-  holds what holds for handlers. What they raise, Python prints, and it goes no further.
+- *A signal handler*, in the main thread. It may call what any thread may call at any time:
+  `call_soon_threadsafe`, whose callback runs once the loop is released; `Readers.rouse`, which
+  never blocks; `borrow` and `begin`, which return False. It must not wait for anything that needs
+  the loop, since it would wait for the thread that it has interrupted.
+- *An exception from a handler*. Work that it interrupts stays half done, but the loop is released
+  if a ``finally`` does so. That is not always enough: an exception before the ``try``, or at the
+  first bytecode of `give_back` or `end` itself, leaves the loop held for ever. So the main thread
+  calls `borrow` and `begin` only while no handler that may raise is installed.
+- *The garbage collector*, in any thread: finalizers and weak reference callbacks. The rules for
+  handlers apply to them too. Python prints what they raise, and it does not propagate.
 
-`rclpy._impl.uninterrupted` keeps these rules for programs of rclpy, whose threads, handlers
-and finalizers know nothing of them.
+`rclpy._impl.uninterrupted` enforces these rules for rclpy programs, whose threads, handlers and
+finalizers know nothing of them.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ if TYPE_CHECKING:
 __all__ = ["LendableLoop", "Readers"]
 
 LONGEST_WAIT_S = 3600.0
-"""Longest wait for descriptors."""
+"""Maximum wait for descriptors."""
 
 LONGEST_END_S = 1.0
-"""Longest time for which closing a loop waits for the thread that polls in its place."""
+"""How long closing a loop waits for the thread that polls in its place."""
 
 Ts = TypeVarTuple("Ts")
 
@@ -63,16 +63,16 @@ class HasFileno(Protocol):
 class LendableLoop(asyncio.SelectorEventLoop):
     """An event loop that other threads may borrow while it waits for events.
 
-    Work for a borrower is short, and of the kind that a callback of the loop does. For the
-    borrower this is the running loop meanwhile, also if its thread runs one of its own.
+    A borrower's work must be short, like that of a callback of the loop. Meanwhile this is the
+    running loop for the borrower, even if its thread runs its own loop.
 
     Attributes:
-        readers: The descriptors of `add_reader`, to wait for in place of the loop; None where the
-            system has no epoll.
+        readers: The descriptors of `add_reader`, which another thread may wait for in place of the
+            loop; None if the system has no epoll.
     """
 
     def __init__(self) -> None:
-        # Held by the thread of the loop except while it waits for events, and by the borrower.
+        # Held by the loop's thread except while it waits for events, and by the borrower.
         self._owned = Lock()
         self._owned.acquire()
         self._lends = True
@@ -91,11 +91,11 @@ class LendableLoop(asyncio.SelectorEventLoop):
         self._lends = not enabled
 
     def borrow(self) -> bool:
-        """Take the loop if it sleeps and no other thread has it. Never waits.
+        """Borrow the loop if it is sleeping and no other thread has it; never blocks.
 
         Returns:
-            Whether the caller has it. Then it has to call `give_back` soon: until then the loop
-            does not wake up. Always False in asyncio's debug mode, which checks threads.
+            Whether the caller has it and must call `give_back` soon, as the loop does not wake up
+            until then. Always False in asyncio's debug mode, which checks threads.
         """
         if not self._lends or not self._owned.acquire(blocking=False):
             return False
@@ -105,16 +105,16 @@ class LendableLoop(asyncio.SelectorEventLoop):
         return True
 
     def give_back(self) -> None:
-        """End what `borrow` began; the loop wakes up if the borrower has given it work."""
+        """Return the borrowed loop; it wakes up if the borrower has given it work."""
         asyncio._set_running_loop(self._loop_of_borrower)
         has_news, self._has_news = self._has_news, False
         self._is_lent = False
         self._owned.release()
         if has_news:
-            with suppress(RuntimeError):  # it has been closed meanwhile
+            with suppress(RuntimeError):  # closed meanwhile
                 self.call_soon_threadsafe(_only_wake_up)
 
-    # Calls that give the loop work; the loop learns of them when it is given back.
+    # Calls that give the loop work, which it notices when it is given back.
 
     def call_soon(
         self, callback: Callable[[*Ts], object], *args: *Ts, context: Context | None = None
@@ -143,7 +143,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
         super().add_reader(fd, callback, *args)
 
     def remove_reader(self, fd: int | HasFileno) -> bool:
-        """Watch a descriptor no longer, as in any loop."""
+        """Stop watching a descriptor, as in any loop."""
         if self.readers is not None:
             return self.readers._remove(_number_of(fd))
         return super().remove_reader(fd)
@@ -154,7 +154,7 @@ class LendableLoop(asyncio.SelectorEventLoop):
         super().add_writer(fd, callback, *args)
 
     def close(self) -> None:
-        """Close the loop; a thread that waits for its descriptors no longer does."""
+        """Close the loop; a thread that waits for its descriptors stops waiting."""
         if self.readers is not None and not self.is_closed():
             super().remove_reader(self.readers.fileno())
             self.readers._close()
@@ -162,14 +162,14 @@ class LendableLoop(asyncio.SelectorEventLoop):
 
 
 class Readers:
-    """The descriptors that a loop reads, and the wait for them.
+    """The descriptors that a loop reads, and waiting for them.
 
-    One thread at a time may wait in place of the loop: `begin`, then `wait` and `call` again and
-    again, at last `end`. What becomes readable wakes that thread only; the loop goes on with its
-    timers, and with everything else that wakes it. Before and after, the loop reads as any other.
+    One thread at a time may wait in place of the loop: `begin`, then `wait` and `call` repeatedly,
+    finally `end`. Readable descriptors wake only that thread; the loop continues with its timers
+    and everything else that wakes it. Before and after, the loop reads like any other.
     """
 
-    # The loop waits for `_gate`, in which `_epoll` is switched off while another thread waits.
+    # The loop waits for `_gate`, in which `_epoll` is disabled while another thread waits.
 
     def __init__(self, loop: LendableLoop) -> None:
         self._loop = loop
@@ -181,8 +181,8 @@ class Readers:
         self._waiting = Lock()
         self._closing = False
         self._is_gone = False
-        self._rousing: list[None] = []  # an element for each thread that is about to write
-        self._is_event_closed = Lock()  # acquired by who closes it, once
+        self._rousing: list[None] = []  # one element per thread that is about to write
+        self._is_event_closed = Lock()  # acquired once, by whoever closes it
         self._event = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
         self._add(self._event, self._take_event)
 
@@ -191,10 +191,10 @@ class Readers:
         return self._gate.fileno()
 
     def begin(self) -> bool:
-        """Wait for the descriptors in place of the loop from now on, until `end`.
+        """Take over waiting for the descriptors from the loop, until `end`.
 
         Returns:
-            Whether the caller may: no other thread does, and the loop is not being closed.
+            Whether that succeeded: no other thread is waiting, and the loop is not being closed.
         """
         if not self._waiting.acquire(blocking=False):
             return False
@@ -205,14 +205,14 @@ class Readers:
         return True
 
     def wait(self, timeout_s: float | None) -> list[tuple[int, int]]:
-        """Wait until something is readable, or `rouse` is called; with whole milliseconds.
+        """Wait until something is readable or `rouse` is called, with millisecond resolution.
 
         Args:
-            timeout_s: The longest wait in seconds, None for ever; it ends after an hour all the
-                same, as the system has no waits of a month.
+            timeout_s: The longest wait in seconds, None for no limit; it returns after an hour in
+                any case, as the system call cannot wait for a month.
 
         Returns:
-            What `call` takes; empty if the time has passed.
+            The argument for `call`; empty after a timeout.
         """
         return self._epoll.poll(None if timeout_s is None else min(timeout_s, LONGEST_WAIT_S))
 
@@ -220,8 +220,8 @@ class Readers:
         """Borrow the loop and call the callbacks of these descriptors.
 
         Returns:
-            False if the loop is not to be had, or is being closed: end the wait, and the loop does
-            what is left.
+            False if the loop cannot be borrowed or is being closed: end the wait, and the loop does
+            the rest.
         """
         if not readable:
             return not self._closing
@@ -234,17 +234,17 @@ class Readers:
         return not self._closing
 
     def end(self) -> None:
-        """Give the waiting for descriptors back to the loop itself."""
+        """Hand waiting for the descriptors back to the loop."""
         self._gate.modify(self._fd, select.EPOLLIN)
         self._waiting.release()
 
     def rouse(self) -> None:
-        """End the wait of the thread that waits; any thread or signal handler may call this.
+        """Wake the waiting thread; any thread or signal handler may call this.
 
         After the loop is closed it has no effect.
         """
-        # Not to a descriptor that has become another file: the last one that writes closes it. No
-        # lock, as the handler of a signal may be called in the middle, and call this.
+        # The last writer closes the descriptor, so that none writes to one that has become another
+        # file. No lock, as a signal handler may run in the middle and call this.
         self._rousing.append(None)
         try:
             if not self._is_gone:
@@ -263,13 +263,13 @@ class Readers:
             os.eventfd_read(self._event)
 
     def _look(self) -> None:
-        """Read what is readable; in the thread of the loop."""
+        """Handle readable descriptors, in the loop's thread."""
         self._call(self.wait(0))
 
     def _call(self, readable: list[tuple[int, int]]) -> None:
         for fd, _ in readable:
             callback = self._callbacks.get(fd)
-            if callback is None:  # the callback of another one has removed it
+            if callback is None:  # removed by another one's callback
                 continue
             try:
                 callback()
@@ -279,14 +279,14 @@ class Readers:
                 )
 
     def _add(self, fd: int, callback: Callable[[], Any]) -> None:
-        with suppress(FileExistsError):  # then it has another callback from now on
+        with suppress(FileExistsError):  # it only gets a new callback
             self._epoll.register(fd, select.EPOLLIN)
         self._callbacks[fd] = callback
 
     def _remove(self, fd: int) -> bool:
         if self._callbacks.pop(fd, None) is None:
             return False
-        with suppress(OSError):  # it was closed before
+        with suppress(OSError):  # already closed
             self._epoll.unregister(fd)
         return True
 
@@ -296,7 +296,7 @@ class Readers:
         if self._waiting.acquire(timeout=LONGEST_END_S):
             self._epoll.close()
             self._gate.close()
-            self._is_gone = True  # before the look: `rouse` looks in the other order
+            self._is_gone = True  # before the check: `rouse` checks in the opposite order
             self._close_event()
 
 
@@ -305,18 +305,18 @@ def _number_of(fd: int | HasFileno) -> int:
 
 
 def _only_wake_up() -> None:
-    """Do nothing: scheduling it wakes the loop, which then sees its new work."""
+    """Do nothing; scheduling this wakes the loop, which then sees its new work."""
 
 
 class _LendingSelector(selectors.DefaultSelector):
-    """Lets go of a lock while it waits for events."""
+    """Releases a lock while it waits for events."""
 
     def __init__(self, owned: Lock) -> None:
         super().__init__()
         self._owned = owned
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        """Wait for events, without the lock if it may take a while."""
+        """Wait for events, releasing the lock if it may take a while."""
         if timeout is not None and timeout <= 0:
             return super().select(timeout)
         self._owned.release()

@@ -1,4 +1,4 @@
-"""A dict that stays small: it forgets what came first."""
+"""A bounded dict that evicts its oldest key."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ V = TypeVar("V")
 
 
 class Recent(dict[K, V]):
-    """A dict of at most so many keys: a new one takes the place of the one that came first.
+    """A dict with a maximum number of keys: a new key evicts the oldest one.
 
-    What others send can be any number of keys: gids, addresses, ids. `put` enters a key; a value
-    of a key that is there may be set as in any dict, which is quicker.
+    For keys that others choose, such as gids, addresses and ids. `put` adds a key; the value of an
+    existing key may be set as in any dict, which is faster.
 
     Args:
-        most: The number of keys.
+        most: The maximum number of keys.
     """
 
     __slots__ = ("_most",)
@@ -27,7 +27,7 @@ class Recent(dict[K, V]):
         self._most = most
 
     def put(self, key: K, value: V) -> V | None:
-        """Set the value of a key, and return that of the key that is forgotten for it, if any."""
+        """Set the value of a key; return the value of the evicted key, if any."""
         forgotten = None
         if key not in self and len(self) >= self._most:
             forgotten = self.pop(next(iter(self)))

@@ -1,4 +1,4 @@
-"""When what has ended is started again: by which policy, and after which delay."""
+"""Restart policies and delays."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ __all__ = ["Backoff", "doubled", "wants_another"]
 
 
 class Backoff:
-    """The delays between starts: doubled with each failure in a row, up to a limit.
+    """The delays between restarts, doubled with each failure in a row up to a limit.
 
     Args:
         min_delay_sec: The first delay, in seconds.
-        max_delay_sec: The longest delay, in seconds; who has run for so long has not failed "in a
-            row" any more.
+        max_delay_sec: The longest delay, in seconds; a run of at least this length resets the
+            delay.
         subject: Who restarts, for errors.
 
     Raises:
@@ -32,7 +32,7 @@ class Backoff:
         """Count a failure, and return the delay before the next start, in seconds.
 
         Args:
-            ran_sec: How long the last one has run, in seconds; 0 if it did not start.
+            ran_sec: How long the last run took, in seconds; 0 if it did not start.
         """
         if ran_sec > 0 and ran_sec >= self._max_delay_sec:
             self.failed_in_a_row = 0
@@ -42,8 +42,8 @@ class Backoff:
 
 
 def doubled(first: float, failures: int, longest: float) -> float:
-    """Return a delay that grows with each failure before it, up to a limit."""
-    # The exponent is bounded: 2.0**1024 overflows, after a week of failures.
+    """Return the delay after a number of failures, doubled with each up to a limit."""
+    # The exponent is bounded, since 2.0**1024 would overflow after a week of failures.
     return min(longest, first * 2.0 ** min(failures, 64))
 
 

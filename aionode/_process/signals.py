@@ -1,4 +1,4 @@
-"""SIGINT, SIGTERM and SIGHUP: the first ends the program in order, a later one at once."""
+"""SIGINT, SIGTERM and SIGHUP: the first one shuts the program down, a later one ends it at once."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 __all__ = ["signals_to"]
 
 SAME_SEC: Final = 1.0
-"""Signals within this time after the first count as the first, of whichever kind they are.
+"""Further signals of any kind within this time after the first are ignored.
 
 GNU ``timeout``, ``ros2 launch`` and other parents forward a signal that the whole process group has
-got already.
+already received.
 """
 
 
@@ -31,10 +31,10 @@ got already.
 def signals_to(stop: Callable[[], object]) -> Iterator[None]:
     """Call `stop` at the first SIGINT, SIGTERM or SIGHUP, and end the process at a later one.
 
-    Those within a second of the first count as the first. SIGHUP is taken only where it would end
-    the process: it is left alone if it is ignored, as under ``nohup``, or has a handler.
+    Further ones within a second of the first are ignored. SIGHUP is handled only if it would end
+    the process, so not if it is ignored, as under ``nohup``, or has a handler.
 
-    The handlers are Python's and not the event loop's, so that they run even while a callback
+    The handlers are Python's rather than the event loop's, so that they run even while a callback
     blocks the loop. Outside the main thread nothing is installed, as signals do not arrive there.
     """
     if threading.current_thread() is not threading.main_thread():
@@ -49,7 +49,7 @@ def signals_to(stop: Callable[[], object]) -> Iterator[None]:
 
 
 def ending_signals() -> list[signal.Signals]:
-    """Return which signals end a program."""
+    """Return the signals that end a program."""
     numbers = [signal.SIGINT, signal.SIGTERM]
     if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is signal.SIG_DFL:
         numbers.append(signal.SIGHUP)
@@ -79,7 +79,7 @@ class EndHandler:
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         """Handle a signal."""
-        if os.getpid() != self._pid:  # a forked child, which `aionode.run` does not run
+        if os.getpid() != self._pid:  # a forked child, in which `aionode.run` is not running
             self._restore(number)
             signal.raise_signal(number)
         elif number in self._woken:
@@ -97,11 +97,11 @@ class EndHandler:
             interrupt_main(signal.Signals(self._first))
 
     def _restore(self, number: int) -> None:
-        """Set the handler that was there before, unless the program has set its own meanwhile."""
+        """Restore the previous handler, unless the program has set its own meanwhile."""
         current: object = signal.getsignal(number)
         if current is self:
             before = self._before[number]
-            # None stands for one that was not set by Python, which cannot set it again.
+            # None means a handler not set from Python, which Python cannot restore.
             signal.signal(number, signal.SIG_DFL if before is None else before)
 
     def close(self) -> None:
@@ -112,25 +112,25 @@ class EndHandler:
 
 
 class SuddenEnd:
-    """Ends the process within 0.2 s: threads cannot be cancelled, and may run for any time.
+    """Ends the process within 0.2 s, as threads cannot be cancelled and may run for any time.
 
-    The main thread sends the last messages. Another thread ends the process when the time is over,
-    whatever the main thread is doing then.
+    The main thread sends the last messages. Another thread ends the process when the time is up,
+    whatever the main thread is doing.
 
     Args:
-        number: The signal that asks for it.
+        number: The signal that caused it.
     """
 
     def __init__(self, number: int) -> None:
         self._number = signal.Signals(number)
         self._messages = LastMessages(number)
-        self._leaving = _thread.allocate_lock()  # acquired by the thread that leaves, once
+        self._leaving = _thread.allocate_lock()  # acquired once, by the thread that exits
 
     def begin(self, handler: EndHandler, frame: FrameType | None) -> None:
-        """Begin, called by `handler`, which is not needed any more."""
+        """Start ending; called by `handler`, which is not needed any more."""
         for number in signal.valid_signals():
             if signal.getsignal(number) is handler:
-                signal.signal(number, signal.SIG_IGN)  # a third one has nothing to add
+                signal.signal(number, signal.SIG_IGN)  # a third signal has nothing to add
         signal.signal(self._number, self._on_signal)
         start_thread(self._leave_in_time)
         self._on_signal(self._number, frame)
@@ -144,7 +144,7 @@ class SuddenEnd:
         self._leave()
 
     def _leave(self) -> None:
-        if self._leaving.acquire(blocking=False):  # the first of both threads
+        if self._leaving.acquire(blocking=False):  # the first of the two threads
             name = self._number.name
             text = f"aionode: ended at once by a second signal ({name})\n"
             print_error(self._messages.failure + text)

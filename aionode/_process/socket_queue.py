@@ -1,4 +1,4 @@
-"""Counts the bytes that wait in a socket."""
+"""Counts the unacknowledged bytes in a socket."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["queued_bytes"]
 
 
 def queued_bytes(one: socket.socket) -> int:
-    """Return how many sent bytes the other end has not acknowledged; 0 if the system hides them.
+    """Return how many sent bytes the other end has not acknowledged; 0 if unknown.
 
     Raises:
         OSError: the socket is closed.

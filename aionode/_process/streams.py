@@ -1,4 +1,4 @@
-"""Standard output and error streams that are not read, or cannot be written to."""
+"""Standard output and error streams that nobody reads or that cannot be written."""
 
 from __future__ import annotations
 
@@ -29,24 +29,25 @@ CHECK_S = 0.01
 """Time between two checks of the descriptors, in seconds."""
 
 FULL_CHECKS = 20
-"""Checks in a row that must find a descriptor full before it is discarded."""
+"""Consecutive checks that must find a descriptor full before it is discarded."""
 
 
 def standard() -> set[int]:
     """Return the descriptors of standard output and error.
 
-    One that was closed when the process started may have become a file or socket of the program.
+    One that was closed when the process started may since have become a file or socket of the
+    program.
     """
     descriptors = set()
     for stream in (sys.__stdout__, sys.__stderr__):
         if stream is not None:
-            with suppress(OSError, ValueError):  # it was closed meanwhile, or replaced
+            with suppress(OSError, ValueError):  # closed or replaced meanwhile
                 descriptors.add(stream.fileno())
     return descriptors
 
 
 def accepts(descriptor: int) -> bool:
-    """Whether a write to a descriptor would not block; True if that cannot be determined."""
+    """Return whether a write to a descriptor would not block; True if unknown."""
     if not hasattr(select, "poll"):
         return True
     poll = select.poll()
@@ -55,9 +56,9 @@ def accepts(descriptor: int) -> bool:
 
 
 def is_lost(descriptor: int) -> bool:
-    """Whether nobody can ever read what is written to a descriptor: each write is an error.
+    """Return whether nobody can ever read what is written to a descriptor, so that writes fail.
 
-    So it is with a pipe without a reader (EPIPE), and a terminal that was closed (EIO).
+    That is so for a pipe without a reader (EPIPE) and a closed terminal (EIO).
     """
     if not hasattr(select, "poll"):
         return False
@@ -69,8 +70,8 @@ def is_lost(descriptor: int) -> bool:
 def discard_lost() -> None:
     """Redirect standard streams that nobody can read any more to the null device.
 
-    Otherwise a line that a program prints before its last message would raise an error, and the
-    message would never be sent.
+    Otherwise a print before a program's last message would raise, and the message would never be
+    sent.
     """
     for descriptor in standard():
         if is_lost(descriptor):
@@ -78,7 +79,7 @@ def discard_lost() -> None:
 
 
 def discard(stream: TextIO | int) -> None:
-    """Redirect a stream, or a descriptor, to the null device.
+    """Redirect a stream or descriptor to the null device.
 
     Buffered text is lost too, so that Python's own flush at exit does not fail.
     """
@@ -94,8 +95,8 @@ def discard(stream: TextIO | int) -> None:
 def open_missing() -> None:
     """Open the null device for standard streams that were closed when the process started.
 
-    Otherwise the first sockets of the process would get their descriptors, and Python has None in
-    their place.
+    Otherwise the process's first sockets would get their descriptors; Python itself has None in
+    place of such a stream.
     """
     for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
         if getattr(sys, name) is None:
@@ -107,11 +108,11 @@ def open_missing() -> None:
 
 
 class UnreadWatch:
-    """Keeps a process that is ending from blocking on output that is not being read.
+    """Keeps a process that is ending from blocking on output that nobody reads.
 
-    A write to a full pipe, or to a stopped terminal, blocks the whole event loop. After `start`, a
-    thread redirects a standard stream that has accepted nothing for 0.2 s to the null device, and
-    one that nobody can read any more within 10 ms; what is written to it is lost.
+    A write to a full pipe or a stopped terminal blocks the whole event loop. After `start`, a
+    thread redirects to the null device a standard stream that has accepted nothing for 0.2 s, and
+    within 10 ms one that nobody can read any more; what is written to it is lost.
 
     Args:
         wake: Called in that thread to interrupt a blocked write in the main thread, which then
@@ -121,14 +122,14 @@ class UnreadWatch:
     def __init__(self, wake: Callable[[], object]) -> None:
         self._wake = wake
         self._ended = threading.Event()
-        self._waking = threading.Lock()  # held while waking: no signal may come after `stop`
+        self._waking = threading.Lock()  # held while waking, so that no signal comes after `stop`
 
     def start(self) -> None:
         """Start checking; signal handlers may call this."""
         discard_lost()
         # `Thread.start` takes locks that the interrupted thread may hold. The process does not wait
         # for this thread at exit.
-        with suppress(RuntimeError):  # the system has no more threads
+        with suppress(RuntimeError):  # the system is out of threads
             _thread.start_new_thread(self._check, ())
 
     def stop(self) -> None:
@@ -153,7 +154,7 @@ class UnreadWatch:
 
 
 def interrupt_main(number: signal.Signals) -> None:
-    """Send the main thread a signal, which interrupts the system call that it is blocked in."""
+    """Send the main thread a signal, which interrupts a blocking system call."""
     main = threading.main_thread().ident
     if main is not None and hasattr(signal, "pthread_kill"):
         signal.pthread_kill(main, number)

@@ -1,15 +1,14 @@
-"""The last messages of a process that ends, or is suspended, without the ends of its nodes.
+"""The last messages of a process that exits or is suspended without shutting its nodes down.
 
-Two kinds of functions are called, in this order: those of `STOPS` send the stop of each open lease,
-those of `SENDS` hand what was published to the operating system.
+Two lists of functions are called, in this order: `STOPS` send the stops of open leases, and `SENDS`
+hand published messages to the operating system.
 
-It begins with a signal: the second one that asks for the end, or Ctrl-Z while a lease is open. Its
-handler runs in the main thread, between any two steps of what that thread does, and what it has
-interrupted does not go on meanwhile. So the handler looks first whether that is a publisher or
-transport: a socket may have a part of a frame, and the connection does not know it yet. Such a step
-is over soon, and the signal is sent once more after it. At any other moment the main thread may
-publish and send as in a callback, and holds no lock of those. When the interpreter exits, the stops
-alone are sent.
+It starts with a signal: the second request to end, or Ctrl-Z while a lease is open. The handler
+runs in the main thread, between any two bytecodes, and the interrupted code does not continue
+meanwhile. So the handler first checks whether that code is a publisher or transport: a socket may
+hold part of a frame that the connection does not know of yet. Such a step is over soon, and the
+signal is sent again after it. At any other moment the main thread may publish and send as in a
+callback, and holds none of their locks. When the interpreter exits, only the stops are sent.
 """
 
 from __future__ import annotations
@@ -43,51 +42,52 @@ __all__ = [
 ]
 
 LIMIT_NS: Final = 200_000_000
-"""Longest time that sending takes, in nanoseconds."""
+"""Maximum time for sending, in nanoseconds."""
 
 STEP_NS: Final = 50_000_000
-"""Longest time for a publisher or transport to finish a step that a signal has interrupted, in
-nanoseconds."""
+"""Maximum time for a publisher or transport to finish a step that a signal interrupted, in
+nanoseconds.
+"""
 
 AGAIN_SEC: Final = 0.001
-"""After how long the signal is sent once more that has interrupted such a step."""
+"""After how long a signal that interrupted such a step is sent again."""
 
 STOPS: list[Callable[[], bool]] = []
-"""Send the stop of each open lease, and return whether there was one.
+"""Functions that send the stops of open leases, and return whether there were any.
 
-They are called in the main thread, perhaps more than once. They wait neither for the event loop,
-which stands still, nor for other threads, which have the rest of the time.
+They are called in the main thread, perhaps repeatedly. They wait neither for the event loop, which
+stands still, nor for other threads, which get the rest of the time.
 """
 
 SENDS: list[Callable[[int], bool]] = []
-"""Hand what was published to the operating system, until a time of `perf_ns` at most.
+"""Functions that hand published messages to the operating system, until a time of `perf_ns`.
 
 They are called in the main thread, whose event loop stands still, and return whether other threads,
 such as Zenoh's, need the rest of the time.
 """
 
 LIBRARY: Final = sys.stdlib_module_names | {"aionode", "rclpy", "uvloop"}
-"""The code between a callback and the transport that has called it."""
+"""The code between a callback and the transport that called it."""
 
 SENDING: Final[list[str]] = []
-"""The packages of publishers and transports, which say so themselves: see `mark_sending`."""
+"""The packages of publishers and transports, which register themselves: see `mark_sending`."""
 
 
 def mark_sending(package: str) -> None:
     """Forbid sending from a signal handler that interrupts a module of `package`.
 
-    Its own ``__init__`` says so, and keeps saying it wherever the package moves. It is for code
-    that a signal can leave in the middle of a message: between the number of a message and its
-    bytes, or with a part of a frame in a socket.
+    A package's own ``__init__`` calls it, so that it stays true when the package moves. It is for
+    code that a signal can interrupt in the middle of a message: between numbering a message and
+    writing its bytes, or with part of a frame in a socket.
     """
     SENDING.append(f"{package}.")
 
 
 def is_sending(frame: FrameType | None) -> bool:
-    """Return whether `frame`, which a signal interrupted, is within a publisher or transport.
+    """Return whether `frame`, which a signal interrupted, is inside a publisher or transport.
 
-    Their callers are of no interest: a callback that blocks the loop was called by a transport too,
-    and interrupted in the user's code.
+    Callers further up do not count: a callback that blocks the loop was called by a transport too,
+    but interrupted in the user's code.
     """
     while frame is not None:
         module = frame.f_globals.get("__name__", "aionode")  # generated code has no name
@@ -100,14 +100,14 @@ def is_sending(frame: FrameType | None) -> bool:
 
 
 class LastMessages:
-    """The last messages, sent within 0.2 s by the handler of one signal.
+    """The last messages, sent within 0.2 s by a signal handler.
 
     Args:
         number: The signal.
 
     Attributes:
-        ends_ns: When the time is over, by `perf_ns`.
-        failure: What has failed, as text for users.
+        ends_ns: When the time is up, by `perf_ns`.
+        failure: What failed, as text for users.
     """
 
     def __init__(self, number: int) -> None:
@@ -118,14 +118,13 @@ class LastMessages:
         self.failure = ""
 
     def send(self, frame: FrameType | None) -> bool:
-        """Send them, and give other threads the rest of the time.
+        """Send them, and leave other threads the rest of the time.
 
         Args:
-            frame: What the signal has interrupted.
+            frame: What the signal interrupted.
 
-        Returns:
-            Whether this call has done so: not if another one does, nor if `frame` is within a
-            publisher or transport. Then the signal comes again.
+        Returns: Whether this call did so: not if another one is at it, nor if `frame` is inside a
+        publisher or transport. In that case the signal is sent again.
         """
         if self._has_begun:
             return False
@@ -142,7 +141,7 @@ class LastMessages:
     def _call(self, function: Callable[..., bool], *args: int) -> bool:
         try:
             return function(*args)
-        except Exception:  # noqa: BLE001  # printed: nobody could catch it, and the others come first
+        except Exception:  # noqa: BLE001  # printed, as nobody could catch it and the others come first
             self.failure += traceback.format_exc()
             return True
 
@@ -151,13 +150,13 @@ class LastMessages:
         interrupt_main(self._number)
 
     def wait(self) -> None:
-        """Wait until the time is over."""
+        """Wait until the time is up."""
         while (left_ns := self.ends_ns - perf_ns()) > 0:
             threading.Event().wait(left_ns / 1e9)
 
 
 def start_thread(work: Callable[[], object]) -> None:
-    """Start a thread from a signal handler, unless the system has no more.
+    """Start a thread from a signal handler, unless the system is out of threads.
 
     `threading.Thread.start` takes locks that the interrupted thread may hold.
     """
@@ -166,8 +165,8 @@ def start_thread(work: Callable[[], object]) -> None:
 
 
 def print_error(text: str) -> None:
-    """Write to stderr, unless nobody reads it: the process must go on to its end."""
-    if sys.__stderr__ is None:  # it was closed at the start, and descriptor 2 is something else now
+    """Write to stderr, unless nobody reads it, as the process must go on to its end."""
+    if sys.__stderr__ is None:  # closed at the start; descriptor 2 is something else now
         return
     with contextlib.suppress(OSError, ValueError):
         descriptor = sys.__stderr__.fileno()
@@ -177,9 +176,9 @@ def print_error(text: str) -> None:
 
 @atexit.register
 def stop_at_exit() -> None:
-    """Send the stop of leases that are still open: nothing has ended their blocks.
+    """Send the stops of leases that are still open, as nothing has ended their blocks.
 
-    So it is after a second or third Ctrl-C in a program that `aionode.run` does not run.
+    That is so after a second or third Ctrl-C in a program not run by `aionode.run`.
     """
     sent = [stop() for stop in STOPS]
     if any(sent):

@@ -1,4 +1,4 @@
-"""Ctrl-Z at a program with open leases: their stops are sent before it is suspended."""
+"""Ctrl-Z in a program with open leases: their stops are sent before it is suspended."""
 
 from __future__ import annotations
 
@@ -15,34 +15,34 @@ __all__ = ["SuspensionHandler", "suspension"]
 
 
 class SuspensionHandler:
-    """The handler of SIGTSTP while leases are open; without one the program has none of ours.
+    """The handler of SIGTSTP, installed only while leases are open.
 
-    It is there only where SIGTSTP would suspend the process, and only while an event loop of the
-    main thread has a lease: Python calls handlers, and sets them, in that thread.
+    It is installed only if SIGTSTP would suspend the process, and only for leases of an event loop
+    in the main thread, where Python sets and calls handlers.
     """
 
     def __init__(self) -> None:
         self._messages: LastMessages | None = None
 
     def install(self) -> None:
-        """Handle SIGTSTP from now on: a lease is open. Again is the same as once."""
+        """Handle SIGTSTP from now on, as a lease is open; calling it again has no effect."""
         if is_main_thread() and signal.getsignal(signal.SIGTSTP) is signal.SIG_DFL:
             signal.signal(signal.SIGTSTP, self)
 
     def remove(self) -> None:
-        """Leave SIGTSTP alone: no lease is open."""
+        """Stop handling SIGTSTP, as no lease is open."""
         if is_main_thread() and signal.getsignal(signal.SIGTSTP) is self:
             signal.signal(signal.SIGTSTP, signal.SIG_DFL)
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
-        """Send the stops and what was published, and suspend the process."""
+        """Send the stops and published messages, then suspend the process."""
         if self._messages is None:
             self._messages = LastMessages(number)
         if self._messages.send(frame):
             failure, self._messages = self._messages.failure, None
             print_error(failure)
             signal.signal(number, signal.SIG_DFL)
-            signal.raise_signal(number)  # it returns when the process goes on
+            signal.raise_signal(number)  # returns when the process continues
             signal.signal(number, self)
 
 

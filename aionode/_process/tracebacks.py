@@ -19,19 +19,19 @@ TRACEBACK_VARIABLE = "AIONODE_TRACEBACK"
 LIBRARY = Path(__file__).parents[1]
 EXAMPLES = LIBRARY / "examples"
 GENERATED = re.compile(r"<(snapshot of|encode|write|decode|read|construct) [\w/]+>")
-"""How the functions are named that are generated for message types."""
+"""The names of functions generated for message types."""
 STANDARD_LIBRARY = Path(os.__file__).parent
 
 
 def is_whole() -> bool:
-    """Return whether tracebacks show aionode's own lines: the environment asks for it."""
+    """Return whether the environment asks for aionode's own lines in tracebacks."""
     return bool(os.environ.get(TRACEBACK_VARIABLE))
 
 
 def traceback_text(error: BaseException) -> str:
-    """Return the traceback of an exception, and of those that led to it, as Python prints it.
+    """Format the traceback of an exception, and of those that led to it, like Python.
 
-    Without aionode's own lines, unless `is_whole`, or unless nothing else would be left.
+    It omits aionode's own lines, unless `is_whole` or nothing else would be left.
     """
     shown = traceback.TracebackException.from_exception(error)
     if not is_whole():
@@ -40,7 +40,7 @@ def traceback_text(error: BaseException) -> str:
 
 
 def hide_library(shown: traceback.TracebackException) -> None:
-    """Take aionode's own lines out of a traceback, and out of those that belong to it."""
+    """Remove aionode's own lines from a traceback and its related ones."""
     kept = [line for line in shown.stack if not is_of_library(line.filename)]
     if kept:
         shown.stack[:] = kept
@@ -51,14 +51,14 @@ def hide_library(shown: traceback.TracebackException) -> None:
 
 
 def is_of_library(filename: str) -> bool:
-    """Whether a source file, or what takes its place, is aionode's own; examples are programs."""
+    """Return whether a source file, or what takes its place, is aionode's own; examples are not."""
     folders = Path(filename).parents
     is_own = LIBRARY in folders and EXAMPLES not in folders
     return is_own or GENERATED.fullmatch(filename) is not None
 
 
 def is_of_user(frame: FrameType) -> bool:
-    """Whether a frame belongs neither to aionode nor to Python's standard library."""
+    """Return whether a frame belongs neither to aionode nor to Python's standard library."""
     filename = frame.f_code.co_filename
     path = Path(filename)
     installed = "site-packages" in path.parts
