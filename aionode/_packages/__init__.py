@@ -1,7 +1,7 @@
-"""Packages of ROS 2: where a package lies, what it can start, and by which command.
+"""ROS 2 packages: where they are, which executables they have, and how to start them.
 
-A folder with a ``package.xml`` is a package as it is, without a build; packages that are installed
-(AMENT_PREFIX_PATH, or pip in this environment) are found after those of the workspace.
+A folder with a ``package.xml`` is a package as is, without a build; installed packages
+(AMENT_PREFIX_PATH, or pip in this environment) are looked up after those of the workspace.
 """
 
 from __future__ import annotations

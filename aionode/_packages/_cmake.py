@@ -1,4 +1,4 @@
-"""Reads what a CMakeLists.txt installs as files, and runs nothing of it."""
+"""Reads which files a CMakeLists.txt installs, without running it."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from typing import Final, NamedTuple
 __all__ = ["MAX_FILES", "Install", "installs_of", "matching"]
 
 MAX_FILES: Final = 10_000
-"""Most files and words of one rule that are looked at."""
+"""Maximum files and words of one rule that are read."""
 
 MAX_FOLDERS: Final = 300
-"""Most folders of a package whose CMakeLists.txt are read."""
+"""Maximum folders of a package whose CMakeLists.txt is read."""
 
 MAX_BYTES: Final = 1_000_000
-"""Most bytes of a CMakeLists.txt that are read."""
+"""Maximum size of a CMakeLists.txt, in bytes."""
 
 MAX_WORD: Final = 4096
-"""Longest word, in characters: a path; variables that stand for one another grow without bound."""
+"""Maximum length of a word, as variables that refer to each other grow without bound."""
 
 COMMAND: Final = re.compile(r"(\w+)\s*\(([^()]*)\)")
 WORD: Final = re.compile(r'"([^"]*)"|([^\s;"]+)')
@@ -33,7 +33,7 @@ KEYWORDS: Final = frozenset(
         *("FILES_MATCHING", "PATTERN", "REGEX", "EXCLUDE", "EXCLUDE_FROM_ALL", "MESSAGE_NEVER"),
     }
 )
-"""The words of ``install`` that end the list of files."""
+"""The keywords of ``install`` that end the list of files."""
 
 
 class Install(NamedTuple):
@@ -41,9 +41,9 @@ class Install(NamedTuple):
 
     Attributes:
         source: The file or folder.
-        folder: The folder into which it comes, below the prefix.
-        name: Its name there; nothing for a folder whose content alone comes there.
-        is_program: Whether it is installed to be executed.
+        folder: The destination folder, below the prefix.
+        name: Its name there; empty for a folder of which only the content is installed.
+        is_program: Whether it is installed as an executable.
     """
 
     source: Path
@@ -53,10 +53,10 @@ class Install(NamedTuple):
 
 
 def installs_of(folder: Path, package: str) -> Iterator[Install]:
-    """Yield what the CMakeLists.txt of a package installs as files and folders.
+    """Yield the files and folders that a package's CMakeLists.txt installs.
 
-    Variables are followed that it sets by lists of words and patterns of files, and the folders of
-    the package that it adds by ``add_subdirectory``.
+    Variables set to lists of words or file patterns are followed, and so are folders of the package
+    added by ``add_subdirectory``.
     """
     variables = {
         "PROJECT_NAME": [package],
@@ -72,7 +72,7 @@ def installs_of(folder: Path, package: str) -> Iterator[Install]:
 def installs_in(
     folder: Path, variables: dict[str, list[str]], seen: set[Path]
 ) -> Iterator[Install]:
-    """Yield what the CMakeLists.txt of one folder installs, and those of folders that it adds."""
+    """Yield what a folder's CMakeLists.txt installs, and those of the folders that it adds."""
     seen.add(folder)
     try:
         with (folder / "CMakeLists.txt").open(encoding="utf-8", errors="replace") as file:
@@ -99,7 +99,7 @@ def installs_in(
 
 
 def words_of(text: str, variables: dict[str, list[str]]) -> Iterator[str]:
-    """Yield the words of a command, its variables replaced."""
+    """Yield the words of a command, with variables replaced."""
     for quoted, plain in WORD.findall(text):
         whole = VARIABLE.fullmatch(plain)
         if whole is not None:
@@ -109,7 +109,7 @@ def words_of(text: str, variables: dict[str, list[str]]) -> Iterator[str]:
 
 
 def replaced(word: str, variables: dict[str, list[str]]) -> str:
-    """Return a word with the values of its variables; unknown ones stay."""
+    """Replace the variables in a word; unknown ones are kept."""
     return VARIABLE.sub(
         lambda match: ";".join(variables.get(match[1], [match[0]]))[:MAX_WORD], word
     )
@@ -129,18 +129,18 @@ def globbed(folder: Path, patterns: list[str], *, deep: bool) -> list[str]:
 
 
 def matching(folder: Path, pattern: str) -> list[str]:
-    """Return the files below a folder that a pattern fits, as `glob.glob` names them."""
-    import glob  # not for those who start nothing by its package
+    """Return the files below a folder that match a pattern, named like `glob.glob` does."""
+    import glob  # not needed by most programs
 
     within = pattern.removeprefix(f"{folder}/")
     if within.startswith("/") or ".." in within.split("/"):
-        return []  # all the disk could be searched
-    found = glob.iglob(within, root_dir=folder, recursive=True)  # noqa: PTH207  # Path.glob names hidden files
+        return []  # could search the whole disk
+    found = glob.iglob(within, root_dir=folder, recursive=True)  # noqa: PTH207  # Path.glob includes hidden files
     return sorted(islice(found, MAX_FILES))
 
 
 def install_of(kind: str, words: list[str], folder: Path) -> Iterator[Install]:
-    """Yield what one ``install`` names."""
+    """Yield what one ``install`` command installs."""
     end = next((at for at, word in enumerate(words) if word in KEYWORDS), len(words))
     files, rest = words[:end], words[end:]
     options = dict(pairwise(rest))

@@ -1,4 +1,4 @@
-"""The executables of a package, from its source folder or from its installation."""
+"""The executables of a package, from its source folder or its installation."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Executable(NamedTuple):
         name: Its name.
         target: Its file, or the function that it calls: ``module:function``.
         root: The folder with the Python modules of its package, if the target is a function.
-        is_standard: Whether it is a program of aionode: the target is its module.
+        is_standard: Whether it is one of aionode's programs; the target is its module.
     """
 
     package: str
@@ -37,10 +37,10 @@ class Executable(NamedTuple):
     is_standard: bool = False
 
     def command(self, *options: str) -> list[str]:
-        """Return the command that starts it; its own arguments follow.
+        """Return the command that starts it, without its own arguments.
 
         Args:
-            *options: Options of ``python -m aionode.rclpy``, which an executable in Python gets.
+            *options: Options of ``python -m aionode.rclpy``, for executables in Python.
         """
         if self.is_standard:
             return [sys.executable, "-m", "aionode.programs", self.package, self.name]
@@ -51,7 +51,7 @@ class Executable(NamedTuple):
 
 
 def executables_in(folder: Path, package: str) -> dict[str, Executable]:
-    """Return the executables of a package from its source folder, by their names."""
+    """Return the executables in a package's source folder, by name."""
     executables = {
         name: Executable(package, name, str(file))
         for name, file in scripts(folder, package).items()
@@ -63,7 +63,7 @@ def executables_in(folder: Path, package: str) -> dict[str, Executable]:
 
 
 def installed_executables(prefix: Path, package: str) -> dict[str, Executable]:
-    """Return the executables of a package that is installed below a folder, by their names."""
+    """Return the executables of a package installed below a folder, by name."""
     folder = prefix / "lib" / package
     files = sorted(folder.iterdir()) if folder.is_dir() else []
     return {
@@ -74,7 +74,7 @@ def installed_executables(prefix: Path, package: str) -> dict[str, Executable]:
 
 
 def module_root(folder: Path, module: str) -> Path | None:
-    """Return the folder below a package's that a Python module lies in, if the package has it."""
+    """Return the folder within a package that contains a Python module, if any."""
     for root in (folder, folder / "src"):
         if (root / module / "__init__.py").is_file() or (root / f"{module}.py").is_file():
             return root
@@ -82,7 +82,7 @@ def module_root(folder: Path, module: str) -> Path | None:
 
 
 def is_python(file: Path) -> bool:
-    """Return whether Python runs a file, by its name or its first line."""
+    """Return whether a file is a Python program, by its name or first line."""
     if file.suffix == ".py":
         return True
     first = first_line(file)
@@ -90,7 +90,7 @@ def is_python(file: Path) -> bool:
 
 
 def runs_in_this_python(file: Path) -> bool:
-    """Return whether the first line of a file names the Python that runs this process."""
+    """Return whether a file's first line names the Python that runs this process."""
     first = first_line(file)
     if not first.startswith(b"#!"):
         return False
@@ -99,7 +99,7 @@ def runs_in_this_python(file: Path) -> bool:
 
 
 def first_line(file: Path) -> bytes:
-    """Return the first line of a file, as far as it tells what runs it; nothing if unreadable."""
+    """Return the first line of a file, if it can name an interpreter; empty if unreadable."""
     try:
         with file.open("rb") as opened:
             return opened.readline(500)

@@ -1,4 +1,4 @@
-"""The packages that a program can name, and what they can start."""
+"""The packages that a program can refer to, and their executables."""
 
 from __future__ import annotations
 
@@ -27,15 +27,15 @@ from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
 __all__ = ["Packages"]
 
 MARKER = Path("share", "ament_index", "resource_index", "packages")
-"""Folder below a prefix in which each installed package has a file of its name."""
+"""The folder below a prefix in which each installed package has a file with its name."""
 
 
 class Packages:
     """The packages of a workspace, and the installed ones.
 
     Args:
-        workspace: The folder that holds packages, or a package itself; of a folder with ``src``,
-            that alone. Without one, only installed packages are known.
+        workspace: The folder with the packages, or a package itself; if it has a folder ``src``,
+            only that is used. Without one, only installed packages are known.
 
     Raises:
         FileNotFoundError: There is no such folder.
@@ -47,22 +47,22 @@ class Packages:
         self.workspace = None if workspace is None else source_folder(workspace.resolve())
 
     def sources(self) -> dict[str, Path]:
-        """Return the source folders of the packages of the workspace, by name."""
+        """Return the source folders of the workspace's packages, by name."""
         return {} if self.workspace is None else packages_in(self.workspace)
 
     def share(self, name: str) -> Path:
-        """Return the folder with the data of a package, as it is installed.
+        """Return the share folder of a package, with its data as installed.
 
-        Of a package of the workspace, that is its source folder, or one of links to what is there.
+        For a package of the workspace that is its source folder, or a folder of links to its files.
 
         Raises:
-            PackageNotFoundError: There is no such package; the error says what is close.
+            PackageNotFoundError: There is no such package; the error suggests similar names.
         """
         source = self.sources().get(name)
         return share_of(source, name) if source else self.prefix(name) / "share" / name
 
     def prefix(self, name: str) -> Path:
-        """Return the folder into which a package is installed.
+        """Return the prefix into which a package is installed.
 
         Raises:
             PackageNotFoundError: It is not installed.
@@ -81,9 +81,9 @@ class Packages:
         return sorted(installed.union(self.sources()))
 
     def executables(self, name: str) -> dict[str, Executable]:
-        """Return what a package can start, by name; what is installed comes after its source.
+        """Return the executables of a package, by name; its source precedes installed ones.
 
-        Of a package of ROS that is not there, these are the programs that aionode has of it.
+        For a ROS package that is not there, these are aionode's own versions of its programs.
 
         Raises:
             PackageNotFoundError: There is no such package.
@@ -124,14 +124,14 @@ class Packages:
         return known[name]
 
     def command(self, package: str, name: str, options: Sequence[str] = ()) -> list[str]:
-        """Return the command that starts an executable of a package; its arguments follow.
+        """Return the command that starts an executable of a package, without its arguments.
 
-        A program in Python runs under aionode's rclpy, any other one as it is.
+        A Python program runs with aionode's rclpy, any other as is.
 
         Args:
             package: The name of the package.
             name: The name of the executable.
-            options: Options of ``python -m aionode.rclpy``, which a program in Python gets.
+            options: Options of ``python -m aionode.rclpy``, for Python programs.
 
         Raises:
             PackageNotFoundError: There is no such package.
@@ -157,18 +157,18 @@ class Packages:
         return [str(program)]
 
     def _place(self, package: str) -> str | None:
-        """Return the folder with the executables of a package; None of one that is not there."""
+        """Return the folder with the executables of a package; None if it is not there."""
         try:
             return str(self.sources().get(package) or self.prefix(package) / "lib" / package)
         except PackageNotFoundError:
             return None
 
     def _options(self) -> tuple[str, ...]:
-        """Return what tells a program of the workspace."""
+        """Return the options that tell a program of the workspace."""
         return () if self.workspace is None else ("--workspace", str(self.workspace))
 
     def module_root(self, module: str) -> Path | None:
-        """Return the folder to import a Python module from that a package of the workspace has."""
+        """Return the folder to import a workspace package's Python module from."""
         sources = self.sources()
         folders = [sources[module]] if module in sources else []
         folders += [folder for name, folder in sources.items() if name != module]
@@ -184,12 +184,12 @@ class Packages:
 
 
 def source_folder(workspace: Path) -> Path:
-    """Return the folder of a workspace in which packages lie."""
+    """Return the folder of a workspace that contains the packages."""
     inner = workspace / "src"
     return inner if inner.is_dir() and not (workspace / "package.xml").is_file() else workspace
 
 
 def prefixes() -> list[Path]:
-    """Return the folders into which packages are installed: those of ROS, then Python's own."""
+    """Return the prefixes of installed packages: those of ROS, then Python's own."""
     named = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     return [Path(path) for path in (*named, sys.prefix) if path and Path(path).is_dir()]

@@ -1,4 +1,4 @@
-"""Reads what a package can start from its setup files, and runs nothing of them."""
+"""Reads the executables of a package from its setup files, without running them."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from aionode._packages._cmake import Install, installs_of, matching
 __all__ = ["data_files", "entry_points", "scripts"]
 
 MAX_TEXT: Final = 100_000
-"""Longest text and list that is computed from a setup.py: sums of sums grow without bound."""
+"""Maximum length of texts and lists computed from a setup.py, since sums may grow without bound."""
 
 
 def entry_points(folder: Path) -> dict[str, str]:
-    """Return the functions that a package starts, as ``module:function``, by their names.
+    """Return the entry points of a package, as ``module:function``, by name.
 
-    They stand in its setup.py, setup.cfg or pyproject.toml. What a setup.py computes by more than
-    constants, names, f-strings and sums is not known.
+    They are declared in its setup.py, setup.cfg or pyproject.toml. Of a setup.py only constants,
+    names, f-strings and sums are evaluated.
     """
     scripts: dict[str, str] = {}
     for source in (of_pyproject(folder), of_setup_cfg(folder), of_setup_py(folder)):
@@ -30,7 +30,7 @@ def entry_points(folder: Path) -> dict[str, str]:
 
 def of_pyproject(folder: Path) -> dict[str, str]:
     """Return the scripts of a pyproject.toml."""
-    import tomllib  # few packages of ROS have such a file
+    import tomllib  # few ROS packages have such a file
 
     try:
         content = tomllib.loads((folder / "pyproject.toml").read_text(encoding="utf-8"))
@@ -50,10 +50,10 @@ def of_setup_cfg(folder: Path) -> dict[str, str]:
 
 def section(folder: Path, name: str) -> list[tuple[str, str]]:
     """Return the options of a section of a setup.cfg, with their values."""
-    import configparser  # not for those who start nothing by its package
+    import configparser  # not needed by most programs
 
     parser = configparser.ConfigParser(interpolation=None)
-    parser.optionxform = str  # type: ignore[assignment,method-assign]  # a folder keeps its capitals
+    parser.optionxform = str  # type: ignore[assignment,method-assign]  # option names are case-sensitive
     try:
         parser.read(folder / "setup.cfg", encoding="utf-8")
         return parser.items(name)
@@ -64,7 +64,7 @@ def section(folder: Path, name: str) -> list[tuple[str, str]]:
 def of_setup_py(folder: Path) -> dict[str, str]:
     """Return the console scripts of a setup.py."""
     given = arguments(folder).get("entry_points")
-    if isinstance(given, str):  # the same as in a setup.cfg
+    if isinstance(given, str):  # same format as in a setup.cfg
         import configparser
 
         parser = configparser.ConfigParser(interpolation=None)
@@ -89,10 +89,10 @@ def of_lines(lines: Any) -> Iterator[tuple[str, str]]:
 
 
 def scripts(folder: Path, package: str) -> dict[str, Path]:
-    """Return the files that a package starts, by their names.
+    """Return the files that a package installs as executables, by name.
 
-    They are the ``scripts`` of a setup.py, its ``data_files`` for ``lib/PACKAGE``, and what a
-    CMakeLists.txt installs as programs.
+    They are the ``scripts`` of a setup.py, its ``data_files`` for ``lib/PACKAGE``, and the programs
+    that a CMakeLists.txt installs.
     """
     files = [item for item in listed(arguments(folder).get("scripts")) if isinstance(item, str)]
     executables = {Path(file).name: folder / file for file in files}
@@ -104,7 +104,7 @@ def scripts(folder: Path, package: str) -> dict[str, Path]:
 
 
 def data_files(folder: Path) -> Iterator[Install]:
-    """Yield the ``data_files`` of a setup.cfg and a setup.py: each file, and where it comes."""
+    """Yield the ``data_files`` of a setup.cfg and a setup.py: each file and its destination."""
     pairs = [(into, lines.split()) for into, lines in section(folder, "options.data_files")]
     for pair in (*pairs, *listed(arguments(folder).get("data_files"))):
         if len(listed(pair)) != 2 or not isinstance(pair[0], str):
@@ -122,7 +122,7 @@ def listed(value: Any) -> list[Any]:
 
 
 def arguments(folder: Path) -> dict[str, Any]:
-    """Return the arguments of the call of ``setup`` in a setup.py, as far as they are known."""
+    """Return the arguments of the ``setup`` call in a setup.py, as far as they can be evaluated."""
     try:
         tree = ast.parse((folder / "setup.py").read_bytes())
     except (OSError, SyntaxError, ValueError):
@@ -149,7 +149,7 @@ def arguments(folder: Path) -> dict[str, Any]:
 
 
 def value_of(node: ast.expr, names: dict[str, Any]) -> Any:
-    """Return the value of an expression of constants and known names; None for any other one."""
+    """Evaluate an expression of constants and known names; None for any other."""
     match node:
         case ast.Constant(value=value):
             return value
@@ -179,7 +179,7 @@ def value_of(node: ast.expr, names: dict[str, Any]) -> Any:
 
 
 def result_of(call: ast.Call, names: dict[str, Any]) -> Any:
-    """Return what a call of a known function or of ``format`` returns; None for any other one."""
+    """Evaluate a call of a known function or of ``format``; None for any other."""
     values = [value_of(part, names) for part in call.args]
     if isinstance(call.func, ast.Attribute) and call.func.attr == "format":
         return formatted(value_of(call.func.value, names), values)
@@ -190,7 +190,7 @@ def result_of(call: ast.Call, names: dict[str, Any]) -> Any:
 
 
 def known_functions(folder: Path) -> dict[str, Any]:
-    """Return the functions that a setup.py may call, by the names that they have there."""
+    """Return the functions that a setup.py may call, by their names there."""
 
     def join(*parts: str) -> str | None:
         return joined(list(parts), "/")
@@ -203,7 +203,7 @@ def known_functions(folder: Path) -> dict[str, Any]:
 
 
 def formatted(text: Any, parts: list[Any]) -> str | None:
-    """Return a text with its ``{}`` replaced in turn; None if something is not known."""
+    """Return a text with its ``{}`` replaced in turn; None if something is unknown."""
     pieces = text.split("{}") if isinstance(text, str) else []
     if len(pieces) != len(parts) + 1:
         return None
@@ -211,14 +211,14 @@ def formatted(text: Any, parts: list[Any]) -> str | None:
 
 
 def joined(parts: list[Any], between: str) -> str | None:
-    """Return texts as one; None if one of them is not known, or they are too long."""
+    """Join texts; None if one of them is unknown or the result is too long."""
     if not all(isinstance(part, str) for part in parts) or sum(map(len, parts)) > MAX_TEXT:
         return None
     return between.join(parts)
 
 
 def added(left: Any, right: Any) -> Any:
-    """Return the sum of two texts, or of two lists as far as they are known; None for others."""
+    """Return the sum of two texts, or of two lists as far as known; None for others."""
     if isinstance(left, str) and isinstance(right, str):
         return joined([left, right], "")
     if isinstance(left, list) or isinstance(right, list):

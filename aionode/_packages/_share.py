@@ -1,7 +1,7 @@
-"""The folder with the data of a package, as the package's rules would install it.
+"""The share folder of a package, as its build rules would install it.
 
-Where the rules put a file elsewhere than it lies, a folder of links shows the files of the package
-with that file where it belongs; nothing is copied or executed.
+If the rules install a file at another place than in the source, a folder of links presents the
+package's files in their installed places; nothing is copied or executed.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ from aionode._packages._setup_files import data_files
 __all__ = ["share_of"]
 
 Tree = dict[str, "Path | Tree"]
-"""What is in a folder, by name: a file or folder that is shown, or a folder with more such."""
+"""The contents of a folder by name: a file or folder to link to, or a nested tree."""
 
 TEMPORARY: Final = ".aionode-"
 
 
 @cache
 def share_of(folder: Path, package: str) -> Path:
-    """Return the folder with the data of a package of the workspace.
+    """Return the share folder of a workspace package.
 
     That is its source folder, unless its setup.py, setup.cfg or CMakeLists.txt installs files below
-    ``share/PACKAGE`` in other places than they have there. The folder of links for that is in the
-    user's cache (XDG_CACHE_HOME), and brought up to date once in each process.
+    ``share/PACKAGE`` at other places than in the source. In that case it is a folder of links in
+    the user's cache (XDG_CACHE_HOME), updated once per process.
     """
     moved = moved_files(folder, package)
     if not moved:
@@ -44,14 +44,14 @@ def share_of(folder: Path, package: str) -> Path:
     share = Path(home, "aionode", "share", name, package)
     try:
         show(tree, share)
-    except OSError:  # no home, or one that is read only
+    except OSError:  # no home, or it is read-only
         share = Path(tempfile.mkdtemp(prefix="aionode_share_"), package)
         show(tree, share)
     return share
 
 
 def moved_files(folder: Path, package: str) -> list[tuple[PurePosixPath, Path]]:
-    """Return what lies elsewhere than it is installed, after its place in the share folder."""
+    """Return the files whose place in the share folder differs from the source, by that place."""
     moved = []
     for rule in [*data_files(folder), *installs_of(folder, package)]:
         place = place_of(rule, package)
@@ -62,14 +62,14 @@ def moved_files(folder: Path, package: str) -> list[tuple[PurePosixPath, Path]]:
 
 
 def place_of(rule: Install, package: str) -> PurePosixPath | None:
-    """Return where a rule puts its file in the share folder; None if that is elsewhere."""
+    """Return where in the share folder a rule installs its file; None if elsewhere."""
     whole = PurePosixPath(os.path.normpath(PurePosixPath(rule.folder, rule.name)))
     share = PurePosixPath("share", package)
     return whole.relative_to(share) if whole.is_relative_to(share) else None
 
 
 def put(tree: Tree, parts: tuple[str, ...], source: Path) -> None:
-    """Put a file or folder into a tree; what a folder has there already stays beside it."""
+    """Put a file or folder into a tree, beside what the folder there already contains."""
     if parts and not (source.is_dir() and (parts[0] in tree or len(parts) > 1)):
         *folders, name = parts
         for part in folders:
@@ -85,7 +85,7 @@ def put(tree: Tree, parts: tuple[str, ...], source: Path) -> None:
 
 
 def inner_of(tree: Tree, name: str) -> Tree:
-    """Return the tree of a folder in a tree, in which more can be put."""
+    """Return the subtree of a folder in a tree, for adding more to it."""
     inner = tree.get(name, {})
     if isinstance(inner, Path):
         inner = {child.name: child for child in inner.iterdir()} if inner.is_dir() else {}
@@ -94,7 +94,7 @@ def inner_of(tree: Tree, name: str) -> Tree:
 
 
 def show(tree: Tree, folder: Path) -> None:
-    """Make a folder show a tree, by links; another process may do the same now."""
+    """Populate a folder with links for a tree; another process may do so at the same time."""
     folder.mkdir(parents=True, exist_ok=True)
     for entry in list(os.scandir(folder)):
         if entry.name not in tree and not entry.name.startswith(TEMPORARY):

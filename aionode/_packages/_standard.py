@@ -1,4 +1,4 @@
-"""The programs of ROS's own packages that aionode has: the table by which they are found."""
+"""aionode's versions of programs from ROS's own packages, and the table that finds them."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     "usb_cam": {"usb_cam_node_exe": "_camera.usb_cam_node"},
     "v4l2_camera": {"v4l2_camera_node": "_camera.v4l2_camera_node"},
 }
-"""The module of `aionode.programs` that is an executable, by package and name."""
+"""The module of `aionode.programs` for an executable, by package and name."""
 
 PLUGINS: Final[dict[str, dict[str, tuple[str, str]]]] = {
     "image_transport": {
@@ -128,16 +128,16 @@ REMARKS: Final[dict[str, str]] = {
         "ComposableNode(plugin='my_robot.nodes:Driver')"
     ),
 }
-"""What packages are that aionode cannot have, and what to use instead."""
+"""Packages that aionode cannot provide: what they are, and what to use instead."""
 
 
 def remark_on(package: str) -> str:
-    """Return what a package is, if it cannot be had without ROS 2, and what to use instead."""
+    """Return what a package is and what to use instead, if it needs ROS 2."""
     return REMARKS.get(package, "")
 
 
 def program_module(package: str, name: str) -> str | None:
-    """Return the name of the module that is an executable of a package, if aionode has it."""
+    """Return the module name of a package's executable, if aionode has it."""
     module = MODULES.get(package, {}).get(name)
     return None if module is None else f"aionode.programs.{module}"
 
@@ -154,7 +154,7 @@ def standard_plugin(package: str, plugin: str) -> tuple[str, str] | None:
 
 
 def standard_executables(package: str) -> dict[str, Executable]:
-    """Return the programs of aionode that have the names of a package's executables."""
+    """Return aionode's versions of a package's executables."""
     return {
         name: Executable(package, name, module, is_standard=True)
         for name, module in MODULES.get(package, {}).items()

@@ -14,32 +14,32 @@ __all__ = ["MANIFEST", "MAX_FOLDERS", "package_folder", "packages_in", "workspac
 MANIFEST: Final = "package.xml"
 
 MAX_DEPTH: Final = 6
-"""Depth, in folders below the workspace, to which packages are looked for."""
+"""How many folders deep below the workspace packages are searched for."""
 
 MAX_FOLDERS: Final = 10_000
-"""Most folders that are searched: a workspace has some hundreds, a home folder any number."""
+"""Maximum folders that are searched: a workspace has some hundreds, a home folder any number."""
 
 IGNORED: Final = frozenset({"COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE"})
-"""A folder with one of these files is left out by ROS's tools, with all below it."""
+"""ROS's tools ignore a folder with one of these files, and everything below it."""
 
 BUILT: Final = frozenset({"build", "install", "log", "node_modules", "__pycache__"})
-"""Folders that hold copies of packages, or none."""
+"""Folders that contain copies of packages, or no packages."""
 
 NAME: Final = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
 
 def package_folder(place: Path) -> Path | None:
-    """Return the folder of the package that a file or folder lies in, if it lies in one."""
+    """Return the package folder that contains a file or folder, if any."""
     place = place.resolve()
     folders = (folder for folder in (place, *place.parents) if (folder / MANIFEST).is_file())
     return next(folders, None)
 
 
 def workspace_of(place: Path) -> Path | None:
-    """Return the folder whose packages belong together with a file or folder, if there is one.
+    """Return the workspace of a file or folder, if there is one.
 
     That is a folder ``src`` in it or around it, else the repository around it, else the package
-    that it lies in.
+    that contains it.
     """
     place = place.resolve()
     if place.is_file():
@@ -55,11 +55,11 @@ def workspace_of(place: Path) -> Path | None:
 
 @cache
 def packages_in(workspace: Path) -> dict[str, Path]:
-    """Return the folders of the packages below a folder, or of that folder itself, by their names.
+    """Return the package folders below a folder, or that folder itself, by package name.
 
-    As with ROS's tools, no package lies within another one. Of two packages of one name, the one
-    in the outer folder counts, then the first by the names of the folders. The answer is kept for
-    the life of the process.
+    As with ROS's tools, a package cannot contain another one. Of two packages with one name, the
+    one in the outermost folder counts, then the first by folder name. The result is cached for the
+    life of the process.
     """
     packages: dict[str, Path] = {}
     waiting = deque([(workspace, 0)])
@@ -88,13 +88,13 @@ def content(folder: Path) -> tuple[set[str], list[str]]:
                     files.add(entry.name)
                 elif not entry.name.startswith(".") and entry.name not in BUILT:
                     folders.append(entry.name)
-    except OSError:  # a folder that may not be read holds no package for this user
+    except OSError:  # an unreadable folder has no packages for this user
         return set(), []
     return files, sorted(folders)
 
 
 def package_name(folder: Path) -> str:
-    """Return the name in the ``package.xml`` of a folder; that of the folder if it has none."""
+    """Return the name in the ``package.xml`` of a folder, or else the folder's name."""
     try:
         text = (folder / MANIFEST).read_text(encoding="utf-8", errors="replace")
     except OSError:
