@@ -1,4 +1,4 @@
-"""Systems: processes and nodes that are started, watched and stopped as one thing.
+"""Systems: processes and nodes that are started, watched and stopped as one unit.
 
 ::
 

@@ -29,7 +29,7 @@ class SystemCommand(ServiceType, typename="aionode_system/srv/SystemCommand"):
         name: str
 
     class Response(Message):
-        """Whether it was done; the states of the members as JSON, or why it was not."""
+        """Whether it succeeded, and the states of the members as JSON or the reason why not."""
 
         success: bool
         text: str
@@ -58,7 +58,7 @@ class Controlled(Protocol):
 
 
 class Control:
-    """Serves one system by a node of it, and publishes its log to those who read that.
+    """Serves requests to one system through its node, and publishes its log if anyone listens.
 
     Args:
         system: The system.
@@ -72,7 +72,7 @@ class Control:
         system.log.listeners.append(self._publish)
 
     def close(self) -> None:
-        """Publish nothing any more."""
+        """Stop publishing."""
         self._system.log.listeners.remove(self._publish)
 
     def _publish(self, lines: Sequence[bytes | memoryview]) -> None:

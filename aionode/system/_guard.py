@@ -1,4 +1,4 @@
-"""The supervisor's end of the guardian: starts programs, and hears what becomes of them."""
+"""The supervisor's side of the guardian: starts programs, and learns of their fate."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ __all__ = ["Guard", "ProgramDescription", "RunningProgram"]
 LOST: Final = "the guardian of the system has ended"
 
 END_LIMIT_SEC: Final = 30.0
-"""Longest wait for the guardian at the end, in seconds: both signals, for two generations."""
+"""Maximum wait for the guardian at the end, in seconds: both signals, for two generations."""
 
 
 def future() -> asyncio.Future[Any]:
@@ -43,7 +43,7 @@ class ProgramDescription:
         argv: The command line.
         env: The whole environment.
         ladder: The signals that end the program, each with the time before the next, in seconds.
-        cwd: The working folder; that of the supervisor if None.
+        cwd: The working directory; the supervisor's if None.
     """
 
     argv: Sequence[str]
@@ -52,7 +52,7 @@ class ProgramDescription:
     cwd: str | None = None
 
     def encoded(self) -> bytes:
-        """Return it as JSON, for the guardian."""
+        """Encode it as JSON for the guardian."""
         return json.dumps(
             {
                 "argv": list(self.argv),
@@ -68,12 +68,12 @@ class RunningProgram:
     """A program that the guardian was told to start.
 
     Attributes:
-        number: By which the guardian knows it.
-        pid: Of its first process, which is also its process group.
+        number: Its number for the guardian.
+        pid: The id of its first process, also its process group.
         started: Done when it runs; fails with ProgramStartError.
         exited: Done when its first process has ended, with the exit code; negative for a signal,
-            None if nobody knows, as the guardian was gone.
-        gone: Done when no process of it is left.
+            None if unknown because the guardian was gone.
+        gone: Done when none of its processes is left.
         is_stopping: Whether the guardian was told to stop it.
     """
 
@@ -85,7 +85,7 @@ class RunningProgram:
     gone: asyncio.Future[None] = field(default_factory=future)
 
     def note(self, event: Mapping[str, Any], argv: Sequence[str]) -> None:
-        """Take an event of the guardian."""
+        """Handle an event of the guardian."""
         if event["event"] == "started":
             self.pid = event["pid"]
             settle(self.started, None)
@@ -97,7 +97,7 @@ class RunningProgram:
             settle(self.gone, None)
 
     def refuse(self, argv: Sequence[str], text: str) -> None:
-        """End all waits: it was not started."""
+        """End all waits, as the program was not started."""
         if not self.started.done():
             self.started.set_exception(ProgramStartError(list(argv), text))
         settle(self.exited, None)
@@ -111,14 +111,14 @@ def settle(waiter: asyncio.Future[Any], value: object) -> None:
 
 
 class Orphans:
-    """Programs whose guardian was killed: the supervisor stops them itself, by the same signals.
+    """Programs whose guardian was killed; the supervisor stops them itself, with the same signals.
 
-    They have other parents now, so nobody learns their exit codes. All processes of the system are
-    looked through for theirs, ten times a second until none is left.
+    They have other parents now, so their exit codes are unknown. All processes on the system are
+    searched for theirs, ten times a second, until none is left.
 
     Args:
         guardian: The process of the guardian.
-        programs: The programs, and what they were started by.
+        programs: The programs and their descriptions.
     """
 
     def __init__(
@@ -126,7 +126,8 @@ class Orphans:
     ) -> None:
         self._left: dict[int, tuple[RunningProgram, Program]] = {}
         for running, description in programs:
-            # One whose start was under way is stopped; its session is not known, but its token is.
+            # A program that was just starting is stopped too; its session is unknown, but its token
+            # is known.
             pid = running.pid or -1
             program = Program(running.number, pid, [], list(description.ladder), guardian)
             if not running.started.done():
@@ -138,12 +139,12 @@ class Orphans:
         self._look()
 
     def stop(self, running: RunningProgram) -> None:
-        """Stop one by the signals of its description."""
+        """Stop one program with the signals of its description."""
         if running.number in self._left:
             self._left[running.number][1].stop()
 
     def kill(self) -> None:
-        """Kill all, now."""
+        """Kill all programs now."""
         for pids in self._owned().values():
             for pid in pids:
                 send(os.kill, pid, signal.SIGKILL)
@@ -171,7 +172,7 @@ class Guard:
     """The guardian of one system, from `open` to `close`.
 
     Args:
-        on_lost: Called with its exit code if the guardian ends before it is told to.
+        on_lost: Called with its exit code if the guardian ends unasked.
     """
 
     def __init__(self, on_lost: Callable[[int], object]) -> None:
@@ -190,7 +191,7 @@ class Guard:
     def open(self) -> None:
         """Start the guardian."""
         file = str(Path(_guardian.__file__))
-        # Not asyncio's subprocesses: they may set a handler of SIGCHLD, which is the program's.
+        # Not asyncio's subprocesses, which may set a SIGCHLD handler; that belongs to the program.
         self._process = subprocess.Popen(  # noqa: S603  # a program of aionode's own
             [sys.executable, "-I", "-S", file, str(self._other.fileno())],
             pass_fds=[self._other.fileno()],
@@ -208,10 +209,10 @@ class Guard:
         """Ask the guardian to start a program; the caller closes its descriptors afterwards.
 
         Args:
-            description: What is started.
+            description: The program to start.
             streams: Its standard input, output and error.
-            outputs: The ends of its output that are read. The guardian keeps them open, so that a
-                program that prints as it ends is not killed for it, after the supervisor has ended.
+            outputs: The read ends of its output. The guardian keeps them open, so that after the
+                supervisor's end a program that prints while ending is not killed by SIGPIPE.
         """
         self._last_number += 1
         program = RunningProgram(self._last_number)
@@ -233,7 +234,7 @@ class Guard:
         return program
 
     def stop(self, program: RunningProgram) -> None:
-        """Ask the guardian to stop a program by the signals of its description."""
+        """Ask the guardian to stop a program with the signals of its description."""
         program.is_stopping = True
         if self._orphans is None:
             self._send({"do": "stop", "number": program.number})
@@ -253,7 +254,7 @@ class Guard:
             except BlockingIOError:
                 self._loop.add_writer(self._link, self._flush)
                 return
-            except OSError:  # it has ended, which `_receive` notices
+            except OSError:  # it has ended; `_receive` will notice
                 pass
             del self._unsent[0]
             for descriptor in descriptors:
@@ -261,7 +262,7 @@ class Guard:
         self._loop.remove_writer(self._link)
 
     def _kill_at_sudden_end(self, _ends_ns: int) -> bool:
-        """Arrange for every process to be killed when a second signal ends this process at once."""
+        """Have every process killed when a second signal ends this process at once."""
         if self._orphans is not None:
             self._orphans.kill()
         with contextlib.suppress(OSError):
@@ -295,7 +296,7 @@ class Guard:
         self._on_lost(self._process.wait())
 
     async def close(self) -> bool:
-        """End the guardian, which stops what is left; return whether it has ended."""
+        """End the guardian, which stops what is left; return whether it ended."""
         assert self._process is not None  # noqa: S101  # set by `open`
         self._closing = True
         with contextlib.suppress(OSError):

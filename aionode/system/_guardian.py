@@ -1,17 +1,17 @@
 """The guardian: starts the programs of a system, and stops them when the system is gone.
 
-It is a program of its own, which imports nothing of aionode: ``python -I -S _guardian.py FD``. Its
-only link is a socket to the supervisor. When that closes, however the supervisor has ended, the
-guardian stops every program, the last one first, and ends after the last process has.
+It is a separate program that imports nothing from aionode: ``python -I -S _guardian.py FD``. Its
+only connection is a socket to the supervisor. When that closes, however the supervisor ended, the
+guardian stops every program, the last one first, and exits after the last process.
 
-Each program is started in a session of its own. The guardian is the subreaper of all of them
-(``PR_SET_CHILD_SUBREAPER``): a process that loses its parent, such as one that forked twice, is
-the guardian's child from then on, so every process of the system is found below the guardian.
-A process is assigned to its program by its session, its parent, or the token in its environment.
+Each program is started in its own session. The guardian is the subreaper of all of them
+(``PR_SET_CHILD_SUBREAPER``): a process that loses its parent, such as one that forked twice,
+becomes the guardian's child, so every process of the system is a descendant of the guardian. A
+process is assigned to its program by its session, its parent, or the token in its environment.
 
 Commands and events are packets of JSON. Commands: ``start`` (with five or six descriptors: the
-description of the program, its three standard streams, and the ends of its output that are read),
-``stop``, ``kill``. Events: ``started``, ``refused``, ``exited``, ``gone`` (nothing is left).
+description of the program, its three standard streams, and the read ends of its output), ``stop``,
+``kill``. Events: ``started``, ``refused``, ``exited``, ``gone`` (nothing is left).
 """
 
 from __future__ import annotations
@@ -42,24 +42,24 @@ __all__ = [
     "send",
 ]
 
-TOKEN_VARIABLE = "AIONODE_SYSTEM"  # noqa: S105  # no secret: says which system a process is of
+TOKEN_VARIABLE = "AIONODE_SYSTEM"  # noqa: S105  # not a secret: names the system of a process
 PR_SET_CHILD_SUBREAPER = 36
 PR_SET_NAME = 15
 LOOK_S = 0.1
-"""Time between two looks for processes that are to end, in seconds."""
+"""Time between two checks of processes that should end, in seconds."""
 
 
 class Program:
-    """A program that was started, and the processes that it has started.
+    """A running program, with the processes that it has started.
 
     Attributes:
-        number: By which the supervisor knows it.
-        pid: Of its first process; also its session and process group.
+        number: Its number for the supervisor.
+        pid: The id of its first process; also its session and process group.
         ended: Whether the first process has ended.
         gone: Whether no process is left.
-        outputs: The ends of its output that are read when the supervisor is gone.
-        ladder: The signals that end it, and how long each is waited for, in seconds.
-        token: What is in the environment of its processes.
+        outputs: The read ends of its output, drained once the supervisor is gone.
+        ladder: The signals that end it, and how long to wait after each, in seconds.
+        token: The marker in the environment of its processes.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Program:
         self._doubted = 0.0
 
     def stop(self) -> None:
-        """Begin with the first signal, unless a stop is under way."""
+        """Send the first signal, unless it is already being stopped."""
         if not self.stopping:
             self.stopping = True
             self._steps, self._due = list(self.ladder), 0.0
@@ -90,19 +90,19 @@ class Program:
         self._steps, self._due = [], 0.0
 
     def note_end(self) -> None:
-        """Record the end of the first process; what it has left behind is stopped from now on."""
+        """Record the end of the first process; from now on, what it left behind is stopped."""
         self.ended = True
         if self._steps or not self.stopping:
             self.stopping = False
             self.stop()
 
     def is_left(self, *, strangers: bool) -> bool:
-        """Return whether a process may be left although none was found.
+        """Return whether a process may be left even though none was found.
 
-        A process that becomes another program has no environment for a moment, and so no token.
+        During an exec a process has no environment for a moment, and thus no token.
 
         Args:
-            strangers: Whether there are processes of which it is not known whose they are.
+            strangers: Whether there are processes that could not be assigned to a program.
         """
         if not strangers:
             return False
@@ -113,8 +113,8 @@ class Program:
     def advance(self, rest: list[int]) -> None:
         """Send the signal that is due, if any.
 
-        As long as the first process lives, SIGINT and SIGTERM go to its process group alone, as
-        from a terminal: it may have an order in which to end its own children.
+        While the first process is alive, SIGINT and SIGTERM go only to its process group, as from a
+        terminal, since it may end its children in a certain order.
 
         Args:
             rest: The processes of the program.
@@ -134,14 +134,14 @@ class Program:
 
 
 def send(function: Any, pid: int, number: signal.Signals) -> None:
-    """Send a signal to a process or a group that may have ended meanwhile."""
-    # It has ended meanwhile, or runs as another user, as with sudo.
+    """Send a signal to a process or group that may have ended meanwhile."""
+    # Ended meanwhile, or runs as another user, as with sudo.
     with suppress(ProcessLookupError, PermissionError):
         function(pid, number)
 
 
 def token_of(guardian: int, number: int) -> str:
-    """Return what stands in the environment of the processes of a program."""
+    """Return the token in the environment of a program's processes."""
     return f"{guardian}.{number}"
 
 
@@ -164,7 +164,7 @@ class Guardian:
         signal.set_wakeup_fd(wake.fileno(), warn_on_full_buffer=False)
 
     def run(self) -> None:
-        """Serve the supervisor until it is gone, and every process of the system has ended."""
+        """Serve the supervisor until it is gone and every process of the system has ended."""
         while self._link is not None or not self._is_over():
             self._wait()
             self._reap()
@@ -196,7 +196,7 @@ class Guardian:
                 self._drain(descriptor)
 
     def _drain(self, descriptor: int) -> None:
-        """Read what nobody else does, so that a program that prints as it ends is not blocked."""
+        """Drain unread output, so that a program that prints while ending is not blocked."""
         output = b""
         with suppress(OSError):  # a terminal that nobody has open any more
             output = os.read(descriptor, 1 << 16)
@@ -230,7 +230,7 @@ class Guardian:
 
     def _tell(self, **event: Any) -> None:
         if self._link is not None:
-            with suppress(OSError):  # it is gone, which the next look shows
+            with suppress(OSError):  # it is gone; the next check will notice
                 self._link.send(json.dumps(event).encode())
 
     def _start(
@@ -256,7 +256,7 @@ class Guardian:
                 os.close(output)
             self._tell(event="refused", number=number, text=str(error))
         else:
-            process.returncode = 0  # it is reaped here, not by subprocess
+            process.returncode = 0  # reaped here, not by subprocess
             self._programs[number] = Program(
                 number, process.pid, [*outputs], program["ladder"], os.getpid()
             )
@@ -283,12 +283,14 @@ class Guardian:
                 self._tell(event="exited", number=program.number, code=code)
 
     def _stop_next(self) -> None:
-        """Stop the last program that is not stopped; those before it when it has gone."""
+        """Stop the last running program; the earlier ones follow when it is gone."""
         for program in reversed(self._programs.values()):
             if not program.gone:
                 program.stop()
                 return
-        for pid in children():  # of no program: their sessions and environments are new
+        for (
+            pid
+        ) in children():  # assigned to no program: their sessions and environments are their own
             send(os.kill, pid, signal.SIGKILL)
 
     def _advance(self) -> None:
@@ -321,11 +323,11 @@ class Guardian:
 def owned_by(
     programs: Collection[Program], processes: Iterable[tuple[int, int, int]]
 ) -> dict[int, list[int]]:
-    """Return the live processes of each program, by its number.
+    """Return the live processes of each program, by program number.
 
     Args:
         programs: The programs.
-        processes: Process, parent and session of those that may be theirs, parents first.
+        processes: Process, parent and session of the candidates, parents first.
     """
     sessions = {program.pid: program.number for program in programs}
     tokens = {program.token: program.number for program in programs}
@@ -346,15 +348,15 @@ def descendants(ancestor: int) -> list[tuple[int, int, int]]:
     """Return process, parent and session of all live descendants, parents first.
 
     Args:
-        ancestor: The process; 0 for that of all others.
+        ancestor: The process; 0 for all processes.
     """
     below: dict[int, list[tuple[int, int, int]]] = {}
-    for name in os.listdir("/proc"):  # noqa: PTH208  # every import here takes time at each start
+    for name in os.listdir("/proc"):  # noqa: PTH208  # imports here slow down every start
         if name.isdigit() and (fields := stat_of(name)) and fields[0] not in {"Z", "X"}:
             parent, session = int(fields[1]), int(fields[3])
             below.setdefault(parent, []).append((int(name), parent, session))
     group = below.get(ancestor, [])
-    for pid, _, _ in group:  # which grows meanwhile
+    for pid, _, _ in group:  # grows meanwhile
         group.extend(below.get(pid, []))
     return group
 
@@ -365,7 +367,7 @@ def children() -> list[int]:
 
 
 def stat_of(name: str) -> list[str]:
-    """Return the fields of ``/proc/PID/stat`` after the name of the program; none if it is gone."""
+    """Return the fields of ``/proc/PID/stat`` after the program name; none if it is gone."""
     try:
         file = os.open(f"/proc/{name}/stat", os.O_RDONLY)
         try:
@@ -389,7 +391,7 @@ def tokens_in(pid: int) -> list[str]:
 
 
 def main() -> None:
-    """Serve the supervisor behind the socket that is the only argument."""
+    """Serve the supervisor on the socket given as the only argument."""
     libc = ctypes.CDLL(None, use_errno=True)
     libc.prctl(PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
     libc.prctl(PR_SET_NAME, b"aionode-guard", 0, 0, 0)

@@ -23,19 +23,19 @@ if TYPE_CHECKING:
 __all__ = ["SystemLog"]
 
 LAST_LINES: Final = 20
-"""Lines of a member that are shown when it has failed."""
+"""Number of a member's lines shown when it has failed."""
 
 KEPT_BYTES: Final = 16_384
-"""Bytes of a member's last lines that are kept."""
+"""Bytes kept of a member's last lines."""
 
 LONGEST_LINE: Final = 65_536
-"""Most bytes of a line for whose end the log waits."""
+"""Maximum bytes of an unfinished line that the log holds back."""
 
 PIECE: Final = 4096
-"""Bytes that a pipe takes at once, if it takes any: PIPE_BUF."""
+"""Bytes that a pipe accepts atomically: PIPE_BUF."""
 
 MOST_PIECES: Final = 1024
-"""Most pieces that are written at once: IOV_MAX."""
+"""Maximum pieces written at once: IOV_MAX."""
 
 Buffer: TypeAlias = bytes | memoryview
 
@@ -45,17 +45,17 @@ COLORS: Final = (36, 33, 32, 35, 34, 96, 93, 92, 95, 94)
 class SystemLog:
     """The merged output of a system: each line with its time and the name of its member.
 
-    Nothing is dropped while the system runs: when the stream takes no more, the members' output
-    waits in their pipes. Output that nobody can read any more is dropped. Of the codes for
-    terminals, those of colours pass, and a carriage return begins a line.
+    Nothing is dropped while the system runs: when the stream accepts no more, the members' output
+    waits in their pipes. Output that nobody can read any more is dropped. Of terminal codes only
+    colours pass, and a carriage return starts a new line.
 
     Args:
-        stream: Where the lines are written; ``sys.stdout`` by default, as it is then.
+        stream: Where the lines are written; the current ``sys.stdout`` by default.
         json: Whether each line is a record with ``time``, ``name`` and ``text``.
-        color: Whether names have colours; by default on a terminal, unless ``NO_COLOR`` is set.
-        folder: A folder for files, ``NAME.log`` for each member, and ``system.log``; none by
-            default. It is created.
-        max_bytes: How large a file becomes before it is renamed to ``NAME.log.1``, in bytes.
+        color: Whether names are coloured; by default on a terminal, unless ``NO_COLOR`` is set.
+        folder: A folder for files, ``NAME.log`` for each member and ``system.log``; none by
+            default. It is created if missing.
+        max_bytes: The size at which a file is renamed to ``NAME.log.1``, in bytes.
         backups: How many renamed files are kept of each.
 
     Raises:
@@ -86,8 +86,8 @@ class SystemLog:
             self._folder.mkdir(parents=True, exist_ok=True)
         self._max_bytes, self._backups = max_bytes, backups
         self._clock = MachineTime()
-        self._moment = ""  # of the lines since the last flush, as records have it
-        self._date_and_time = self._time_only = b""  # as files and the stream have it
+        self._moment = ""  # time of the lines since the last flush, as in records
+        self._date_and_time = self._time_only = b""  # the same as in files and on the stream
         self._lost_file = False
         self._width = len("system")
         self._colors: dict[str, int] = {}
@@ -95,29 +95,29 @@ class SystemLog:
         self._unfinished: dict[tuple[str, int], bytes] = {}
         self._last: dict[str, bytearray] = {}
         self._new: list[Buffer] = []  # since the last flush
-        self._unwritten = bytearray()  # what the stream has not taken
+        self._unwritten = bytearray()  # what the stream has not accepted yet
         self.listeners: list[Callable[[Sequence[Buffer]], object]] = []
 
     def add_member(self, name: str) -> None:
-        """Reserve a colour and the width of a name, before the first line of it."""
+        """Reserve a colour and width for a name, before its first line."""
         self._colors.setdefault(name, COLORS[len(self._colors) % len(COLORS)])
         self._width = max(self._width, len(name))
         self._labels.clear()
 
     def note(self, text: str) -> None:
-        """Write a line of the system's own."""
+        """Write one of the system's own lines."""
         self.write("system", f"{text}\n".encode())
         self.flush()
 
     def write(self, name: str, output: bytes, stream: int = 1) -> None:
-        """Take what a member has printed; the rest of a line waits for its end.
+        """Add a member's output; an unfinished line waits for its end.
 
-        The stream of the log gets it at the next `flush`.
+        It goes to the log's stream at the next `flush`.
 
         Args:
             name: The member.
-            output: What it has printed.
-            stream: 2 for standard error, if that is known; a line is of one stream.
+            output: Its output.
+            stream: 2 for standard error, if known; a line belongs to one stream.
         """
         key = name, stream
         before = self._unfinished.pop(key, b"")
@@ -135,18 +135,18 @@ class SystemLog:
             self._unfinished[key] = before
 
     def end_line(self, name: str, stream: int = 1) -> None:
-        """Write the rest of a line whose end will not come."""
+        """Write an unfinished line whose end will not come."""
         if rest := self._unfinished.pop((name, stream), b""):
             self._write_lines(name, rest, b"\n", 1)
 
     def last_lines(self, name: str) -> list[str]:
-        """Return the last lines of a member, 20 at most."""
+        """Return the last lines of a member, at most 20."""
         begun = [self._unfinished.get((name, stream), b"") for stream in (1, 2)]
         text = self._last.get(name, b"") + b"\n".join(filter(None, begun))
         return text.decode(errors="replace").splitlines()[-LAST_LINES:]
 
     def _write_lines(self, name: str, before: bytes, output: bytes, end: int) -> None:
-        """Write the lines of `before` and of `output` up to `end`, which is that of a line."""
+        """Write the lines of `before` and of `output` up to `end`, the end of a line."""
         if has_codes(before) or has_codes(output):
             output = without_codes(before + output[:end])
             before, end = b"", len(output)
@@ -157,8 +157,8 @@ class SystemLog:
             del last[:-KEPT_BYTES]
         if not self._moment:
             self._look_at_the_clock()
-        # The file first: then its text is freed before that of the stream is made, and malloc gives
-        # nothing back to the system after each piece of a large output.
+        # The file first, so that its text is freed before that for the stream is created, and
+        # malloc does not return memory to the system after each piece of a large output.
         if self._folder is not None:
             self._write_file(name, prefixed(self._date_and_time, before, output, end))
         if self._json:
@@ -168,14 +168,16 @@ class SystemLog:
             self._new += prefixed(self._time_only + label, before, output, end)
 
     def _look_at_the_clock(self) -> None:
-        """Set the time of all lines until the next flush."""
+        """Update the time of all lines until the next flush."""
         moment = datetime.fromtimestamp(self._clock.system_ns() / 1e9)  # noqa: DTZ006  # of here
         self._moment = moment.astimezone().isoformat(timespec="milliseconds")
         self._date_and_time = f"{moment.isoformat(' ', 'milliseconds')} ".encode()
         self._time_only = self._date_and_time[len("2026-11-23 ") :]
 
     def _label(self, name: str) -> bytes:
-        shown = escaped(name).replace("\n", "\\n")  # as a launch file of others says
+        shown = escaped(name).replace(
+            "\n", "\\n"
+        )  # the name may come from someone else's launch file
         label = f"{shown:>{self._width}} |"
         if self._color:
             label = f"\x1b[{self._colors.get(name, 1)}m{label}\x1b[0m"
@@ -186,13 +188,13 @@ class SystemLog:
         try:
             file = self._files.get(name) or self._open_file(name)
             file.write(lines)
-        except OSError as error:  # such as a full disk; the system goes on, and so does its log
+        except OSError as error:  # such as a full disk; the system and its log go on
             if not self._lost_file:
                 self._lost_file = True
                 self.note(f"files of the log are incomplete from here on: {error}")
 
     def flush(self) -> bool:
-        """Write what the stream takes without blocking, and return whether that was everything."""
+        """Write what the stream accepts without blocking; return whether that was everything."""
         new, self._new, self._moment = self._new, [], ""
         for listener in self.listeners if new else ():
             listener(new)
@@ -226,7 +228,7 @@ class SystemLog:
         return file
 
     def close(self) -> None:
-        """Write what is left, as far as the stream takes it, and close the files."""
+        """Write the rest, as far as the stream accepts it, and close the files."""
         for name, stream in list(self._unfinished):
             self.end_line(name, stream)
         self.flush()
@@ -245,7 +247,7 @@ def descriptor_of(stream: TextIO) -> int | None:
 
 
 def never_blocks(descriptor: int) -> bool:
-    """Return whether a write never waits for a reader: that of a file, or of the null device."""
+    """Return whether writes never wait for a reader, as for a file or the null device."""
     mode = os.fstat(descriptor).st_mode
     return stat.S_ISREG(mode) or (stat.S_ISCHR(mode) and not os.isatty(descriptor))
 
@@ -253,14 +255,14 @@ def never_blocks(descriptor: int) -> bool:
 def prefixed(prefix: bytes, before: bytes, output: bytes, end: int) -> tuple[Buffer, Buffer]:
     """Return the lines of `before` and of `output` up to `end`, each with a prefix.
 
-    One call in C for all of them, and no further copy: programs may log a lot.
+    A single C call without further copies, as programs may log a lot.
     """
     text = output.replace(b"\n", b"\n" + prefix)
     return prefix + before, memoryview(text)[: len(text) - len(prefix) - (len(output) - end)]
 
 
 def unwritten(descriptor: int, lines: list[Buffer]) -> list[Buffer]:
-    """Write to what never blocks, as it is; return what was not taken."""
+    """Write to a descriptor that never blocks; return what was not accepted."""
     while lines:
         some = lines[:MOST_PIECES]
         try:
@@ -274,7 +276,7 @@ def unwritten(descriptor: int, lines: list[Buffer]) -> list[Buffer]:
 
 
 def records(time: str, name: str, lines: bytes) -> bytes:
-    """Return lines as records of JSON."""
+    """Format lines as JSON records."""
     encode = msgspec.json.encode
     return b"".join(
         encode({"time": time, "name": name, "text": line.decode(errors="replace")}) + b"\n"
@@ -283,12 +285,12 @@ def records(time: str, name: str, lines: bytes) -> bytes:
 
 
 class RotatingFile:
-    """A file that is renamed to ``.1`` when it is full, as ``.1`` to ``.2``, and so on.
+    """A file that is renamed to ``.1`` when full, with ``.1`` renamed to ``.2`` and so on.
 
     Args:
-        path: The file; what is there already stays.
-        max_bytes: When it is full.
-        backups: How many renamed ones are kept.
+        path: The file; existing content is kept.
+        max_bytes: The size at which it is full.
+        backups: How many renamed files are kept.
     """
 
     def __init__(self, path: Path, max_bytes: int, backups: int) -> None:
@@ -320,5 +322,5 @@ class RotatingFile:
         self._size = 0
 
     def close(self) -> None:
-        """Close it."""
+        """Close the file."""
         self._file.close()

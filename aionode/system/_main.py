@@ -22,23 +22,23 @@ def run(
 ) -> NoReturn:
     """Run a system until it is over, or until Ctrl-C, SIGTERM or SIGHUP, and exit.
 
-    `main` adds the members, and may wait, such as for `System.ready`; then the system runs until
-    `System.wait` returns. The first signal stops the members in order. One that comes more than a
-    second later ends all at once: every process is killed, and this one exits with the shell's
+    `main` adds the members and may await things such as `System.ready`; then the system runs until
+    `System.wait` returns. The first signal stops the members in order. A signal more than a second
+    later ends everything at once: every process is killed, and this one exits with the shell's
     status for the signal.
 
     Args:
         main: Called with the system, which has started.
         name: The name of the system.
-        log: Where the output of all members goes; `SystemLog` on ``sys.stdout`` by default.
-        args: The command line without the program name; ``sys.argv[1:]`` if None. What follows
-            ``--ros-args`` applies to the nodes of this process.
+        log: Receives the output of all members; `SystemLog` on ``sys.stdout`` by default.
+        args: The command line without the program name; ``sys.argv[1:]`` if None. Arguments after
+            ``--ros-args`` apply to the nodes of this process.
 
     Raises:
         SystemExit: always; with the exit status of the first member that failed for good, else
             with 1 if `main` failed, and with 0 after a clean end.
     """
-    # Imported when a system runs: a command of the command line needs neither.
+    # Imported only when a system runs, as most commands of the command line need neither.
     from aionode.runner import run as run_until_stopped
     from aionode.system._system import System
 

@@ -1,4 +1,4 @@
-"""A member of a system: it runs, is restarted by its policy, and tells when it is ready."""
+"""A member of a system: running it, restarting it by its policy, and its readiness."""
 
 from __future__ import annotations
 
@@ -25,17 +25,18 @@ Restart = Literal["never", "on-failure", "always"]
 
 @dataclass(frozen=True)
 class Options:
-    """The base of the processes and nodes of a system.
+    """The options that processes and nodes of a system share.
 
     Attributes:
-        restart: When it is started again.
-        min_delay_sec: The first delay before a restart, in seconds; doubled with each in a row.
+        restart: When to start it again.
+        min_delay_sec: The first delay before a restart, in seconds; doubled with each restart in a
+            row.
         max_delay_sec: The longest delay, in seconds.
-        max_restarts: After how many restarts in a row it has failed for good; None for no limit.
+        max_restarts: How many restarts in a row there are before it is given up; None for no limit.
         ready: What is awaited before it is ready.
         after: The members that have to be ready before it starts.
-        required: Whether the system ends when it has ended for good.
-        fails_with: The members at whose failure it is stopped, and started again with them.
+        required: Whether the system ends when this member has ended for good.
+        fails_with: The members with whose failure it is stopped, and then started again with them.
         managed: The managed nodes that are configured and activated, in this order.
     """
 
@@ -51,15 +52,16 @@ class Options:
 
 
 class MemberOptions(TypedDict, total=False):
-    """Keyword arguments that `System.process` and `System.node` have in common.
+    """Keyword arguments shared by `System.process` and `System.node`.
 
     Attributes:
-        min_delay_sec: The first delay before a restart, in seconds; doubled with each in a row.
-        max_delay_sec: The longest delay, in seconds; a run as long ends the row.
-        max_restarts: After how many restarts in a row it has failed for good; None for no limit.
+        min_delay_sec: The first delay before a restart, in seconds; doubled with each restart in a
+            row.
+        max_delay_sec: The longest delay, in seconds; a run of that length resets the delay.
+        max_restarts: How many restarts in a row there are before it is given up; None for no limit.
         after: Members that have to be ready before it starts.
-        required: Whether the system ends when it has ended for good.
-        fails_with: Members at whose failure it is stopped; it starts again when they do.
+        required: Whether the system ends when this member has ended for good.
+        fails_with: Members with whose failure it is stopped; it starts again when they do.
         managed: Full names of managed nodes, which are configured and activated in this order
             before it is ready, and brought down in reverse order before it is stopped.
     """
@@ -74,13 +76,13 @@ class MemberOptions(TypedDict, total=False):
 
 
 FORMER_LIMITS: Final = {"memory_bytes": "MemoryMax=", "cpu_cores": "CPUQuota="}
-"""Options that there were once, and what systemd has in place of each."""
+"""Removed options, and systemd's replacement for each."""
 
 
 def options_of(
     restart: Restart, ready: tuple[Fact, ...], shared: MemberOptions, subject: str
 ) -> Options:
-    """Return the options that a user gave.
+    """Parse the options that a user passed.
 
     Raises:
         ValueError: the policy is unknown.
@@ -117,11 +119,11 @@ class Host(Protocol):
         ...
 
     def note_end(self, member: Member, end: MemberEnd, *, for_good: bool) -> None:
-        """Take note of the end of a run that nobody asked for."""
+        """Record the unrequested end of a run."""
         ...
 
     def note_change(self) -> None:
-        """Take note of the change of a state."""
+        """Record a change of state."""
         ...
 
 
@@ -130,8 +132,8 @@ class Run:
     """One run of a member, from its start to its end.
 
     Attributes:
-        since_ns: When it began, by the steady clock.
-        ready: Whether what was awaited has come; a NotReadyError if it has not in time.
+        since_ns: When it started, by the steady clock.
+        ready: Done when everything awaited is there; fails with a NotReadyError otherwise.
     """
 
     since_ns: int = 0
@@ -146,7 +148,7 @@ class Member:
     Args:
         name: Its name in the system.
         host: The system.
-        options: What both kinds have in common.
+        options: The options that both kinds share.
     """
 
     def __init__(self, name: str, host: Host, options: Options) -> None:
@@ -160,7 +162,7 @@ class Member:
         self.last_end: MemberEnd | None = None
         self.backoff = Backoff(options.min_delay_sec, options.max_delay_sec, name)
         self.clock = SteadyClock()
-        self.run: Run  # from `start` on, as a member may be added before there is an event loop
+        self.run: Run  # set by `start`, as a member may be added before there is an event loop
         self._stop = asyncio.Event()
         self._restarting = False
         self._work: asyncio.Task[None] | None = None
@@ -170,7 +172,7 @@ class Member:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.name} {self.state} restarts={self.restarts}>"
 
-    # For the kinds of members to define
+    # Defined by subclasses
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
         """Start it, call `note_running`, and return how it ended; end it when `stop` is set."""
@@ -179,7 +181,7 @@ class Member:
     # Control
 
     def start(self) -> None:
-        """Start it, unless it runs, or the system ends."""
+        """Start it, unless it is running or the system is ending."""
         if not self.host.closing and (self._work is None or self._work.done()):
             self._stop = asyncio.Event()
             self.run = Run()
@@ -187,7 +189,7 @@ class Member:
             self._work = self.host.tasks.create_task(self._supervise(), name=f"member {self.name}")
 
     async def stop(self) -> None:
-        """Stop it, and return when nothing of it is left."""
+        """Stop it, and wait until nothing of it is left."""
         if self._work is None or self._work.done():
             if self.state != "stopped" and not self.host.closing:
                 self.set_state("stopped")
@@ -201,7 +203,7 @@ class Member:
         await asyncio.wait([self._work])
 
     async def restart(self) -> None:
-        """Stop it and start it again; return when it is starting."""
+        """Stop it and start it again; return once it is starting."""
         self._restarting = True
         try:
             await self.stop()
@@ -212,12 +214,12 @@ class Member:
         self.start()
 
     def set_state(self, state: State) -> None:
-        """Change the state, and wake who waits for that."""
+        """Change the state, and wake those waiting for it."""
         self.state = state
         self.host.note_change()
 
     def is_over(self) -> bool:
-        """Return whether it has ended for good, or was stopped, and is not started again now."""
+        """Return whether it has ended for good or was stopped, and is not being started again."""
         return not self._restarting and self.state in {"stopped", "ended", "failed"}
 
     # Supervision
@@ -240,7 +242,7 @@ class Member:
                 self._set_not_ready("it was stopped")
 
     async def _wait_for_others(self) -> bool:
-        """Wait until those are ready that it starts after; return whether they are."""
+        """Wait until the members it starts after are ready; return whether they are."""
         for name in self.options.after:
             other = self.host.member(name)
             try:
@@ -259,7 +261,7 @@ class Member:
         return True
 
     async def _until_stopped_or(self, work: Any) -> None:
-        """Await `work`, or until it is to stop."""
+        """Await `work`, or until it should stop."""
         async with asyncio.TaskGroup() as tasks:
             waiting = tasks.create_task(outcome_of(work))
             stop = tasks.create_task(self._stop.wait())
@@ -270,7 +272,7 @@ class Member:
             raise error
 
     async def _run_and_judge(self) -> bool:
-        """Run it once, and return whether it is to run again; wait for the delay before that."""
+        """Run it once, and wait for the restart delay; return whether to run it again."""
         self.set_state("starting")
         self.run.since_ns = 0
         end = await self.run_once(self._stop)
@@ -312,14 +314,14 @@ class Member:
         return (self.clock.now_ns() - since_ns) / S_TO_NS if since_ns else 0.0
 
     def note_running(self, pid: int) -> None:
-        """Record that it runs, and begin to watch whether it is ready."""
+        """Record that it is running, and start watching its readiness."""
         self.pid = pid
         self.run.since_ns = self.clock.now_ns()
         self.set_state("running")
         if not (self.options.ready or self.options.managed):
             settle(self.run.ready)
             return
-        # One that ends and is restarted before it was ready has no more time for that.
+        # A restart before it was ready does not extend the time for becoming ready.
         if self._watch is None or self._watch.done():
             self._watch = self.host.tasks.create_task(
                 self._watch_readiness(self.run), name=f"readiness of {self.name}"
@@ -350,7 +352,7 @@ class Member:
             await self._manager.startup()
 
     async def _deactivate(self) -> None:
-        """Bring its managed nodes down, as far as they are there."""
+        """Bring down those of its managed nodes that are there."""
         if self._manager is not None and self.state == "running":
             self.set_state("stopping")
             try:
@@ -364,33 +366,33 @@ class Member:
         if not self.run.ready.done():
             error = NotReadyError(self.name, problem, self.host.log.last_lines(self.name))
             self.run.ready.set_exception(error)
-            self.run.ready.exception()  # nobody may ask
+            self.run.ready.exception()  # perhaps nobody asks
             if not self._stop.is_set():
                 self.host.log.note(f"{self.name} is not ready: {problem}")
 
     def is_ready(self) -> bool:
-        """Return whether it is ready now."""
+        """Return whether it is currently ready."""
         if self._work is None:
             return False
         ready = self.run.ready
         return ready.done() and ready.exception() is None
 
     def is_running_and_ready(self) -> bool:
-        """Return whether it runs, and is ready."""
+        """Return whether it is running and ready."""
         return self.state == "running" and self.is_ready()
 
     async def wait_ready(self) -> None:
-        """Return when it is ready.
+        """Wait until it is ready.
 
         Raises:
-            NotReadyError: what was awaited did not come in time, or it ended for good.
+            NotReadyError: something awaited did not appear in time, or the member ended for good.
         """
         await asyncio.shield(self.run.ready)
 
     # Status
 
     def status(self, usage: tuple[float | None, int | None]) -> MemberStatus:
-        """Return what it does now.
+        """Return its current status.
 
         Args:
             usage: Its share of a core in percent, and its memory in bytes.
@@ -411,7 +413,7 @@ class Member:
 
 
 async def outcome_of(work: Any) -> NotReadyError | None:
-    """Await `work`, and return the error that it has, if any."""
+    """Await `work`, and return its error, if any."""
     try:
         await work
     except NotReadyError as error:

@@ -1,4 +1,4 @@
-"""A node as a member of a system: tasks of this process, or a process of its own."""
+"""A node as a member of a system: tasks of this process, or a separate process."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ Parameters = Mapping[str, Any] | str | os.PathLike[str]
 
 
 class NodeMember(Member):
-    """A node that runs as tasks of this process; each start makes a new one.
+    """A node that runs as tasks of this process; each start creates a new one.
 
     Args:
         name: Its name in the system.
         host: The system.
-        options: What both kinds have in common.
-        make_node: Makes it.
+        options: The options that both kinds share.
+        make_node: Creates the node.
         context: The context that it joins, unless `make_node` chooses another one.
         arguments: Its ROS arguments, as on a command line.
     """
@@ -59,7 +59,7 @@ class NodeMember(Member):
         self._arguments.refuse_unknown()
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
-        """Make the node, and run it until it ends."""
+        """Create the node, and run it until it ends."""
         try:
             node = self._made()
             async with node:
@@ -83,7 +83,7 @@ class NodeMember(Member):
         node.destroy_node()
 
     def _made(self) -> Node:
-        """Return a new node, made with the arguments of this member beside those of all."""
+        """Create a node, with this member's arguments in addition to the shared ones."""
         context, own = self._context, self._arguments
         shared = context.arguments
         before = context._usage
@@ -113,7 +113,7 @@ def ros_arguments(
     """Return the ROS arguments of a node, as on a command line after ``--ros-args``.
 
     Args:
-        name: What the node is called; its own name if None.
+        name: The node's new name; None keeps its own.
         namespace: Its namespace.
         parameters: A mapping of names to values, the path of a parameter file, or a sequence of
             both, of which later ones win.
@@ -139,7 +139,7 @@ def ros_arguments(
 
 
 def flat(parameters: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
-    """Return parameters by their full names: mappings within are joined by dots."""
+    """Return parameters by full name; nested mappings are joined with dots."""
     flattened = []
     for key, value in parameters.items():
         if hasattr(value, "items"):
@@ -150,14 +150,14 @@ def flat(parameters: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any
 
 
 def yaml_text(value: Any) -> str:
-    """Return a value as YAML in one line, so that a text stays a text."""
+    """Format a value as YAML on one line, so that a text stays a text."""
     value = list(value) if isinstance(value, tuple) else value
     text = yaml.safe_dump(value, default_flow_style=True, width=float("inf"), allow_unicode=True)
     return text.strip().removesuffix("...").strip()
 
 
 def maker_of(node: Callable[[], Node] | str) -> Callable[[], Any]:
-    """Return what makes a node: the callable itself, or that of ``module:Class``.
+    """Return the factory of a node: the callable itself, or that of ``module:Class``.
 
     Raises:
         CommandError: there is none of that name.
@@ -170,16 +170,16 @@ def maker_of(node: Callable[[], Node] | str) -> Callable[[], Any]:
 
 
 def program_of(node: Callable[[], Node] | str, name: str) -> list[str]:
-    """Return the command line that runs a node in a process of its own.
+    """Return the command line that runs a node in a separate process.
 
     Raises:
-        ValueError: the node is made by something without a name that another process could import.
+        ValueError: the factory has no name that another process could import.
     """
     return [sys.executable, "-m", "aionode", "run", spec_of(node, name), "--ros-args"]
 
 
 def spec_of(node: Callable[[], Node] | str, name: str) -> str:
-    """Return ``module:Class`` or ``file.py:Class`` of what makes a node."""
+    """Return ``module:Class`` or ``file.py:Class`` of a node's factory."""
     if isinstance(node, str):
         return node
     module, path = getattr(node, "__module__", ""), getattr(node, "__qualname__", "<")

@@ -1,4 +1,4 @@
-"""Reading the output of all programs of a system, at a bounded number of turns each second."""
+"""Read the output of all programs of a system, a bounded number of times per second."""
 
 from __future__ import annotations
 
@@ -16,28 +16,30 @@ if TYPE_CHECKING:
 __all__ = ["OutputReader", "open_output"]
 
 PAUSE_SEC: Final = 0.04
-"""Between two turns, in seconds. A program may write a line at a time, a hundred thousand a second:
-each would wake the loop."""
+"""Time between two reads, in seconds. A program may write a hundred thousand single lines per
+second, each of which would wake the loop.
+"""
 
 PIECE: Final = 1 << 16
-"""Bytes that are read at once: as many as a new pipe holds. The allocator gives much larger
-buffers back to the system each time, and their pages cost more than the copies."""
+"""Bytes that are read at once: the capacity of a new pipe. The allocator returns much larger
+buffers to the system each time, and their page faults cost more than the copies.
+"""
 
 TERMINAL_PIECE: Final = 4095
-"""Bytes that Linux gives at once of the output to a terminal, if there is more."""
+"""Bytes of terminal output that Linux returns at once if there is more."""
 
 LARGE_PIPE: Final = 1 << 20
-"""Size of a pipe that was full once, in bytes: the largest that an ordinary user may ask for."""
+"""New size of a pipe that was full, in bytes: the largest that an ordinary user may request."""
 
 F_SETPIPE_SZ: Final = 1031
-"""Of fcntl; Python 3.10 has a name for it on Linux alone."""
+"""A constant of fcntl, which Python defines only on Linux."""
 
 
 def open_output(*, terminal: bool) -> tuple[int, int]:
-    """Return the end of a pipe that is read, without blocking, and the one that a program gets.
+    """Create a pipe; return its read end, which does not block, and the end for a program.
 
     Args:
-        terminal: Whether it is a terminal instead: programs write each line at once then, and in
+        terminal: Whether to create a terminal instead, to which programs write unbuffered and in
             colours.
     """
     if terminal:
@@ -45,7 +47,7 @@ def open_output(*, terminal: bool) -> tuple[int, int]:
 
         output, pipe = os.openpty()
         attributes = termios.tcgetattr(pipe)
-        attributes[1] &= ~termios.OPOST  # lines end as they are written
+        attributes[1] &= ~termios.OPOST  # line ends are not translated
         termios.tcsetattr(pipe, termios.TCSANOW, attributes)
     else:
         output, pipe = os.pipe()
@@ -56,11 +58,11 @@ def open_output(*, terminal: bool) -> tuple[int, int]:
 class OutputReader:
     """Reads the pipes of programs into the log.
 
-    All pipes are in one epoll, and the event loop watches that: after each turn it does not for
-    40 ms, however many programs print however often. While the log takes no more, nothing is read.
+    All pipes are in one epoll, which the event loop watches. After each read it pauses for 40 ms,
+    however much and often programs print. While the log accepts no more, nothing is read.
 
     Args:
-        log: Where the output goes.
+        log: Receives the output.
     """
 
     def __init__(self, log: SystemLog) -> None:
@@ -87,7 +89,7 @@ class OutputReader:
             pipe: The pipe.
             name: The member that prints to it.
             stream: 1 for standard output, 2 for standard error.
-            listener: Called with all that is read, and with `stream`.
+            listener: Called with everything read and with `stream`.
         """
         self._names[pipe], self._streams[pipe] = name, stream
         if listener is not None:
@@ -95,7 +97,7 @@ class OutputReader:
         self._epoll.register(pipe, select.EPOLLIN)
 
     def remove(self, pipe: int) -> None:
-        """Read what is left in a pipe, and close it."""
+        """Read the rest of a pipe, and close it."""
         while pipe in self._names and (self._read(pipe) or 0) > 0:
             pass
         name = self._names.pop(pipe, None)
@@ -104,7 +106,7 @@ class OutputReader:
             self._log.flush()
             self._listeners.pop(pipe, None)
             self._large.discard(pipe)
-            with suppress(FileNotFoundError):  # it was at its end
+            with suppress(FileNotFoundError):  # it was already at its end
                 self._epoll.unregister(pipe)
         os.close(pipe)
 
@@ -117,7 +119,7 @@ class OutputReader:
                     break
             if count == 0:
                 with suppress(FileNotFoundError):
-                    self._epoll.unregister(pipe)  # at its end; `remove` closes it
+                    self._epoll.unregister(pipe)  # end of file; `remove` closes it
         self._log.flush()
         self._pause = self._loop.call_later(PAUSE_SEC, self._resume)
 
@@ -128,7 +130,7 @@ class OutputReader:
             self._pause = self._loop.call_later(PAUSE_SEC, self._resume)
 
     def _read(self, pipe: int) -> int | None:
-        """Read once, and return how many bytes: 0 at the end of the pipe, None if it is empty."""
+        """Read once; return the number of bytes, 0 at the end of the pipe, None if it is empty."""
         try:
             output = os.read(pipe, PIECE)
         except BlockingIOError:
@@ -145,12 +147,12 @@ class OutputReader:
                 fcntl.fcntl(pipe, F_SETPIPE_SZ, LARGE_PIPE)
         self._log.write(self._names[pipe], output, self._streams[pipe])
         if listener := self._listeners.get(pipe):
-            # Not now: what it raises is no affair of the programs whose output is read next.
+            # Deferred, so that its exceptions do not affect the programs whose output is read next.
             self._loop.call_soon(listener, output, self._streams[pipe])
         return len(output)
 
     def close(self) -> None:
-        """Read no more; the pipes of programs that are left are closed."""
+        """Stop reading, and close the remaining pipes."""
         if self._pause is not None:
             self._pause.cancel()
         self._loop.remove_reader(self._epoll.fileno())

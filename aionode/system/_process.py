@@ -28,17 +28,17 @@ __all__ = ["ProcessHost", "ProcessMember", "ProcessOptions"]
 
 @dataclass(frozen=True)
 class ProcessOptions:
-    """The options that only processes have.
+    """The options of processes only.
 
     Attributes:
         argv: The command line.
-        env: Variables beside those of the system; None for one that it does not get.
-        cwd: The working folder.
-        stdin: Whether it reads the keyboard: it gets the terminal.
+        env: Variables in addition to those of the system; None removes one.
+        cwd: The working directory.
+        stdin: Whether it reads the keyboard and thus gets the terminal.
         term_after_sec: How long after SIGINT it gets SIGTERM, in seconds.
         kill_after_sec: How long after SIGTERM it gets SIGKILL, in seconds.
-        terminal: Whether it prints to a terminal of its own.
-        on_output: Called with what it prints, and with 1 for standard output and 2 for error.
+        terminal: Whether it prints to its own terminal.
+        on_output: Called with its output, and with 1 for standard output or 2 for error.
     """
 
     argv: Sequence[str]
@@ -51,7 +51,7 @@ class ProcessOptions:
     on_output: Callable[[bytes, int], object] | None = None
 
     def ladder(self) -> list[tuple[str, float]]:
-        """Return the signals that end it, and how long each is waited for, in seconds."""
+        """Return the signals that end it, and how long to wait after each, in seconds."""
         return [
             ("SIGINT", self.term_after_sec),
             ("SIGTERM", self.kill_after_sec),
@@ -60,7 +60,7 @@ class ProcessOptions:
 
 
 class ProcessHost(Protocol):
-    """The methods of a system that processes call, beside those for all members."""
+    """The methods of a system that processes call, in addition to those for all members."""
 
     guard: Guard
     reader: OutputReader
@@ -76,9 +76,9 @@ class ProcessMember(Member):
     Args:
         name: Its name in the system.
         host: The system.
-        processes: The same, for what processes need.
-        options: What both kinds have in common.
-        process: What only processes have.
+        processes: The system again, as the host of processes.
+        options: The options that both kinds share.
+        process: The options of processes.
     """
 
     def __init__(
@@ -94,12 +94,12 @@ class ProcessMember(Member):
         self.process = process
 
     async def run_once(self, stop: asyncio.Event) -> MemberEnd:
-        """Start it, and wait until no process of it is left."""
+        """Start it, and wait until none of its processes is left."""
         pipes: list[int] = []
         try:
             pipes, program = self._start()
             await program.started
-        except OSError as error:  # a ProgramStartError, or no descriptor is left
+        except OSError as error:  # a ProgramStartError, or out of descriptors
             self._stop_reading(pipes)
             self.host.log.note(f"{self.name}: {error}{hint_at_limit(error)}")
             return MemberEnd(self.name, failed=True, text="could not be started", status=127)
@@ -131,10 +131,10 @@ class ProcessMember(Member):
             self._processes.reader.remove(pipe)
 
     def _start(self) -> tuple[list[int], RunningProgram]:
-        """Start it; return the pipes that it prints to, and the program.
+        """Start it; return its output pipes and the program.
 
-        Both streams share one pipe, which keeps the order of their lines, unless somebody wants to
-        know them apart.
+        Both streams share one pipe, which keeps the order of their lines, unless they have to be
+        told apart.
         """
         with ExitStack() as given, ExitStack() as kept:
             program, outputs = self._hand_over(given, kept)
@@ -172,7 +172,7 @@ class ProcessMember(Member):
 
 
 def hint_at_limit(error: OSError) -> str:
-    """Return what to do about an error, if this process may open no more files."""
+    """Return advice for an error, if this process is out of file descriptors."""
     if error.errno != errno.EMFILE:
         return ""
     return "; each program takes some of the open files of this process: raise `ulimit -n`"

@@ -1,4 +1,4 @@
-"""Facts of the graph that tell when a member of a system is ready."""
+"""Facts of the graph that determine when a member of a system is ready."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["ActionReady", "Fact", "NodeActive", "NodeExists", "ServiceReady", "TopicPublished"]
 
 ASK_SEC = 2.0
-"""Longest time that a managed node may take to tell its state, in seconds."""
+"""Maximum time for a managed node to report its state, in seconds."""
 
 
 @runtime_checkable
@@ -28,18 +28,18 @@ class Fact(Protocol):
 
     @property
     def timeout_sec(self) -> float:
-        """Longest time that the condition may take, in seconds."""
+        """Maximum time for the condition to become true, in seconds."""
         ...
 
     def __str__(self) -> str:
-        """Return what is awaited, such as ``a publisher of /odom``."""
+        """Describe what is awaited, such as ``a publisher of /odom``."""
         ...
 
     async def wait(self, node: Node) -> None:
-        """Return when it is so; it is cancelled after `timeout_sec`.
+        """Wait until the condition is true; cancelled after `timeout_sec`.
 
         Args:
-            node: The node of the system, which sees the graph.
+            node: The system's node, which sees the graph.
         """
         ...
 
@@ -52,16 +52,16 @@ class GraphFact:
     _endpoints: ClassVar[Sequence[tuple[EndpointKind, str]]] = ()  # kinds, and ends of names
 
     def __str__(self) -> str:
-        """Return what is awaited."""
+        """Describe what is awaited."""
         return self._text.format(self._name)
 
     @property
     def _name(self) -> str:
-        """The full name; the leading slash may be left out."""
+        """The full name; the leading slash may be omitted."""
         return f"/{getattr(self, fields(self)[0].name).lstrip('/')}"  # type: ignore[arg-type]
 
     async def wait(self, node: Node) -> None:
-        """Return when all of its endpoints are there."""
+        """Wait until all of its endpoints are there."""
         for kind, end in self._endpoints:
             await endpoint_of(node, kind, self._name + end)
 
@@ -72,7 +72,7 @@ class NodeExists(GraphFact):
 
     Attributes:
         name: Its full name, such as ``/driver``.
-        timeout_sec: How long it may take, in seconds.
+        timeout_sec: How long this may take, in seconds.
     """
 
     _text = "node {}"
@@ -80,7 +80,7 @@ class NodeExists(GraphFact):
     timeout_sec: float = 10.0
 
     async def wait(self, node: Node) -> None:
-        """Return when it is there."""
+        """Wait until it is there."""
         name = self._name
         await node.graph.until(lambda: bool(node.graph.nodes_named(name)), name)
 
@@ -91,7 +91,7 @@ class TopicPublished(GraphFact):
 
     Attributes:
         topic: Its full name.
-        timeout_sec: How long it may take, in seconds.
+        timeout_sec: How long this may take, in seconds.
     """
 
     _text = "a publisher of {}"
@@ -106,7 +106,7 @@ class ServiceReady(GraphFact):
 
     Attributes:
         service: Its full name.
-        timeout_sec: How long it may take, in seconds.
+        timeout_sec: How long this may take, in seconds.
     """
 
     _text = "service {}"
@@ -117,11 +117,11 @@ class ServiceReady(GraphFact):
 
 @dataclass(frozen=True)
 class ActionReady(GraphFact):
-    """An action has a server: goals can be sent, cancelled and awaited.
+    """An action has a server, so that goals can be sent, cancelled and awaited.
 
     Attributes:
         action: Its full name.
-        timeout_sec: How long it may take, in seconds.
+        timeout_sec: How long this may take, in seconds.
     """
 
     _text = "action {}"
@@ -135,11 +135,11 @@ class ActionReady(GraphFact):
 
 @dataclass(frozen=True)
 class NodeActive(GraphFact):
-    """A managed node is active, whoever has activated it.
+    """A managed node is active, whoever activated it.
 
     Attributes:
         name: Its full name.
-        timeout_sec: How long it may take, in seconds.
+        timeout_sec: How long this may take, in seconds.
     """
 
     _text = "managed node {} to be active"
@@ -147,7 +147,7 @@ class NodeActive(GraphFact):
     timeout_sec: float = 10.0
 
     async def wait(self, node: Node) -> None:
-        """Return when it is: its state is asked for, and again after each of its transitions."""
+        """Wait until it is, requesting its state initially and after each of its transitions."""
         name = self._name
         moved = asyncio.Event()
         events = node.create_subscription(
@@ -161,7 +161,7 @@ class NodeActive(GraphFact):
                 try:
                     response = await client.call(GetState.Request(), timeout_sec=ASK_SEC)
                 except (ServiceError, TimeoutError):
-                    continue  # it has gone again, or is busy; another call waits for it
+                    continue  # gone again, or busy; the next call waits for it
                 if response.current_state.label == "active":
                     return
                 await moved.wait()
@@ -171,12 +171,12 @@ class NodeActive(GraphFact):
 
 
 async def endpoint_of(node: Node, kind: EndpointKind, name: str) -> None:
-    """Return when the graph has an endpoint of this kind and name."""
+    """Wait until the graph has an endpoint of this kind and name."""
     await node.graph.until(lambda: node.graph.count(kind, name) > 0, name)
 
 
 def facts_of(ready: Fact | Sequence[Fact] | None, subject: str) -> tuple[Fact, ...]:
-    """Return the facts that a user gave.
+    """Return the facts that a user passed.
 
     Raises:
         TypeError: something else was given.
@@ -185,14 +185,14 @@ def facts_of(ready: Fact | Sequence[Fact] | None, subject: str) -> tuple[Fact, .
     for fact in facts:
         if not isinstance(fact, Fact):
             raise TypeError(
-                f"{subject}: ready={fact!r} is no fact; use NodeExists, TopicPublished, "
+                f"{subject}: ready={fact!r} is not a fact; use NodeExists, TopicPublished, "
                 "ServiceReady, ActionReady or NodeActive of aionode.system"
             )
     return facts
 
 
 async def missing_of(facts: Sequence[Fact], node: Node) -> list[str]:
-    """Wait for all facts at the same time, and return those that did not come in time."""
+    """Wait for all facts concurrently, and return those that did not come true in time."""
 
     async def wait(fact: Fact) -> str:
         try:

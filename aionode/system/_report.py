@@ -1,4 +1,4 @@
-"""The report at the end of a system in which something failed."""
+"""The final report of a system in which something failed."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ __all__ = ["exit_report"]
 
 
 def exit_report(ends: Sequence[MemberEnd], first: MemberEnd) -> str:
-    """Return who failed first, how, and its last lines; then the others that failed.
+    """Describe which member failed first, how, and its last lines; then the other failures.
 
     Args:
-        ends: All ends that nobody asked for, in order.
-        first: That of the first member that failed for good.
+        ends: All unrequested ends, in order.
+        first: The end of the first member that failed for good.
     """
     lines = [f"the first to fail was {first.name}: it {first.text} after {first.ran_sec:.1f} s"]
     if first.last_lines:

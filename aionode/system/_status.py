@@ -1,4 +1,4 @@
-"""The members of a system as others see them: their states, and how they ended."""
+"""The public status of a system's members: their states, and how they ended."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ __all__ = ["MemberEnd", "MemberStatus", "State", "SystemHealth", "shell_status"]
 State = Literal[
     "waiting", "starting", "running", "restarting", "stopping", "stopped", "ended", "failed"
 ]
-"""``waiting``: for those that it starts after. ``stopped``: on request. ``ended``: by itself, with
-status 0. ``failed``: for good, as it is not restarted."""
+"""``waiting``: for the members it starts after. ``stopped``: on request. ``ended``: by itself, with
+status 0. ``failed``: for good, without another restart.
+"""
 
 
 @dataclass(frozen=True)
@@ -23,10 +24,10 @@ class MemberEnd:
         name: The member.
         failed: Whether it failed.
         text: How it ended, such as ``ended with exit status 3`` or ``was killed by SIGSEGV``.
-        status: Its exit status as a shell has it; that of a node that failed is 1.
-        ran_sec: How long it had run, in seconds.
-        last_lines: What it printed last, 20 lines at most.
-        code: The exit code of its process as `subprocess` has it, negative for a signal; None for
+        status: Its exit status in a shell's terms; 1 for a node that failed.
+        ran_sec: How long it ran, in seconds.
+        last_lines: The last lines that it printed, at most 20.
+        code: The exit code of its process in `subprocess`'s terms, negative for a signal; None for
             a node in this process, and for a process that could not be started.
     """
 
@@ -45,16 +46,16 @@ class MemberStatus:
 
     Attributes:
         name: Its name in the system.
-        state: ``"waiting"`` (for those that it starts after), ``"starting"``, ``"running"``,
+        state: ``"waiting"`` (for the members it starts after), ``"starting"``, ``"running"``,
             ``"restarting"`` (soon), ``"stopping"``, ``"stopped"`` (on request), ``"ended"`` (by
             itself, with status 0) or ``"failed"``.
-        pid: Its process; None while there is none. That of a node in this process is this one.
+        pid: Its process, which for a node in this process is this one; None while there is none.
         restarts: How often it was started again.
-        ready: Whether all that was awaited of it has come.
-        exit_status: How its last run ended, as a shell has it; None if none has.
+        ready: Whether everything awaited of it is there.
+        exit_status: How its last run ended, in a shell's terms; None if none has ended.
         uptime_sec: How long it has been running, in seconds; 0 while it is not.
-        cpu_percent: The share of a core that its first process takes, since the last look; None
-            where psutil is missing, or it is unknown.
+        cpu_percent: The share of a core used by its first process since the last call; None if
+            unknown or without psutil.
         memory_bytes: Resident memory of its first process; None as above.
         error: Why its last run failed, or why it is not ready, in one line.
     """
@@ -71,7 +72,7 @@ class MemberStatus:
     error: str
 
     def record(self) -> dict[str, Any]:
-        """Return it as JSON has it."""
+        """Return it as JSON-compatible values."""
         return asdict(self)
 
 
@@ -95,14 +96,14 @@ class SystemHealth:
 
 
 def shell_status(code: int | None) -> int:
-    """Return an exit code as a shell has it: 128 and more for signals; 1 if it is not known."""
+    """Convert an exit code to a shell's: 128 and more for signals; 1 if unknown."""
     if code is None:
         return 1
     return 128 - code if code < 0 else code
 
 
 def end_text(code: int | None) -> str:
-    """Return how a process ended, given its exit code; None if that is not known."""
+    """Describe how a process ended, given its exit code, or None if unknown."""
     if code is None:
         return "ended; how, only the guardian knew"
     if code >= 0:

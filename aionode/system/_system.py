@@ -1,4 +1,4 @@
-"""`System`: processes and nodes that are started, watched and stopped as one thing."""
+"""`System`: processes and nodes that are started, watched and stopped as one unit."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ MAX_ENDS: Final = 1000
 
 
 class System:
-    """Processes and nodes that are started, watched and stopped as one thing.
+    """Processes and nodes that are started, watched and stopped as one unit.
 
     ::
 
@@ -60,23 +60,22 @@ class System:
 
     Members start in the order in which they are added. Those added before ``async with`` start when
     the block is entered, later ones at once. When the block ends, the members stop in reverse
-    order, one after the other: a process gets SIGINT, after 7 s SIGTERM, and after 5 s more
-    SIGKILL.
+    order, one at a time: a process gets SIGINT, after 7 s SIGTERM, and after another 5 s SIGKILL.
 
-    When a process ends, the system also stops all processes that it has left behind. If this
-    process is killed, a guardian, which is a small process of its own, stops all members in the
-    same order. Processes need Linux.
+    When a process ends, the system also stops all processes that it left behind. If this process is
+    killed, a guardian, a small separate process, stops all members in the same order. Processes
+    need Linux.
 
     Args:
         name: Name of the system; its node is called ``aionode_system_NAME``. The default is the
             process id.
         context: The context of its nodes; `Context.default()` by default.
-        log: Where the output of all members goes; `SystemLog` on ``sys.stdout`` by default.
+        log: Receives the output of all members; `SystemLog` on ``sys.stdout`` by default.
 
     Attributes:
         context: The context of its nodes; its processes are in the same domain.
         log: The log.
-        ends: The ends of members that nobody stopped, in order; the first 1000.
+        ends: The unrequested ends of members, in order; the first 1000.
 
     Raises:
         ConfigurationError: the machine does not run Linux (a ValueError).
@@ -104,7 +103,7 @@ class System:
         self._changed = asyncio.Event()
         self._clock = SteadyClock()
         self._since_ns = 0
-        self._unguarded = ""  # how the guardian ended; empty while it runs
+        self._unguarded = ""  # how the guardian ended; empty while it is running
         self.tasks: asyncio.TaskGroup
         self.guard: Guard
         self.reader: OutputReader
@@ -137,8 +136,8 @@ class System:
     ) -> Member:
         """Add a program.
 
-        The program runs in a session of its own, so Ctrl-C in the terminal does not reach it: the
-        system stops it. When it ends, the system also stops the processes that it has left behind.
+        The program runs in its own session, so Ctrl-C in the terminal does not reach it; the system
+        stops it. When it ends, the system also stops the processes that it left behind.
 
         Args:
             name: Its name in the system.
@@ -150,30 +149,29 @@ class System:
             namespace: The namespace of its nodes.
             env: Variables to add to the environment of this process, or to remove if the value is
                 None.
-            cwd: Its working folder.
-            restart: When to start it again: ``"never"``, ``"on-failure"`` (an exit status other
-                than 0, or a signal) or ``"always"``.
+            cwd: Its working directory.
+            restart: When to start it again: ``"never"``, ``"on-failure"`` (a non-zero exit status,
+                or a signal) or ``"always"``.
             ready: Facts to await before the member counts as ready; by default it is ready as soon
                 as it runs.
             stdin: Whether the program reads the keyboard. If so, and if there is a terminal, its
                 standard input and output are that terminal, and its standard error goes to the log.
                 Other programs have an empty standard input.
-            terminal: Whether the program gets a terminal of its own, whose output goes to the log.
-                Many programs print each line at once, and in colours, if they have a terminal.
+            terminal: Whether the program gets its own terminal, whose output goes to the log. Many
+                programs print unbuffered and in colours if they have a terminal.
             on_output: Called with each piece of output as it arrives, and with 1 for standard
-                output or 2 for standard error. With it, lines of the two may change their order in
-                the log.
+                output or 2 for standard error. With it, lines of the two streams may be reordered
+                in the log.
             term_after_sec: Time from SIGINT to SIGTERM, in seconds.
             kill_after_sec: Time from SIGTERM to SIGKILL, in seconds.
-            options: The rest; see `MemberOptions`.
+            options: Further options; see `MemberOptions`.
 
-        Returns:
-            The member; its `name` is what the other methods take.
+        Returns: The member; the other methods take its `name`.
 
         Raises:
             ValueError: the name is taken, or an argument does not fit.
             MemberNotFoundError: `after` or `fails_with` names no member (a LookupError).
-            TypeError: `ready` is no fact, or an option is unknown.
+            TypeError: `ready` is not a fact, or an option is unknown.
         """
         if not argv or isinstance(argv, str):
             raise ValueError(f"{name}: argv={argv!r}; use a list, such as ['my_driver', '--fast']")
@@ -206,9 +204,9 @@ class System:
         cwd: str | os.PathLike[str] | None = None,
         **options: Unpack[MemberOptions],
     ) -> Member:
-        """Add a node, as tasks of this process or as a process of its own.
+        """Add a node, as tasks of this process or as a separate process.
 
-        The node is called `name`, whatever name its class gives it, so that one class can be there
+        The node is called `name`, whatever name its class gives it, so that one class can be used
         twice.
 
         Args:
@@ -219,24 +217,24 @@ class System:
                 of both, in which later entries win.
             remappings: Names of topics and services, each with its new name.
             namespace: Its namespace.
-            processes: Whether the node runs in a process of its own: several use several cores.
+            processes: Whether the node runs in a separate process, as several processes can use
+                several cores.
             restart: When to start it again; as for `process`.
             ready: Facts to await before the member counts as ready; by default it is ready when it
                 is in the graph.
-            env: Variables to add to the environment of a process of its own, or to remove if the
+            env: Variables to add to the environment of its separate process, or to remove if the
                 value is None.
-            cwd: Working folder of a process of its own.
-            options: The rest; see `MemberOptions`.
+            cwd: Working directory of its separate process.
+            options: Further options; see `MemberOptions`.
 
-        Returns:
-            The member; its `name` is what the other methods take.
+        Returns: The member; the other methods take its `name`.
 
         Raises:
-            InvalidNodeNameException: `name` is no name of a node (a ValueError).
+            InvalidNodeNameException: `name` is not a valid node name (a ValueError).
             ValueError: the name is taken, or an argument does not fit.
             CommandError: there is no such module or class (a RuntimeError).
             MemberNotFoundError: `after` or `fails_with` names no member (a LookupError).
-            TypeError: `ready` is no fact, or an option is unknown.
+            TypeError: `ready` is not a fact, or an option is unknown.
         """
         names.validate_node_name(name)
         arguments = ros_arguments(name, namespace, parameters, remappings)
@@ -277,7 +275,7 @@ class System:
     # Lifetime
 
     async def __aenter__(self) -> Self:
-        """Start the guardian, the node of the system, and the members that were added.
+        """Start the guardian, the system's node, and the members that were added.
 
         Raises:
             RuntimeError: it was entered before.
@@ -314,7 +312,7 @@ class System:
         exc: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Stop all members in reverse order, and return when none of their processes is left.
+        """Stop all members in reverse order, and wait until none of their processes is left.
 
         Cancelling does not interrupt this. An exception from the body propagates unchanged.
         """
@@ -340,7 +338,7 @@ class System:
             self.log.note(exit_report(self.ends, self.first_failure))
 
     def _note_guardian_lost(self, code: int) -> None:
-        """End the system: if this process were killed too, nothing would stop the members."""
+        """End the system, as nothing would stop the members if this process were killed too."""
         ran_sec = (self._clock.now_ns() - self._since_ns) / S_TO_NS
         end = MemberEnd("the guardian", True, end_text(code), shell_status(code), ran_sec)
         self._unguarded = f"the guardian of the system {end.text}: the system ends"
@@ -351,7 +349,7 @@ class System:
         self.request_end()
 
     async def ready(self) -> None:
-        """Return when all members are ready, except those that were stopped.
+        """Wait until all members are ready, except those that were stopped.
 
         Cancelling is safe.
 
@@ -367,7 +365,7 @@ class System:
                     ready.result()
 
     async def wait(self) -> None:
-        """Return when the system is over.
+        """Wait until the system is over.
 
         The system is over when all members have ended for good, when a `required` member has, or
         when `request_end` is called. Cancelling is safe.
@@ -378,20 +376,20 @@ class System:
             await self.changed()
 
     async def end_requested(self) -> None:
-        """Return when the system is asked to end.
+        """Wait until the system is asked to end.
 
-        `request_end` asks for it, a request from outside does, such as ``aionode system stop
-        --all``, and so does the end of a `required` member or of the guardian. Cancelling is safe.
+        That is by `request_end`, by a request from outside such as ``aionode system stop --all``,
+        or by the end of a `required` member or of the guardian. Cancelling is safe.
         """
         await self._over.wait()
 
     async def run_main(self, main: Callable[[Self], Awaitable[object]]) -> None:
-        """Call `main` with the system, then return when the system is over, as `wait` does.
+        """Call `main` with the system, then wait until the system is over, like `wait`.
 
-        A request to end the system cancels `main`, which may not wait for it. Cancelling is safe.
+        A request to end the system cancels `main`, which must not wait for it. Cancelling is safe.
 
         Args:
-            main: What adds members, and may wait, such as for `ready`.
+            main: Adds members, and may await things such as `ready`.
         """
 
         async def work() -> None:
@@ -404,13 +402,13 @@ class System:
                 for way in ways:
                     way.cancel()
         except BaseExceptionGroup as group:
-            raise group.exceptions[0] from None  # that of `main`: nothing else can fail
+            raise group.exceptions[0] from None  # the one of `main`, as nothing else can fail
         await self.wait()
 
     async def changed(self) -> None:
-        """Return when the state of a member changes next, or `request_end` is called.
+        """Wait until the state of a member changes, or `request_end` is called.
 
-        No change after the call is missed: check your condition, then call this method, without an
+        No change after the call is missed: check your condition, then call this method, with no
         ``await`` in between. Cancelling is safe.
         """
         if self._changed.is_set():
@@ -428,7 +426,7 @@ class System:
     # Control
 
     async def stop(self, name: str) -> None:
-        """Stop a member for good, and return when none of its processes is left.
+        """Stop a member for good, and wait until none of its processes is left.
 
         Raises:
             MemberNotFoundError: there is no member of this name (a LookupError).
@@ -438,7 +436,7 @@ class System:
     async def restart(self, name: str) -> None:
         """Stop a member and start it again, or start a member that has ended.
 
-        The method returns when the member starts; `ready` waits until it is ready.
+        It returns when the member starts; `ready` waits until it is ready.
 
         Raises:
             MemberNotFoundError: there is no member of this name (a LookupError).
@@ -446,7 +444,7 @@ class System:
         await self.member(name).restart()
 
     def status(self) -> dict[str, MemberStatus]:
-        """Return the current status of each member by its name, in the order of their starts."""
+        """Return the current status of each member by name, in the order of their starts."""
         return {
             name: member.status(self._usage.of(member.pid))
             for name, member in self._members.items()
@@ -481,7 +479,7 @@ class System:
     # For members
 
     def environment(self) -> dict[str, str]:
-        """Return the environment of the processes: they join the domain of the system's context."""
+        """Return the environment of processes, which join the domain of the system's context."""
         network = self.context.network
         return {
             **os.environ,
@@ -494,7 +492,7 @@ class System:
         self._changed.set()
 
     def note_end(self, member: Member, end: MemberEnd, *, for_good: bool) -> None:
-        """Record the end of a run that nobody asked for, and stop the members that depend on it."""
+        """Record the unrequested end of a run, and stop the members that depend on it."""
         if self.closing:
             return
         if len(self.ends) < MAX_ENDS:
@@ -510,7 +508,7 @@ class System:
                     self.tasks.create_task(self._follow(other, member))
 
     async def _follow(self, member: Member, failed: Member) -> None:
-        """Stop a member that fails with another member, and start it when the other runs again."""
+        """Stop a member that fails with another one, and start it when the other runs again."""
         if member.is_over():
             return
         self.log.note(f"{member.name} is stopped: it fails with {failed.name}")

@@ -1,4 +1,4 @@
-"""The processor time and memory of each process, by psutil where it is installed."""
+"""CPU time and memory of each process, using psutil if it is installed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["UsageMeter"]
 
 
 class UsageMeter:
-    """Measures processes; the share of a core is that since the last look."""
+    """Measures processes; the share of a core is measured since the last call."""
 
     def __init__(self) -> None:
         self._psutil: Any = None
@@ -21,7 +21,7 @@ class UsageMeter:
     def of(self, pid: int | None) -> tuple[float | None, int | None]:
         """Return the share of a core in percent, and the resident memory in bytes.
 
-        Both are None without psutil, and for a process that has ended. The share is 0 at first.
+        Both are None without psutil and for a process that has ended. The first share is 0.
         """
         if self._psutil is None or pid is None:
             return None, None

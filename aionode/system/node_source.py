@@ -23,13 +23,14 @@ FITS = "expected MODULE:CLASS, such as my_robot.nodes:Talker or talker.py:Talker
 
 
 def makers_of(specs: Sequence[str]) -> list[Callable[[], Any]]:
-    """Return what makes the nodes that are named; nothing if a file has run them itself.
+    """Return the factories of the named nodes; none if a file has run them itself.
 
-    A file whose last line runs its nodes, without asking for ``__main__``, does so when it is
-    imported. They have ended then, and are not started again.
+    A file whose last line runs its nodes, without checking ``__main__``, does so when it is
+    imported. They have ended by then, and are not started again.
 
     Raises:
-        CommandError: A node is not there, or a file that runs its nodes itself is not alone.
+        CommandError: A node does not exist, or a file that runs its nodes itself is not the only
+            one.
     """
     makers = []
     for spec in specs:
@@ -46,25 +47,25 @@ def makers_of(specs: Sequence[str]) -> list[Callable[[], Any]]:
 
 
 def maker_of(spec: str) -> Callable[[], Any] | None:
-    """Return what makes the node that is named; None if its module has run its nodes itself.
+    """Return the factory of the named node; None if its module has run its nodes itself.
 
     Raises:
-        CommandError: There is no such thing, or it imports what is not installed; a program of
-            rclpy may do so by a name that its text does not show.
+        CommandError: There is no such node, or it imports something that is not installed; an rclpy
+            program may do so under a name that its text does not show.
     """
     before = openings()
     try:
         module_of(spec.partition(":")[0], spec)
         return node_maker(spec) if openings() == before else None
     except ImportError as error:
-        # A folder of definitions beside the file is taken for a package without modules.
+        # A folder of definitions beside the file is imported as a namespace package.
         if isinstance(error, ModuleNotFoundError) or "(unknown location)" in str(error):
             raise CommandError(f"{spec}: it imports {missing(error, spec)}") from error
         raise
 
 
 def missing(error: ImportError, spec: str) -> str:
-    """Return what a module has not found, and what to do about it."""
+    """Describe what a module did not find, and what to do about it."""
     name = error.name or ""
     if name.startswith("aionode.interfaces."):
         return f"what is not there: {error}"
@@ -80,7 +81,7 @@ def missing(error: ImportError, spec: str) -> str:
 def node_maker(spec: str) -> Callable[[], Any]:
     """Return the class or function named by ``module:name`` or ``file.py:name``.
 
-    The name may be left out if the module defines exactly one node class.
+    The name may be omitted if the module defines exactly one node class.
 
     Raises:
         CommandError: there is no such module, or it has no node class or function of that name.
@@ -100,7 +101,7 @@ def node_maker(spec: str) -> Callable[[], Any]:
 
 
 def module_of(source: str, spec: str) -> ModuleType:
-    """Return the module of this name, or in this file."""
+    """Import the module of this name, or in this file."""
     if not source:
         raise CommandError(f"{spec!r}: no module; {FITS}")
     if source.endswith(".py"):
@@ -117,7 +118,7 @@ def module_of(source: str, spec: str) -> ModuleType:
 
 
 def module_in_file(path: Path, spec: str) -> ModuleType:
-    """Return the module in a file; like a program, it may import modules beside it."""
+    """Import the module in a file; like a program, it may import modules beside it."""
     if not path.is_file():
         raise CommandError(f"{spec}: no file {path} here ({Path.cwd()}); {FITS}")
     loaded = sys.modules.get(path.stem)

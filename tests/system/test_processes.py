@@ -641,7 +641,7 @@ async def test_mistakes_in_a_description_are_refused_with_what_fits(system: Syst
         system.process("a", FOREVER, restart="sometimes")  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="use a list"):
         system.process("a", "sleep 1000")
-    with pytest.raises(TypeError, match="is no fact; use NodeExists"):
+    with pytest.raises(TypeError, match="is not a fact; use NodeExists"):
         system.process("a", FOREVER, ready="/odom")  # type: ignore[arg-type]
     with pytest.raises(TypeError, match="the options are min_delay_sec"):
         system.process("a", FOREVER, requird=True)  # type: ignore[call-arg]
