@@ -1,7 +1,7 @@
-"""Launch files of ROS 2, in Python, XML and YAML: from a file to what is started.
+"""ROS 2 launch files in Python, XML and YAML: from a file to running processes.
 
-`Plan` evaluates a file as far as that is possible before anything runs: names that are missing,
-arguments that do not fit and packages that are not there are errors then, with file and line.
+`Plan` evaluates a file as far as possible before anything runs, so that unknown names, wrong
+arguments and missing packages are errors with file and line.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from aionode.rclpy import install
 if TYPE_CHECKING:
     from aionode.system import System
 
-# The classes of launch files are those of `launch`, which `install` lets this process find: what
-# imports them is imported by the functions below, after that.
+# The classes of launch files are those of `launch`, which only `install` makes importable; modules
+# that import them are therefore imported by the functions below, after it.
 
 __all__ = ["DeclaredArgument", "Plan", "plan_running", "run_plan", "share_directory"]
 
@@ -36,8 +36,8 @@ class DeclaredArgument:
     Attributes:
         name: Its name.
         description: What it is for.
-        default: Its default, as it stands in the file; None if it has to be given.
-        choices: The values that fit; None if all do.
+        default: Its default, as written in the file; None if it is required.
+        choices: The valid values; None if all are valid.
     """
 
     name: str
@@ -47,16 +47,16 @@ class DeclaredArgument:
 
 
 class Plan:
-    """The actions of a launch file, in order. Making a description starts nothing.
+    """The actions of a launch file, in order; creating a plan starts nothing.
 
-    A file in Python is run as a program of the user: it may do what programs may do.
+    A Python file is run like any program of the user, and may do anything a program may do.
 
     Args:
         path: The launch file.
         arguments: Values for its arguments.
-        workspace: The folder with the packages that it names, which need no build; the workspace
-            around the file by default. Installed packages are known in any case.
-        skip_missing: Whether what needs a package that is not there is left out, with a warning.
+        workspace: The folder with its packages, which need no build; the workspace around the file
+            by default. Installed packages are found in any case.
+        skip_missing: Whether to leave out, with a warning, what needs a missing package.
 
     Attributes:
         path: The launch file.
@@ -64,7 +64,7 @@ class Plan:
         main: The function ``async def main(system)`` of the file, if it has that.
 
     Raises:
-        LaunchFileError: The file cannot be read, or what it says cannot be done (a ValueError).
+        LaunchFileError: The file cannot be read, or asks for something impossible (a ValueError).
         FileNotFoundError: There is no such workspace.
     """
 
@@ -76,7 +76,7 @@ class Plan:
         workspace: str | Path | None = None,
         skip_missing: bool = False,
     ) -> None:
-        self._before = dict(os.environ)  # a file of Python may change it
+        self._before = dict(os.environ)  # a Python file may change it
         around = workspace_of(Path(path)) if workspace is None else Path(workspace)
         install(workspace=around)
         from aionode.launch._evaluation import load_file
@@ -132,14 +132,14 @@ class Plan:
         return self._steps
 
     def _forget_names(self) -> None:
-        """Let the processes of timers and event handlers be named anew."""
+        """Reset the names of processes of timers and event handlers."""
         self._names.clear()
         self._names.update(self._names_before)
 
     def _misspelt(self, declared: set[str]) -> Iterator[Step]:
-        """Yield a warning for each argument that is hardly the one that was meant.
+        """Yield a warning for each argument that looks misspelled.
 
-        Others that are not declared may be read all the same.
+        Other undeclared arguments may still be read by the file.
         """
         for name in self._arguments:
             close = get_close_matches(name, declared - set(self._arguments))
@@ -148,21 +148,21 @@ class Plan:
                 yield Log(problem, "WARN")
 
     def records(self) -> Iterator[dict[str, Any]]:
-        """Yield what is started, as plain values that can be written as JSON."""
+        """Yield what is started, as JSON-compatible values."""
         from aionode.launch._preview import records
 
         yield from records(self.steps, self._before)
         self._forget_names()
 
     def lines(self) -> Iterator[str]:
-        """Yield what is started, for readers."""
+        """Yield what is started, as readable lines."""
         from aionode.launch._preview import text_of
 
         return (text_of(record) for record in self.records())
 
 
 def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iterator[str]:
-    """Yield what is left out, by the package that is not there, and which handlers never react."""
+    """Yield what is left out, by missing package, and which handlers never run."""
     for package, entities in left_out.items():
         name, _, executable = package.partition(" ")
         what = f"package '{name}' is not there"
@@ -184,24 +184,24 @@ def left_out_texts(left_out: Mapping[str, list[Any]], steps: list[Step]) -> Iter
 async def run_plan(
     plan: Plan, system: System, *, watch: bool = False, once_ready: str | None = None
 ) -> None:
-    """Start what a plan says, and return when nothing of it runs any more, or the end is asked for.
+    """Run a plan until nothing of it is running any more or a shutdown is requested.
 
-    The plan may ask for it, and so may others, such as ``aionode system stop --all``; without the
-    guardian, which would stop the processes if this one were killed, the system ends as well.
+    The plan may request one, and so may others, such as ``aionode system stop --all``. The system
+    also ends if it loses the guardian, which would stop the processes if this one were killed.
 
-    The processes and nodes are added to `system`, which has been entered, and stops them at its
-    end. Cancelling is safe.
+    The processes and nodes are added to `system`, which must have been entered, and which stops
+    them at its end. Cancelling is safe.
 
     Args:
         plan: The plan.
         system: The system.
-        watch: Whether a process is restarted when the file of its program changes, also after it
-            has ended. A launch description goes on until it is asked to end then.
-        once_ready: A command for the shell, which is run when all nodes are in the graph.
+        watch: Whether to restart a process when its program's file changes, even after it has
+            ended. In that case the launch goes on until a shutdown is requested.
+        once_ready: A shell command that is run once all nodes are in the graph.
 
     Raises:
-        LaunchFileError: What an event handler or a timer does cannot be evaluated (a ValueError).
-        NotReadyError: A node did not come, so that `once_ready` was not run (a TimeoutError).
+        LaunchFileError: An event handler or a timer cannot be evaluated (a ValueError).
+        NotReadyError: A node did not appear, so `once_ready` was not run (a TimeoutError).
     """
     from aionode.launch.running import RunningLaunch, first_of
 
@@ -225,19 +225,19 @@ async def run_plan(
 
 @asynccontextmanager
 async def plan_running(plan: Plan, system: System) -> AsyncIterator[None]:
-    """Run what a plan says beside the body of ``async with``, which begins when all is ready.
+    """Run a plan alongside the body of ``async with``, which starts when everything is ready.
 
-    A process is ready when its node is in the graph, if the file names that, and else when it runs.
-    At the end, the event handlers see a shutdown; `system`, which has been entered, stops the rest.
+    A process is ready when its node is in the graph, if the file names one, and otherwise when it
+    is running. At the end, the event handlers see a shutdown; `system`, which must have been
+    entered, stops the rest.
 
     Args:
         plan: The plan.
         system: The system.
 
     Raises:
-        LaunchFileError: The file cannot be evaluated, or what an event handler or a timer does (a
-            ValueError).
-        NotReadyError: A node did not come (a TimeoutError).
+        LaunchFileError: The file, an event handler or a timer cannot be evaluated (a ValueError).
+        NotReadyError: A node did not appear (a TimeoutError).
     """
     from aionode.launch.running import RunningLaunch
 
@@ -252,11 +252,11 @@ async def plan_running(plan: Plan, system: System) -> AsyncIterator[None]:
             yield
             work.cancel()
     except BaseExceptionGroup as group:
-        raise group.exceptions[0] from None  # that of the body, or of the launch
+        raise group.exceptions[0] from None  # the one of the body or of the launch
 
 
 async def note_start(system: System) -> None:
-    """Note which members run, with the numbers of their processes, once all have been started."""
+    """Log which members are running, with their process ids, once all have been started."""
     while not (table := system.status()) or any(
         status.state in {"waiting", "starting"} for status in table.values()
     ):
@@ -268,13 +268,13 @@ async def note_start(system: System) -> None:
 
 
 async def run_once_ready(system: System, command: str) -> None:
-    """Run a command for the shell when all members are ready, and note how it ended."""
+    """Run a shell command when all members are ready, and log how it ended."""
     await system.ready()
     process = await asyncio.create_subprocess_shell(command)
     try:
         status = await process.wait()
     finally:
-        if process.returncode is None:  # the launch ends, and leaves nothing behind
+        if process.returncode is None:  # the launch is ending and leaves nothing behind
             process.kill()
             await process.wait()
     if status:
@@ -282,7 +282,7 @@ async def run_once_ready(system: System, command: str) -> None:
 
 
 def share_directory(package: str, workspace: str | Path | None = None) -> Path:
-    """Return the folder with the data of a package, such as its launch files.
+    """Return the share folder of a package, which contains its launch files and other data.
 
     Args:
         package: The name of the package.
@@ -296,5 +296,5 @@ def share_directory(package: str, workspace: str | Path | None = None) -> Path:
 
 
 def joined(substitutions: list[Any]) -> str:
-    """Return substitutions as they stand in the file."""
+    """Return substitutions as written in the file."""
     return " + ".join(sub.describe() for sub in substitutions)

@@ -1,6 +1,6 @@
 """Runs a launch file with ROS 2's own launch: ``python -m aionode.launch FILE NAME:=VALUE``.
 
-The modules that ROS 2's launch needs and that are not installed, such as `rclpy`, are aionode's.
+Modules that ROS 2's launch needs and that are not installed, such as `rclpy`, are aionode's.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ __all__ = ["main"]
 
 
 class InstalledLaunch(MetaPathFinder):
-    """Finds the modules of launch where they are installed, and not those of aionode."""
+    """Finds the installed modules of launch instead of aionode's."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return how a module of launch is loaded; None for all others."""
+        """Return the spec of a module of launch; None for all others."""
         package = fullname.partition(".")[0]
         if package.startswith("launch") or package == "ament_index_python":
             return PathFinder.find_spec(fullname, path, target)
@@ -31,7 +31,7 @@ class InstalledLaunch(MetaPathFinder):
 
 
 def main() -> int:
-    """Run the file, and return its exit status."""
+    """Run the file; return its exit status."""
     path, *arguments = sys.argv[1:]
     install(prefer_ros=True)
     sys.meta_path.insert(0, InstalledLaunch())

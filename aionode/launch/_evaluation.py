@@ -1,4 +1,4 @@
-"""From a launch file to a plan: the evaluation of a description, which starts nothing."""
+"""Evaluate a launch description to a plan, without starting anything."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ ENDINGS = {".py": "python", ".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".
 """The languages of launch files, by the endings of their names."""
 
 MAX_DEPTH = 100
-"""Most files that may include one another."""
+"""Maximum depth of included files."""
 
 MAX_ENTITIES = 50_000
 """Most entities of one evaluation: files that include others twice grow without end."""
 
 
 def new_context(path: str, arguments: Mapping[str, str]) -> LaunchContext:
-    """Return the context in which the description of a file is evaluated."""
+    """Create the context in which a file's description is evaluated."""
     context = LaunchContext(argv=[f"{name}:={value}" for name, value in arguments.items()])
     context.load_file = load_description
     context.launch_configurations.update(arguments)
@@ -68,7 +68,7 @@ def new_context(path: str, arguments: Mapping[str, str]) -> LaunchContext:
 
 
 def load_description(path: str, kind: str = "any") -> Any:
-    """Return the description in a file.
+    """Load the description in a file.
 
     Raises:
         LaunchFileError: There is no such file, or it is not a launch file.
@@ -132,7 +132,7 @@ def kind_of(path: str, text: bytes) -> str:
 
 
 def module_in(path: str) -> Any:
-    """Return the module in a file of Python, run.
+    """Run a Python file, and return its module.
 
     Raises:
         LaunchFileError: It fails.
@@ -146,7 +146,7 @@ def module_in(path: str) -> Any:
     module = importlib.util.module_from_spec(spec)
     module.__file__ = str(path)
     wrote = sys.dont_write_bytecode
-    sys.dont_write_bytecode = True  # a launch file leaves no file beside it
+    sys.dont_write_bytecode = True  # a launch file leaves no .pyc file behind
     try:
         code = compile(Path(path).read_bytes(), str(path), "exec")
         with_stand_ins(lambda: exec(code, vars(module)))  # noqa: S102  # the user's own program
@@ -158,7 +158,7 @@ def module_in(path: str) -> Any:
 
 
 def load_file(path: str) -> tuple[Any, Callable[..., Any] | None]:
-    """Return the description in a file, and its ``async def main(system)`` if it has that.
+    """Load the description in a file, and its ``async def main(system)`` if it has one.
 
     Raises:
         LaunchFileError: There is no such file, or it is not a launch file.
@@ -173,7 +173,7 @@ def load_file(path: str) -> tuple[Any, Callable[..., Any] | None]:
 
 
 def description_in(module: Any, path: str) -> Any:
-    """Return what ``generate_launch_description()`` of a module returns."""
+    """Return the result of a module's ``generate_launch_description()``."""
     function = getattr(module, FUNCTION, None)
     if function is None:
         raise LaunchFileError(path, f"has neither {FUNCTION}() nor `async def main(system)`")
@@ -190,7 +190,7 @@ def description_in(module: Any, path: str) -> Any:
 
 
 def failure(path: str, error: Exception) -> LaunchFileError:
-    """Return the error of a launch file whose code fails: where, and what fits."""
+    """Return the error of a launch file whose code fails: where, and what would be valid."""
     if isinstance(error, LaunchFileError):
         return error
     if isinstance(error, SyntaxError):
@@ -224,10 +224,9 @@ UNKNOWN = re.compile(r"(\w+)\.__init__\(\) got an unexpected keyword argument '(
 
 
 def unknown_option(error: Exception) -> str | None:
-    """Return which class has no such option, and what fits; None if that is not the problem.
+    """Describe which class lacks an option, and what it has; None if that is not the problem.
 
-    The text of the error names the class that was asked last, which may be a base of the one that
-    stands in the file.
+    The error text names the class that was called last, which may be a base of the one in the file.
     """
     match = UNKNOWN.match(str(error))
     if match is None:
@@ -247,7 +246,7 @@ def unknown_option(error: Exception) -> str | None:
 
 
 def options_of(kind: type) -> list[str]:
-    """Return the names of the arguments of a class and of its bases, as far as it takes those."""
+    """Return the names of the arguments of a class, including those it passes to its bases."""
     argument_names: set[str] = set()
     for cls in kind.__mro__:
         if "__init__" in vars(cls):
@@ -262,7 +261,7 @@ def options_of(kind: type) -> list[str]:
 
 
 def problem_of(error: Exception) -> str:
-    """Return what went wrong, and for a missing name what there is instead."""
+    """Describe what went wrong, and for a missing name the alternatives."""
     if (problem := unknown_option(error)) is not None:
         return problem
     if isinstance(error, ImportError) and error.name is not None:
@@ -277,7 +276,7 @@ def problem_of(error: Exception) -> str:
         return advice(error.name, OWN_PACKAGES) or f"no module {error.name}"
     text = str(error) or type(error).__name__
     if isinstance(error, KeyError) and type(error) is not KeyError:
-        return str(error.args[0])  # its text, and not a key
+        return str(error.args[0])  # its text rather than a key
     if is_of_environment(error):
         name = error.args[0]
         return (
@@ -291,19 +290,19 @@ def problem_of(error: Exception) -> str:
 
 
 def is_of_environment(error: Exception) -> bool:
-    """Return whether an error is that of ``os.environ[name]``."""
+    """Return whether an error comes from ``os.environ[name]``."""
     frames = [frame for frame, _ in traceback.walk_tb(error.__traceback__)]
     reads = type(os.environ).__getitem__
     return bool(frames) and frames[-1].f_code is reads.__code__
 
 
 def is_own(module: str) -> bool:
-    """Return whether a module is one of those that stand for ROS's."""
+    """Return whether a module is one of aionode's replacements for ROS's."""
     return module.partition(".")[0] in OWN_PACKAGES
 
 
 def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:
-    """Return what entities do, in order; up to what is known only later, if it is done later.
+    """Return the steps of entities, in order, up to those that are known only at run time.
 
     Raises:
         LaunchFileError: An entity cannot be evaluated, with its file and line.
@@ -319,13 +318,13 @@ def evaluate(entities: Iterable[Any], context: LaunchContext) -> list[Step]:
 
 
 def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
-    """Evaluate what timers and event handlers do, as far as nothing has to run for that.
+    """Evaluate timers and event handlers, as far as possible without running anything.
 
-    So what is wrong with them is known before anything starts.
+    That way their errors are found before anything starts.
 
     Args:
         steps: The steps.
-        checked: The ids of lists of entities that were checked: an event handler may register
+        checked: The ids of lists of entities that were checked, as an event handler may register
             itself.
 
     Raises:
@@ -366,7 +365,7 @@ def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -
 
 
 def failed(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:
-    """Return the error of an entity: that of the file, with the place of what includes it."""
+    """Return the error of an entity; for an included file, with the place of the include."""
     if isinstance(error, LaunchFileError):
         if error.line is None and isinstance(entity, IncludeLaunchDescription):
             path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
@@ -377,7 +376,7 @@ def failed(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError
 
 
 def is_left_out(entity: LaunchDescriptionEntity, error: Exception, context: LaunchContext) -> bool:
-    """Return whether an entity needs a package that is not there, and note it if that is wanted."""
+    """Return whether an entity is skipped for a missing package, and record it."""
     package = None if context.left_out is None else missing_package(error)
     if context.left_out is None or package is None:
         return False
@@ -388,7 +387,7 @@ def is_left_out(entity: LaunchDescriptionEntity, error: Exception, context: Laun
 
 
 def missing_package(error: BaseException | None) -> str | None:
-    """Return the package, with its executable if that is missing, for lack of which this failed."""
+    """Return the missing package, or the package and its missing executable, behind an error."""
     while error is not None:
         if isinstance(error, PackageNotFoundError):
             return error.name
@@ -402,7 +401,7 @@ def missing_package(error: BaseException | None) -> str | None:
 
 
 def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileError:
-    """Return the error of an entity: at the line of the user's function, else at its own."""
+    """Return the error of an entity, at the line of the user's function or else its own."""
     path, _, line = entity._LaunchDescriptionEntity__where.rpartition(":")
     for frame in reversed(traceback.extract_tb(error.__traceback__)):
         if frame.filename.endswith((".launch.py", "_launch.py")):
@@ -413,9 +412,9 @@ def failure_of(entity: LaunchDescriptionEntity, error: Exception) -> LaunchFileE
 
 
 def arguments_of(description: Any, path: str) -> list[DeclareLaunchArgument]:
-    """Return the arguments that a description declares, those of its groups included.
+    """Return the arguments that a description declares, including those of its groups.
 
-    Those of included files are there if the path of the file is known without the arguments.
+    Those of included files are listed if the file's path does not depend on arguments.
     """
     declared: dict[str, DeclareLaunchArgument] = {}
     context = new_context(path, {})

@@ -29,7 +29,7 @@ Options = dict[str, Any]
 
 
 def register_substitutions() -> None:
-    """Tell the reader of texts what its names stand for."""
+    """Register the names of substitutions with the text parser."""
     kinds: dict[str, Callable[..., Substitution]] = {
         "all": substitutions.AllSubstitution,
         "and": substitutions.AndSubstitution,
@@ -69,7 +69,7 @@ MARKS = re.compile("([\U000f0000-\U000ffffd])")
 
 
 class Reading:
-    """The attributes and inner elements of one element, of which all have to be used."""
+    """The attributes and children of one element, all of which must be used."""
 
     def __init__(self, element: Element) -> None:
         self.element = element
@@ -78,24 +78,24 @@ class Reading:
         self.known: set[str] = set()
 
     def raw(self, name: str) -> Any:
-        """Return an attribute as it is written; None if it is not there."""
+        """Return an attribute as written; None if missing."""
         self.known.add(name)
         return self.attributes.pop(name, None)
 
     def need(self, name: str) -> Any:
-        """Return an attribute that has to be there."""
+        """Return a required attribute."""
         value = self.raw(name)
         if value is None:
             raise ValueError(f"'{self.element.name}' needs '{name}'")
         return value
 
     def text(self, name: str) -> list[Substitution] | None:
-        """Return an attribute whose text may have substitutions."""
+        """Return an attribute whose text may contain substitutions."""
         value = self.raw(name)
         return None if value is None else words_of(value)
 
     def flag(self, name: str) -> Any:
-        """Return an attribute that is true or false, or a substitution."""
+        """Return a boolean attribute, which may be a substitution."""
         value = self.raw(name)
         if not isinstance(value, str):
             return value
@@ -105,13 +105,13 @@ class Reading:
         return parts
 
     def inner(self, name: str) -> list[Element]:
-        """Return the elements inside with this name."""
+        """Return the children with this name."""
         self.known.add(name)
         self.names.discard(name)
         return list(self.element.all(name))
 
     def pairs(self, name: str, first: str, second: str) -> list[tuple[Any, Any]]:
-        """Return two attributes of each element inside with this name."""
+        """Return two attributes of each child with this name."""
         result = []
         for child in self.inner(name):
             reading = Reading(child)
@@ -120,7 +120,7 @@ class Reading:
         return result
 
     def finish(self) -> None:
-        """Raise ValueError if there is something that nobody has asked for."""
+        """Raise ValueError if something was not used."""
         left = [*self.attributes, *sorted(self.names)]
         if left:
             fits = ", ".join(sorted(self.known)) or "nothing"
@@ -138,13 +138,13 @@ def given(**options: Any) -> Options:
 
 
 def command_words(text: str) -> list[list[Substitution]]:
-    """Return the words of a command line, whose texts may have substitutions.
+    """Split a command line, whose text may contain substitutions, into words.
 
-    A substitution belongs to the word that it stands in, and quotes around it hold.
+    A substitution belongs to the word that contains it, and quotes around it are respected.
     """
     parts = parse_words(text)
     later = [part for part in parts if not isinstance(part, TextSubstitution)]
-    # Each is a character that no command line has, until the words are known.
+    # Each is replaced by a character that no command line contains, until the words are known.
     marks = iter(range(len(later)))
     line = "".join(
         part.text if isinstance(part, TextSubstitution) else chr(MARK + next(marks))
@@ -162,15 +162,15 @@ def command_words(text: str) -> list[list[Substitution]]:
 
 
 def is_mark(piece: str) -> bool:
-    """Return whether a piece of a word stands for a substitution."""
+    """Return whether a piece of a word is a placeholder for a substitution."""
     return bool(MARKS.fullmatch(piece))
 
 
 def description_of(path: str, root: Element) -> LaunchDescription:
-    """Return the description that a file has.
+    """Return the launch description of a file.
 
     Raises:
-        LaunchFileError: An element is not known, or has what it should not have.
+        LaunchFileError: An element is unknown, or has something it must not have.
     """
     if root.name != "launch":
         raise LaunchFileError(path, f"begins with '{root.name}'; 'launch' fits", line=1)
@@ -178,7 +178,7 @@ def description_of(path: str, root: Element) -> LaunchDescription:
 
 
 def action_of(element: Element) -> actions.Action:
-    """Return the action that an element stands for."""
+    """Return the action of an element."""
     path, _, line = element.where.rpartition(":")
     make = ACTIONS.get(element.name)
     if make is None:
@@ -216,7 +216,7 @@ def truth_text(value: Any) -> str:
 def simple(
     kind: Callable[..., actions.Action], names: Iterable[str], reading: Reading, options: Options
 ) -> actions.Action:
-    """Return an action of which each option is an attribute; ``name=attribute`` renames one."""
+    """Return an action whose options are attributes; ``name=attribute`` renames one."""
     for name in names:
         option, _, attribute = name.partition("=")
         optional = option.endswith("?")
@@ -296,7 +296,7 @@ def lifecycle_node(reading: Reading, options: Options) -> actions.Action:
 
 
 def parameters_of(reading: Reading) -> list[Any]:
-    """Return the parameters inside an element, one by one."""
+    """Return the parameters inside an element."""
     parameters: list[Any] = []
     for child in reading.inner("param"):
         inside = Reading(child)
@@ -342,7 +342,7 @@ TYPES = {
 
 
 def typed(value: Any, kind: str | None) -> Any:
-    """Return the value of a parameter, whose text may have substitutions."""
+    """Return the value of a parameter, whose text may contain substitutions."""
     if kind is not None and kind not in TYPES:
         raise ValueError(f"type {kind!r} is not known; there are: {', '.join(TYPES)}")
     if isinstance(value, list):
@@ -453,8 +453,8 @@ def for_loop(reading: Reading, options: Options) -> actions.Action:
 
 
 def iteration(reading: Reading) -> Callable[[Options], list[actions.Action]]:
-    """Return what makes the actions inside a loop, with the values of one round."""
-    inner_actions(reading)  # what is wrong with them is wrong without a round, too
+    """Return a function that creates the actions inside a loop for the values of one iteration."""
+    inner_actions(reading)  # reports errors even without an iteration
     name_of = substitutions.ForEachVar.get_local_arg_name
 
     def once(values: Options) -> list[actions.Action]:
@@ -487,7 +487,7 @@ def reset(reading: Reading, options: Options) -> actions.Action:
 
 
 def of(kind: Callable[..., actions.Action], *names: str) -> Callable[..., actions.Action]:
-    """Return how an action is made of which each option is an attribute."""
+    """Return the factory of an action whose options are attributes."""
     return partial(simple, kind, names)
 
 

@@ -1,4 +1,4 @@
-"""Launch files in XML and YAML as elements that know their lines."""
+"""XML and YAML launch files as elements that know their line numbers."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ __all__ = ["Element", "read_xml", "read_yaml"]
 
 
 DEEPEST = 100
-"""Levels of elements in XML; YAML has its own limit."""
+"""Maximum nesting of elements in XML; YAML has its own limit."""
 
 
 @dataclass
 class Element:
-    """One element: its name, its attributes, and what is inside."""
+    """One element: its name, attributes and children."""
 
     name: str
     where: str
@@ -29,7 +29,7 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def all(self, name: str) -> Iterator[Element]:
-        """Yield the elements inside with this name."""
+        """Yield the children with this name."""
         return (child for child in self.children if child.name == name)
 
 
@@ -39,7 +39,7 @@ def read_xml(path: str, text: bytes) -> Element:
     A document type is refused: its entities could grow without bound, and read other files.
 
     Raises:
-        LaunchFileError: It is no such file.
+        LaunchFileError: It is not a valid launch file.
     """
     parser = expat.ParserCreate()
     root = Element("", path)
@@ -76,7 +76,7 @@ def read_yaml(path: str, text: bytes) -> Element:
     """Return the root element of a file.
 
     Raises:
-        LaunchFileError: It is no such file.
+        LaunchFileError: It is not a valid launch file.
     """
     try:
         node = composed_yaml(text)
@@ -91,13 +91,13 @@ def read_yaml(path: str, text: bytes) -> Element:
 
 
 def elements(path: str, node: yaml.MappingNode) -> Iterator[Element]:
-    """Yield the elements that the keys of a mapping are."""
+    """Yield the elements for the keys of a mapping."""
     for key, value in node.value:
         yield element(path, str(key.value), value, key.start_mark.line + 1)
 
 
 def element(path: str, name: str, node: yaml.Node, line: int) -> Element:
-    """Return the element of this name that a value describes."""
+    """Return the element of this name described by a value."""
     result = Element(name, f"{path}:{line}")
     if isinstance(node, yaml.SequenceNode):
         result.children = list(children(path, node, name))

@@ -1,4 +1,4 @@
-"""Shows the processes and nodes of a plan, as records and as text, and starts none of them."""
+"""Shows the processes and nodes of a plan, as records and as text, without starting them."""
 
 from __future__ import annotations
 
@@ -29,9 +29,10 @@ __all__ = ["records", "text_of"]
 def records(
     steps: list[Step], before: Mapping[str, str], when: tuple[str, ...] = ()
 ) -> Iterator[dict[str, Any]]:
-    """Yield what steps start, in order; timers and event handlers are followed.
+    """Yield what steps start, in order, following timers and event handlers.
 
-    Functions of event handlers and timers are named only: they are called when something happens.
+    Functions of event handlers and timers are only named, as they are called when something
+    happens.
 
     Args:
         steps: The steps.
@@ -74,7 +75,7 @@ def of_handler(
 
 
 def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) -> dict[str, Any]:
-    """Return what is started as one process."""
+    """Return the record of one process."""
     return {
         "when": list(when),
         "name": step.name,
@@ -86,7 +87,7 @@ def of_process(step: Process, before: Mapping[str, str], when: tuple[str, ...]) 
 
 
 def of_component(step: LoadNodes, component: Component, when: tuple[str, ...]) -> dict[str, Any]:
-    """Return what is added to a container."""
+    """Return the record of a node added to a container."""
     return {
         "when": list(when),
         "container": step.container,
@@ -101,7 +102,7 @@ def of_component(step: LoadNodes, component: Component, when: tuple[str, ...]) -
 
 
 def text_of(record: Mapping[str, Any]) -> str:
-    """Return a record for readers, in some lines."""
+    """Format a record as readable lines."""
     prefix = "".join(f"{condition}: " for condition in record["when"])
     if "argv" in record:
         return prefix + "\n".join(process_lines(record))
@@ -115,7 +116,7 @@ def text_of(record: Mapping[str, Any]) -> str:
 
 
 def process_lines(record: Mapping[str, Any]) -> Iterator[str]:
-    """Yield the lines of a process: its command, and below it what it gets."""
+    """Yield the lines of a process: its command, followed by what it gets."""
     words, files = [], []
     for word in record["argv"]:
         if isinstance(word, str):

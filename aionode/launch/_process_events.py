@@ -1,4 +1,4 @@
-"""Tells event handlers about a process, in the order in which things happen."""
+"""Reports the events of a process to event handlers, in the order in which they happen."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ __all__ = ["ProcessEvents"]
 
 
 class ProcessEvents:
-    """Makes the events of one process, of all its runs.
+    """Creates the events of one process, over all its runs.
 
     Args:
         step: The process.
@@ -37,12 +37,12 @@ class ProcessEvents:
         self._pid: int | None = None
         self._end: MemberEnd | None = None
         self._early: list[tuple[bytes, int]] = []
-        """Output that the process printed before handlers were told of its start."""
+        """Output that the process printed before handlers learned of its start."""
 
     def look(self, member: Member) -> None:
-        """Tell of a start or an end that has not been told."""
+        """Report a start or end that has not been reported yet."""
         ended = member.last_end if member.last_end is not self._end else None
-        # A process that ended at once may never have been seen while it ran.
+        # A process that ended at once may never have been seen running.
         ran_unseen = ended is not None and ended.ran_sec > 0 and self._pid is None
         if ran_unseen or member.pid not in (None, self._pid):
             self._note_start(member.pid or 0)
@@ -63,7 +63,7 @@ class ProcessEvents:
             self.note_output(output, stream)
 
     def note_output(self, output: bytes, stream: int) -> None:
-        """Tell of what it has printed: 1 is standard output, 2 is standard error."""
+        """Report output; stream 1 is standard output, 2 is standard error."""
         if self._pid is None:
             self._early.append((output, stream))
         else:

@@ -1,4 +1,4 @@
-"""Restarts members of a system when the files of their programs change."""
+"""Restarts members of a system when their programs' files change."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ EVERY_SEC = 0.5
 
 
 async def restart_changed(system: System) -> None:
-    """Restart each process when a file of its command line has changed; never return.
+    """Restart each process when a file in its command line changes; never return.
 
-    One that has ended is started again, too: a file may be saved when it is half written.
+    A process that has ended is started again too, as a file may have been saved half written.
     """
     clock = SteadyClock()
     seen: dict[str, dict[Path, int]] = {}
@@ -37,19 +37,19 @@ async def restart_changed(system: System) -> None:
 
 
 def command_line(member: Any) -> Iterable[str]:
-    """Return the command line of a member; none if it has no process of its own."""
+    """Return the command line of a member; empty if it has no process of its own."""
     process = getattr(member, "process", None)
     return () if process is None else process.argv
 
 
 def times_of(words: Iterable[str]) -> Iterator[tuple[Path, int]]:
-    """Yield the files that words name, and when each was changed last, in nanoseconds.
+    """Yield the files named in words, with their modification times in nanoseconds.
 
     They are programs, their parameters, and files of node classes.
     """
     for word in words:
         file = Path(word.partition(".py:")[0] + ".py") if ".py:" in word else Path(word)
-        with suppress(OSError, ValueError):  # it is not there now, or a word that is no path
+        with suppress(OSError, ValueError):  # missing at the moment, or not a path
             status = file.stat()
             if file.suffix and S_ISREG(status.st_mode):
                 yield file, status.st_mtime_ns

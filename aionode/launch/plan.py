@@ -28,7 +28,7 @@ class Step:
 
 @dataclass(frozen=True)
 class ParameterValues:
-    """An argument of a process: the path of a parameter file that is written as it starts."""
+    """An argument of a process: the path of a parameter file that is written when it starts."""
 
     content: dict[str, Any]
 
@@ -38,14 +38,14 @@ class Process(Step):
     """A process to be started."""
 
     action: Any
-    """The action that stands in the description, by which event handlers name the process."""
+    """The action in the description, by which event handlers refer to the process."""
     name: str
     argv: list[str | ParameterValues]
     env: dict[str, str]
     cwd: str | None
     where: str
     node_name: str | None = None
-    """The full name of its node, if that is known."""
+    """The full name of its node, if known."""
     shell: bool = False
     respawn: bool = False
     respawn_delay_sec: float = 0.0
@@ -60,7 +60,7 @@ class Process(Step):
     """Whether its managed node is configured and activated."""
 
     def changes(self, before: Mapping[str, str]) -> dict[str, str | None]:
-        """Return which variables differ from those before; None for what is not there any more."""
+        """Return the variables that differ from `before`; None for removed ones."""
         changed: dict[str, str | None] = {
             name: value for name, value in self.env.items() if before.get(name) != value
         }
@@ -81,13 +81,13 @@ class Component:
 
     @property
     def is_aionode(self) -> bool:
-        """Whether it is a class of Python, as ``module:Class``."""
+        """Whether it is a Python class, given as ``module:Class``."""
         return ":" in self.plugin and "::" not in self.plugin
 
 
 @dataclass(frozen=True)
 class LoadNodes(Step):
-    """Nodes that a container gets."""
+    """Nodes to load into a container."""
 
     container: str
     components: list[Component]
@@ -96,7 +96,7 @@ class LoadNodes(Step):
 
 @dataclass(frozen=True)
 class Timer(Step):
-    """Entities that are done later."""
+    """Entities that are executed later."""
 
     action: Any
     period_sec: float
@@ -106,7 +106,7 @@ class Timer(Step):
 
 @dataclass(frozen=True)
 class Call(Step):
-    """A coroutine that runs beside the processes."""
+    """A coroutine that runs alongside the processes."""
 
     action: Any
     context: Any
@@ -119,14 +119,14 @@ class Call(Step):
 
 @dataclass(frozen=True)
 class Completed(Step):
-    """An action has been evaluated; it is complete when what it started has ended."""
+    """An action has been evaluated; it completes when everything it started has ended."""
 
     action: Any
 
 
 @dataclass(frozen=True)
 class Watch(Step):
-    """An event handler that begins, or ends, to be called."""
+    """An event handler that is registered or unregistered."""
 
     handler: Any
     context: Any
@@ -142,7 +142,7 @@ class Emit(Step):
 
 @dataclass(frozen=True)
 class Opaque(Step):
-    """An action that is not known before it is done: the rest may depend on it."""
+    """An action that is unknown until it is executed; the rest may depend on it."""
 
     text: str
 

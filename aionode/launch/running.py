@@ -1,4 +1,4 @@
-"""A launch description that runs: its processes, timers and events, on a system."""
+"""A running launch description: its processes, timers and events, on top of a system."""
 
 from __future__ import annotations
 
@@ -60,8 +60,9 @@ __all__ = ["RunningLaunch", "description_of_text", "first_of", "run_service"]
 
 
 NODE_LIMIT_SEC: Final = 30.0
-"""Time from the start of a process within which its node has to be in the graph, in seconds:
-much, as the machine may be busy. A process that ends before its node is there is seen at once."""
+"""Maximum time from the start of a process until its node is in the graph, in seconds. It is long,
+as the machine may be busy; a process that ends before its node appears is noticed at once.
+"""
 
 
 class RunningLaunch:
@@ -70,10 +71,10 @@ class RunningLaunch:
     Args:
         system: The system that its processes and nodes are added to.
         waits_for_nodes: Whether a process is ready only when its node is in the graph.
-        stays: Whether it goes on when nothing runs any more, until a shutdown is asked for.
+        stays: Whether it goes on when nothing is running any more, until a shutdown is requested.
 
     Attributes:
-        begun: Set when the first steps are done: the processes and nodes are members.
+        begun: Set when the first steps are done, so that the processes and nodes are members.
     """
 
     def __init__(
@@ -84,27 +85,27 @@ class RunningLaunch:
         self.stays = stays
         self.begun = asyncio.Event()
         self.members: dict[Any, Member] = {}
-        """The process that each action has started last."""
+        """The last process that each action started."""
         self._watches: list[Watch] = []
         self._events: asyncio.Queue[Event] = asyncio.Queue()
         self._clock = SteadyClock()
         self._work: set[asyncio.Task[None]] = set()
-        """Work that may start something more: timers, requests, processes that run."""
+        """Work that may still start something: timers, requests, running processes."""
         self._work_of: dict[Any, asyncio.Task[None]] = {}
-        """The work that each action has begun last."""
+        """The last work that each action started."""
         self._ends: dict[asyncio.Task[None], Event] = {}
-        """The event that handlers are told of when work has ended."""
+        """The event reported to handlers when work has ended."""
         self._hears_output = False
         self._idle = asyncio.Event()
         self._is_shutdown = False
 
     async def run(self, steps: Iterable[Step]) -> None:
-        """Do the steps, and return when nothing runs any more, or a shutdown was asked for.
+        """Execute the steps until nothing is running any more or a shutdown is requested.
 
-        Event handlers see a shutdown in any case, also if this is cancelled.
+        Event handlers see a shutdown in any case, even if this is cancelled.
 
         Raises:
-            LaunchFileError: What an event handler or a timer does cannot be evaluated.
+            LaunchFileError: An event handler or a timer cannot be evaluated.
         """
         with tempfile.TemporaryDirectory(prefix="aionode_launch_") as folder:
             self._folder = Path(folder)
@@ -129,13 +130,13 @@ class RunningLaunch:
                     self._dispatch(Shutdown(reason="the launch ends"))
 
     async def _end_with_system(self) -> None:
-        """Shut down when the system is to end."""
+        """Shut down when the system is asked to end."""
         await self.system.end_requested()
         self._events.put_nowait(Shutdown(reason="the system ends"))
 
     def _spawn(self, work: Coroutine[Any, Any, None], action: Any = None) -> None:
         if self._is_shutdown:
-            work.close()  # it would be cancelled
+            work.close()  # a task would be cancelled at once
             return
         task = self._tasks.create_task(work)
         self._work.add(task)
@@ -156,7 +157,7 @@ class RunningLaunch:
     # Steps
 
     def carry_out(self, steps: Iterable[Step]) -> None:
-        """Do steps: processes are started, timers and handlers begin."""
+        """Execute steps: start processes, timers and handlers."""
         steps = list(steps)
         self._hears_output |= any(
             isinstance(step, Watch) and isinstance(step.handler, OnProcessIO) for step in steps
@@ -175,7 +176,7 @@ class RunningLaunch:
             does[type(step)](step)
 
     def add(self, entities: Iterable[Any], context: LaunchContext) -> None:
-        """Have entities evaluated and done while it runs; what is wrong with them ends it."""
+        """Evaluate and execute entities at run time; an error in them ends the launch."""
 
         async def work() -> None:
             self.carry_out(evaluate(entities, context))
@@ -183,7 +184,7 @@ class RunningLaunch:
         self._spawn(work())
 
     def _watch(self, step: Watch) -> None:
-        """Begin to call an event handler, or end that."""
+        """Register or unregister an event handler."""
         if step.ends:
             self._watches = [watch for watch in self._watches if watch.handler != step.handler]
         else:
@@ -191,7 +192,7 @@ class RunningLaunch:
 
     def _start(self, step: Process) -> None:
         """Start a process, and follow it."""
-        from aionode.system import NodeExists  # which needs much, and --print does not
+        from aionode.system import NodeExists  # a heavy import, which --print does not need
 
         if self._is_shutdown:
             return
@@ -205,7 +206,7 @@ class RunningLaunch:
         member = self.system.process(
             step.name,
             argv,
-            # The rest is left to the system, whose processes join the domain of its context.
+            # The rest is up to the system, whose processes join the domain of its context.
             env=step.changes(os.environ),
             cwd=step.cwd,
             terminal=step.emulate_tty,
@@ -227,7 +228,7 @@ class RunningLaunch:
     def _listener(
         self, step: Process, events: ProcessEvents
     ) -> Callable[[bytes, int], object] | None:
-        """Return what is told of the output of a process; None if nobody asks for that."""
+        """Return the listener for a process's output; None if no handler wants it."""
         listeners: list[Callable[[bytes, int], object]] = []
         if step.action._ExecuteLocal__cached_output:
             listeners.append(step.action._ExecuteLocal__note_output)
@@ -241,7 +242,7 @@ class RunningLaunch:
         return listen if listeners else None
 
     def _written(self, step: Process) -> list[str]:
-        """Return the command line, its parameters written into files."""
+        """Return the command line, with its parameters written to files."""
         argv: list[str] = []
         for number, word in enumerate(step.argv):
             if isinstance(word, ParameterValues):
@@ -253,7 +254,7 @@ class RunningLaunch:
         return argv
 
     async def _follow(self, member: Member, events: ProcessEvents) -> None:
-        """Tell the event handlers of each start and end of a process."""
+        """Report each start and end of a process to the event handlers."""
         while True:
             events.look(member)
             if member.is_over() and not self.stays:
@@ -266,7 +267,7 @@ class RunningLaunch:
             self.carry_out(evaluate(step.entities, step.context))
 
     async def _call(self, step: Call) -> None:
-        """Run a coroutine; what it adds to its context is done at once."""
+        """Run a coroutine; steps that it adds to its context are executed at once."""
         step.context.steps = AtOnce(self.carry_out)
         try:
             await step.action._OpaqueCoroutine__call(step.context)
@@ -274,7 +275,7 @@ class RunningLaunch:
             raise failure_of(step.action, error) from error
 
     def _note_completed(self, step: Completed) -> None:
-        """Tell the event handlers when what an action has begun has ended, if one asks."""
+        """Report the completion of an action to the event handlers, if one wants it."""
         event = ExecutionComplete(action=step.action)
         if any(watch.handler.matches(event) for watch in self._watches):
             work = self._work_of.get(step.action)
@@ -292,7 +293,7 @@ class RunningLaunch:
             self._note_idle()
 
     def _dispatch(self, event: Event) -> None:
-        """Have the handlers handle an event, and do what they want; the newest comes first."""
+        """Dispatch an event to the handlers, newest first, and execute what they return."""
         if isinstance(event, Shutdown):
             self._is_shutdown = True
             self.system.log.note(f"shutdown: {event.reason}")
@@ -325,7 +326,7 @@ class RunningLaunch:
                 self._spawn(self._change_state(action.node_name, event.transition_id))
 
     async def _change_state(self, node_name: str, transition_id: int) -> None:
-        """Have a managed node make a transition, once it answers."""
+        """Request a transition of a managed node, once it answers."""
         node = self.system.graph_node
         client = node.create_client(ChangeState, f"{node_name}/change_state")
         try:
@@ -345,7 +346,7 @@ class RunningLaunch:
         await self._change_state(node_name, Transition.TRANSITION_ACTIVATE)
 
     async def _follow_states(self, action: LifecycleNode) -> None:
-        """Tell the event handlers of each transition of a managed node, while it runs."""
+        """Report each transition of a running managed node to the event handlers."""
         member = self.members[action]
 
         def tell(message: TransitionEvent) -> None:
@@ -362,7 +363,7 @@ class RunningLaunch:
     # Nodes of containers
 
     def _load(self, step: LoadNodes) -> None:
-        """Give a container its nodes: classes of aionode run as tasks of this process."""
+        """Load the nodes of a container; classes of aionode run as tasks of this process."""
         foreign = [component for component in step.components if not component.is_aionode]
         for component in step.components:
             if component.is_aionode:
@@ -386,7 +387,7 @@ class RunningLaunch:
             await self.system.changed()
 
     async def _load_foreign(self, container: str, components: list[Component]) -> None:
-        """Have a container of another program load its nodes, one after the other."""
+        """Load nodes into another program's container, one at a time."""
         node = self.system.graph_node
         client = node.create_client(LoadNode, f"{container}/_container/load_node")
         try:
@@ -402,7 +403,7 @@ class RunningLaunch:
 
 
 async def run_service(service: LaunchService) -> int:
-    """Run what a program's service includes; return 0, or 1 if that cannot be evaluated."""
+    """Run a `LaunchService`'s description; return 0, or 1 if it cannot be evaluated."""
     from aionode.system import System  # as above
 
     context = service.context
@@ -424,25 +425,25 @@ async def run_service(service: LaunchService) -> int:
 
 
 class AtOnce(list[Step]):
-    """The steps of a context while things run: each is done as it is added."""
+    """The steps of a context at run time; each is executed as it is added."""
 
     def __init__(self, carry_out: Callable[[list[Step]], object]) -> None:
         self._carry_out = carry_out
 
     def append(self, step: Step) -> None:
-        """Do a step."""
+        """Execute a step."""
         self._carry_out([step])
 
 
 def first_of(error: BaseException) -> BaseException:
-    """Return an error of a task group without the group: the first one ended the others."""
+    """Unwrap the error of a task group; the first error ended the other tasks."""
     while isinstance(error, BaseExceptionGroup):
         error = error.exceptions[0]
     return error
 
 
 def load_request(component: Component) -> LoadNode.Request:
-    """Return the request by which a container loads a node."""
+    """Return the request that loads a node into a container."""
 
     def messages(values: dict[str, Any]) -> list[Any]:
         return [Parameter(name, value=value).to_parameter_msg() for name, value in values.items()]
@@ -459,5 +460,5 @@ def load_request(component: Component) -> LoadNode.Request:
 
 
 def snake_case(name: str) -> str:
-    """Return the name of a class as a name of a node: ``WordCounter`` is ``word_counter``."""
+    """Convert a class name to a node name: ``WordCounter`` to ``word_counter``."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
