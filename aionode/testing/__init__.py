@@ -1,4 +1,4 @@
-"""For tests of your nodes: no network, time that you step, and faults on demand.
+"""Tools for testing nodes: no network, time that the test steps, and faults on demand.
 
 With pytest the fixtures `aionode_context`, `node_factory` and `manual_clock` are available as soon
 as aionode is installed (see `aionode.pytest_plugin`)::
@@ -36,10 +36,10 @@ __all__ = [
 
 
 def local_context(*, clock: TimeBase | None = None, seed: int | None = None) -> Context:
-    """Return a context without network, whose nodes reach only each other.
+    """Create a context without network, whose nodes reach only each other.
 
     Args:
-        clock: Where its time comes from, such as a `ManualClock`; the machine by default.
+        clock: Its source of time, such as a `ManualClock`; the machine by default.
         seed: Makes the ids of nodes, endpoints and goals the same in every run.
     """
     return Context(transport="local", clock=clock, seed=seed)

@@ -28,9 +28,9 @@ __all__ = ["FaultyTransport"]
 
 
 class FaultyTransport(Transport):
-    """Wraps a transport and treats messages and requests as a bad network would.
+    """Wraps a transport, and treats messages and requests like a bad network.
 
-    Readers see messages as coming from another process, so gaps are counted in `stats.lost`::
+    To readers, messages seem to come from another process, so gaps are counted in `stats.lost`::
 
         Context(transport=FaultyTransport(LocalTransport(), drop=0.1, seed=1))
 
@@ -72,7 +72,7 @@ class FaultyTransport(Transport):
         self._time_base: TimeBase = MachineTime() if clock is None else clock
 
     def _strikes(self, probability: float) -> bool:
-        """Whether a fault of this probability happens now."""
+        """Return whether a fault of this probability happens now."""
         return self._random.random() < probability
 
     def _later(self, action: Callable[[], None]) -> None:
@@ -136,7 +136,7 @@ class _FaultyWriter(Writer):
 
     @property
     def active(self) -> bool:  # type: ignore[override]  # an attribute there, read-only here
-        """Whether any reader would get a message."""
+        """Whether any reader would receive a message."""
         return self._inner.active
 
     @property
@@ -158,7 +158,7 @@ class _FaultyWriter(Writer):
         return self._inner.dropped
 
     def assert_liveliness(self) -> None:
-        """Tell the readers after the delay, or do not tell them."""
+        """Assert liveliness after the delay, or drop the assertion."""
         if not self._faults._strikes(self._faults.drop):
             self._faults._later(self._inner.assert_liveliness)
 
@@ -181,11 +181,11 @@ class _FaultyWriter(Writer):
             faults._later(partial(self._inner.write, *held))
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
-        """Return what sends the stop of a lease."""
+        """Return the stop sender of a lease."""
         return _FaultyStop(self, self._inner.prepare_stop(stop, is_last))
 
     def release(self) -> None:
-        """Send what is held, as nothing comes after it."""
+        """Send held messages, as nothing follows them."""
         released, self._held = self._held, []
         for held in released:
             self._faults._later(partial(self._inner.write, *held))
@@ -204,20 +204,20 @@ class _FaultyStop(StopSender):
         self._inner = inner
 
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it after everything else, or drop it."""
+        """Send the stop after everything else, or drop it."""
         faults = self._writer._faults
         self._writer.release()
         if not faults._strikes(faults.drop):
             faults._later(partial(self._inner.send, sequence, source_ns))
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:
-        """Send it without a delay, which only the loop can keep, or drop it."""
+        """Send the stop without a delay, which needs the loop, or drop it."""
         faults = self._writer._faults
         if not faults._strikes(faults.drop):
             self._inner.send_past_loop(sequence, source_ns)
 
     def repeat(self) -> None:
-        """Send it once more, or drop it."""
+        """Send the stop once more, or drop it."""
         faults = self._writer._faults
         if not faults._strikes(faults.drop):
             self._inner.repeat()

@@ -1,4 +1,4 @@
-"""Time that stands still until a test advances it."""
+"""Time that moves only when a test advances it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["ManualClock"]
 
 
 class ManualClock(TimeBase):
-    """Time for tests: it passes only in `advance`, `jump` and `stall`, which take no real time.
+    """Time for tests, which passes only in `advance`, `jump` and `stall`; these take no real time.
 
     Given to a `Context`, it drives the clocks, timers and rates of all its nodes. It drives
     aionode's clocks only: `asyncio.sleep` and `asyncio.timeout` still run in real time.
@@ -24,13 +24,13 @@ class ManualClock(TimeBase):
         start: The initial time; 0 by default.
     """
 
-    slice_ns = 0  # callbacks run in the same order, however fast the machine is
+    slice_ns = 0  # callbacks run in the same order however fast the machine is
 
     def __init__(self, start: Time | None = None) -> None:
         self._now_ns = 0 if start is None else start.nanoseconds
         self._timer_heap = TimerHeap()
         # Callbacks that were due when added, such as those of a timer with period 0. They fire the
-        # next time the clock moves: at the same time, they would fire again and again.
+        # next time the clock moves; at the same time they would fire endlessly.
         self._overdue = TimerHeap()
 
     def __repr__(self) -> str:
@@ -70,7 +70,7 @@ class ManualClock(TimeBase):
         await settle()
 
     def stall(self, seconds: float) -> None:
-        """Advance by `seconds` as a callback that blocks the event loop does: nothing fires yet.
+        """Advance by `seconds` like a callback that blocks the event loop: nothing fires yet.
 
         Everything due meanwhile fires late, when the clock moves next.
 
@@ -84,7 +84,7 @@ class ManualClock(TimeBase):
 
         Args:
             end_ns: The time in nanoseconds.
-            settled: Returns when no callback can run; called only after something was due.
+            settled: Waits until no callback can run; called only after something was due.
         """
         while (next_ns := self._timer_heap.first_ns()) is not None and next_ns <= end_ns:
             self._move(next_ns)

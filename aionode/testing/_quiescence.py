@@ -1,4 +1,4 @@
-"""Waiting until nothing is left to run, so that a test can check results without sleeping.
+"""Wait until nothing is left to run, so that a test can check results without sleeping.
 
 The event loop knows which callbacks are ready; calls in threads are known because they all go
 through `run_in_thread`.
@@ -20,19 +20,18 @@ if TYPE_CHECKING:
 __all__ = ["settle"]
 
 IDLE_TURNS = 5
-"""Turns in a row in which every task must be blocked, in a loop whose queue is not accessible."""
+"""Consecutive iterations in which every task must be blocked, if the queue is inaccessible."""
 
 SETTLING: WeakKeyDictionary[asyncio.AbstractEventLoop, int] = WeakKeyDictionary()
-"""The number of calls of `settle` that are turning each loop; each is ready in every turn."""
+"""The number of `settle` calls running in each loop; each is ready in every iteration."""
 
 
 async def settle() -> None:
-    """Return when no callback can run: all wait for time, for input, or for each other.
+    """Wait until no callback can run: all wait for time, for input, or for each other.
 
-    Waits for callbacks that are ready, for those that they make ready, and for callbacks that
-    aionode runs in threads. It does not wait for input from outside, such as a socket's. A task
-    that is always ready, because it awaits nothing but ``asyncio.sleep(0)``, keeps it from ever
-    returning.
+    It waits for ready callbacks, for those that they make ready, and for callbacks that aionode
+    runs in threads. It does not wait for outside input, such as a socket's. A task that is always
+    ready, because it only awaits ``asyncio.sleep(0)``, keeps it from ever returning.
     """
     loop = asyncio.get_running_loop()
     ready = ready_queue(loop)
@@ -61,7 +60,7 @@ def ready_queue(loop: asyncio.AbstractEventLoop) -> Sized | None:
 
 
 async def turn_until_empty(loop: asyncio.AbstractEventLoop, ready: Sized) -> None:
-    """Run `loop` until its queue holds nothing but other calls of this function."""
+    """Run `loop` until its queue contains only other calls of this function."""
     SETTLING[loop] = SETTLING.get(loop, 0) + 1
     try:
         await checkpoint()
@@ -72,7 +71,7 @@ async def turn_until_empty(loop: asyncio.AbstractEventLoop, ready: Sized) -> Non
 
 
 async def turn_until_tasks_block() -> None:
-    """Run the loop until every other task has been blocked for some turns in a row."""
+    """Run the loop until every other task has been blocked for some consecutive iterations."""
     idle_turns = 0
     while idle_turns < IDLE_TURNS:
         await checkpoint()
@@ -82,6 +81,6 @@ async def turn_until_tasks_block() -> None:
 
 
 def is_blocked(task: asyncio.Task[Any]) -> bool:
-    """Whether `task` waits for a future that is not done."""
+    """Return whether `task` waits for a future that is not done."""
     waits_for = getattr(task, "_fut_waiter", None)
     return waits_for is not None and not waits_for.done()

@@ -1,11 +1,11 @@
-"""An event loop whose time is that of a manual clock, and whose threads end in order.
+"""An event loop that follows a manual clock, and whose thread calls end in order.
 
 Code in nodes may use ``asyncio.sleep``, ``asyncio.timeout`` and ``asyncio.to_thread``, and so does
-aionode itself. All of these ask the loop, by four methods. `SteppedLoop` puts methods of its own in
-the dictionary of the loop object, and takes them out at the end.
+aionode itself. All of these go through four methods of the loop. `SteppedLoop` overrides them in
+the loop object's dictionary, and restores them at the end.
 
-The task that begins it is left alone: its timeouts limit the test, in real time. So is what runs in
-no task, where the loop itself reads its time.
+The task that starts it is not affected: its timeouts limit the test, in real time. Nor is code
+outside tasks, where the loop itself reads its time.
 """
 
 from __future__ import annotations
@@ -30,11 +30,11 @@ __all__ = ["SteppedLoop"]
 
 METHODS = ("time", "call_later", "call_at", "run_in_executor")
 SLOW_THREAD_S = 5.0
-"""After so many seconds a warning names the call in a thread that is waited for."""
+"""After this many seconds a warning names the thread call that is awaited."""
 
 
 class SteppedLoop:
-    """Lets the running loop follow a clock, for a ``with`` block.
+    """Makes the running loop follow a clock, within a ``with`` block.
 
     Args:
         clock: The clock.
@@ -47,17 +47,17 @@ class SteppedLoop:
         self._ready = ready_queue(self._loop)
         self._began_ns = clock.steady_ns()
         self._timers: dict[SteppedTimer, None] = {}
-        # The calls in threads: what runs, what its caller awaits, and what was called.
+        # Calls in threads: the running future, the one its caller awaits, and the function's name.
         self._calls: deque[tuple[asyncio.Future[Any], asyncio.Future[Any], str]] = deque()
         self._real = {name: getattr(self._loop, name) for name in METHODS}
 
     def __enter__(self) -> Self:
-        """Begin."""
+        """Override the loop's methods."""
         vars(self._loop).update({name: getattr(self, f"_{name}") for name in METHODS})
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Give the loop its own time back; what still waits goes on in real time."""
+        """Restore the loop's own time; pending calls continue in real time."""
         for name in METHODS:
             vars(self._loop).pop(name, None)
         for timer in list(self._timers):
@@ -72,10 +72,10 @@ class SteppedLoop:
         await self._clock._walk_to(end_ns, self.settle)
 
     async def settle(self) -> None:
-        """Return when no callback can run, and every call in a thread has ended.
+        """Wait until no callback can run and every call in a thread has ended.
 
-        Calls in threads end in the order in which they began, each when nothing else can run: the
-        order of callbacks does not depend on the speed of threads.
+        Calls in threads end in the order in which they started, each when nothing else can run, so
+        that the order of callbacks does not depend on the speed of threads.
         """
         while True:
             if self._ready is None:
@@ -101,7 +101,7 @@ class SteppedLoop:
     # Methods of an event loop
 
     def _is_foreign(self) -> bool:
-        """Whether the caller is no part of what follows the clock."""
+        """Return whether the caller does not follow the clock."""
         task = asyncio.current_task(self._loop)
         return task is None or task is self._owner
 
@@ -157,7 +157,7 @@ class SteppedLoop:
 
 
 class SteppedTimer(asyncio.TimerHandle):
-    """A callback that a loop was asked to call later, and that a clock calls."""
+    """A callback scheduled on a loop, but called by a clock."""
 
     _alarm: Alarm | None = None
     _timers: dict[SteppedTimer, None]
@@ -188,14 +188,14 @@ class SteppedTimer(asyncio.TimerHandle):
 
 
 def name_of(function: Any) -> str:
-    """Return the name of what a call in a thread calls: ``asyncio.to_thread`` wraps it."""
+    """Return the name of the function called in a thread, which ``asyncio.to_thread`` wraps."""
     while isinstance(function, partial):
         function = function.args[0] if function.args else function.func
     return getattr(function, "__qualname__", repr(function))
 
 
 def pass_on(ended: asyncio.Future[Any], outcome: asyncio.Future[Any]) -> None:
-    """Give `outcome` the result of `ended`, unless it was cancelled meanwhile."""
+    """Copy the result of `ended` to `outcome`, unless it was cancelled meanwhile."""
     if ended.cancelled():
         outcome.cancel()
         return

@@ -1,4 +1,4 @@
-"""A whole system in a test, in a domain of its own."""
+"""A whole system in a test, in its own domain."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["system_under_test"]
 
 DOMAINS: Final = range(102, 233)
-"""The domains for tests: lower ones are for people, as every platform has their ports."""
+"""The domains for tests; lower ones are for people, as their ports exist on every platform."""
 
 
 @contextlib.asynccontextmanager
@@ -29,7 +29,7 @@ async def system_under_test(
     description: str | os.PathLike[str] | Callable[[System], Awaitable[object]],
     arguments: Mapping[str, str] | None = None,
 ) -> AsyncIterator[System]:
-    """Start a system for a test, in a domain of its own, and yield it when it is ready.
+    """Start a system for a test, in its own domain, and yield it when it is ready.
 
     ::
 
@@ -39,8 +39,8 @@ async def system_under_test(
         ):
             ...
 
-    It is stopped at the end, and nothing of it is left. What its members print goes to
-    ``sys.stdout``, which pytest shows when the test fails.
+    It is stopped at the end, and nothing of it is left. Its members' output goes to ``sys.stdout``,
+    which pytest shows when the test fails.
 
     Args:
         description: A launch file of ROS 2, in Python, XML or YAML; or a file with
@@ -49,10 +49,11 @@ async def system_under_test(
 
     Raises:
         LaunchFileError: the launch file cannot be evaluated; nothing was started (a ValueError).
-        NotReadyError: a member is not ready; the text names what is missing, and has the last lines
-            of the member (a TimeoutError).
-        ConfigurationError: the file is no launch file, and has no such function (a ValueError).
-        TypeError: there are `arguments` for what is no launch file.
+        NotReadyError: a member is not ready; the text says what is missing, with the member's last
+            lines (a TimeoutError).
+        ConfigurationError: the file is neither a launch file nor has such a function (a
+            ValueError).
+        TypeError: `arguments` are given for something other than a launch file.
     """
     from aionode.system import System
 
@@ -67,10 +68,10 @@ def how_to_start(
     description: str | os.PathLike[str] | Callable[[System], Awaitable[object]],
     arguments: Mapping[str, str] | None,
 ) -> Callable[[System], contextlib.AbstractAsyncContextManager[None]]:
-    """Return what starts the members of a system, and has them ready."""
+    """Return a function that starts the members of a system and waits until they are ready."""
     if not callable(description) and is_launch_file(Path(description)):
-        # A program that tests nodes alone imports no launch; and the recordings that rclpy's
-        # programs use need this package.
+        # Imported here, as most tests need no launch, and as rclpy's recordings import this
+        # package.
         from aionode.launch import Plan, plan_running
 
         plan = Plan(os.fspath(description), arguments)
@@ -82,7 +83,7 @@ def how_to_start(
 
 
 def is_launch_file(file: Path) -> bool:
-    """Return whether a file is a launch file of ROS 2, and not one with ``main``."""
+    """Return whether a file is a ROS 2 launch file rather than one with ``main``."""
     return file.suffix != ".py" or b"generate_launch_description" in file.read_bytes()
 
 
@@ -97,7 +98,7 @@ async def started_by(
 
 
 def main_of(file: Path) -> Callable[[System], Awaitable[object]]:
-    """Return the function of a file that adds the members of a system.
+    """Return a file's function that adds the members of a system.
 
     Raises:
         ConfigurationError: it has none (a ValueError).
@@ -114,7 +115,7 @@ def main_of(file: Path) -> Callable[[System], Awaitable[object]]:
 
 @contextlib.contextmanager
 def own_domain() -> Iterator[int]:
-    """Reserve a domain that no other test of this machine has.
+    """Reserve a domain that no other test on this machine uses.
 
     Raises:
         ConfigurationError: all are taken (a ValueError).
