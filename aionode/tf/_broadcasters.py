@@ -1,4 +1,4 @@
-"""Publishing transforms."""
+"""Publish transforms."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["StaticTransformBroadcaster", "TransformBroadcaster"]
 
 
 class TransformBroadcaster:
-    """Publishes transforms that change on /tf, as in tf2_ros.
+    """Publishes changing transforms on /tf, as in tf2_ros.
 
     Args:
         node: The node that publishes. In a managed node, transforms are sent in every state.
@@ -36,7 +36,7 @@ class TransformBroadcaster:
     def sendTransform(
         self, transform: TransformStamped | Iterable[TransformStamped]
     ) -> None:  # tf2's name
-        """Publish one transform, or several in one message; never waits.
+        """Publish one transform, or several in one message; never blocks.
 
         Raises:
             MessageError: it is not a transform (a ValueError).
@@ -46,10 +46,10 @@ class TransformBroadcaster:
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms that never change on /tf_static, as in tf2_ros.
+    """Publishes static transforms on /tf_static, as in tf2_ros.
 
-    Each message has all transforms that were sent with this broadcaster, so that nodes that come
-    later get all of them. A transform of the same child frame replaces the one before.
+    Each message contains all transforms that were sent with this broadcaster, so that late nodes
+    get all of them. A transform with the same child frame replaces the earlier one.
 
     Args:
         node: The node that publishes. In a managed node, transforms are sent in every state.
@@ -57,7 +57,7 @@ class StaticTransformBroadcaster:
 
     Attributes:
         pub_tf: The publisher.
-        net_message: The message that was published last.
+        net_message: The last published message.
     """
 
     _StaticTransformBroadcaster__message: Any = TFMessage
@@ -73,7 +73,7 @@ class StaticTransformBroadcaster:
     def sendTransform(
         self, transform: TransformStamped | Iterable[TransformStamped]
     ) -> None:  # tf2's name
-        """Publish one or several transforms, with all that were sent before; never waits.
+        """Publish one or several transforms, with all earlier ones; never blocks.
 
         Raises:
             MessageError: it is not a transform (a ValueError).

@@ -21,28 +21,26 @@ StampedT = TypeVar("StampedT")
 
 
 class Buffer(NodeBufferCore):
-    """Keeps the transforms of /tf and /tf_static, and answers for any two frames.
+    """Stores the transforms of /tf and /tf_static, and returns those between any two frames.
 
     ::
 
         buffer = aionode.tf.Buffer(node)
         stamped = await buffer.wait_for_transform("map", "base_link")
 
-    It has the methods of tf2's BufferCore as well. It is cleared when the clock of the node jumps
-    back, as tf2 does, and when simulated time is switched on or off. Time limits run in that clock.
+    It also has the methods of tf2's BufferCore. As in tf2 it is cleared when the node's clock jumps
+    back, and also when simulated time is switched on or off. Timeouts are measured by that clock.
 
     Args:
         node: The node that subscribes; the buffer ends with it.
         cache_time: How long transforms are kept: a Duration, or seconds.
         qos: A profile or depth for /tf; by default 100 messages.
         static_qos: The same for /tf_static; by default also transient local.
-        tf_topic: The topic of transforms that change.
-        tf_static_topic: The topic of transforms that do not.
+        tf_topic: The topic of changing transforms.
+        tf_static_topic: The topic of static transforms.
 
-    Raises:
-        TypeError: `cache_time` is neither a duration nor a number.
-        ValueError: it is negative.
-        EntityDestroyedError: the node was destroyed (a RuntimeError).
+    Raises: TypeError: `cache_time` is neither a duration nor a number. ValueError: it is negative.
+    EntityDestroyedError: the node was destroyed (a RuntimeError).
     """
 
     # Without waiting
@@ -50,14 +48,14 @@ class Buffer(NodeBufferCore):
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Any = LATEST
     ) -> TransformStamped:
-        """Return the transform that expresses in `target_frame` what is given in `source_frame`.
+        """Return the transform from `source_frame` to `target_frame`.
 
         It never waits; see `wait_for_transform`.
 
         Args:
-            target_frame: The frame to express things in.
-            source_frame: The frame that they are in.
-            time: When; by default the latest common time.
+            target_frame: The frame to transform to.
+            source_frame: The frame to transform from.
+            time: The time; by default the latest common one.
 
         Raises:
             TransformException: it is not available; the class and the text say why.
@@ -89,7 +87,7 @@ class Buffer(NodeBufferCore):
         *,
         return_debug_tuple: bool = False,
     ) -> bool | tuple[bool, str]:
-        """Return whether a transform is available, with `return_debug_tuple` also why not."""
+        """Return whether a transform is available; with `return_debug_tuple`, also why not."""
         answer = self.can_transform_core(target_frame, source_frame, time)
         return answer if return_debug_tuple else answer[0]
 
@@ -121,13 +119,13 @@ class Buffer(NodeBufferCore):
     ) -> TransformStamped:
         """Wait until a transform is available, and return it.
 
-        Cancelling ends the wait and changes nothing else; the CancelledError has a note that says
-        why the transform was not there, which also `asyncio.timeout` shows.
+        Cancelling ends the wait and changes nothing else; the CancelledError has a note saying why
+        the transform was not available, which `asyncio.timeout` shows too.
 
         Args:
-            target_frame: The frame to express things in.
-            source_frame: The frame that they are in.
-            time: When; by default the latest common time.
+            target_frame: The frame to transform to.
+            source_frame: The frame to transform from.
+            time: The time; by default the latest common one.
             timeout_sec: How long to wait, in seconds of the node's clock; None for ever.
 
         Raises:
@@ -135,7 +133,7 @@ class Buffer(NodeBufferCore):
             ExtrapolationException: the time is older than the transforms that are kept.
             InvalidArgumentException: a name is empty or begins with a slash (a ValueError).
             EntityDestroyedError: the node was destroyed (a RuntimeError).
-            asyncio.CancelledError: it was destroyed, and the current task is one of its own.
+            asyncio.CancelledError: the node was destroyed, and the current task is one of its own.
         """
         parts = ((target_frame, source_frame, time_ns_of(time)),)
         return await self._BufferCore__wait(
@@ -156,7 +154,7 @@ class Buffer(NodeBufferCore):
     ) -> TransformStamped:
         """Wait until a transform between two times is available, and return it.
 
-        See `lookup_transform_full_core` for the arguments, and `wait_for_transform` for the rest.
+        See `lookup_transform_full_core` for the arguments, and `wait_for_transform` otherwise.
         """
         parts = (
             (target_frame, fixed_frame, time_ns_of(target_time)),
@@ -178,20 +176,20 @@ class Buffer(NodeBufferCore):
     async def transform(
         self, object_stamped: StampedT, target_frame: str, *, timeout_sec: float | None = None
     ) -> StampedT:
-        """Return a message in another frame, as soon as its transform is available.
+        """Transform a message to another frame, as soon as the transform is available.
 
         Args:
             object_stamped: A message with a header: one of geometry_msgs, a PointCloud2, or of a
                 type that `register_transform` knows.
-            target_frame: The frame to express it in.
+            target_frame: The frame to transform to.
             timeout_sec: As for `wait_for_transform`.
 
         Raises:
-            TypeError: there is no function for this type.
+            TypeError: there is no transform function for this type.
             TransformException: as `wait_for_transform`.
         """
         apply = transformer_of(type(object_stamped))
-        header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
+        header = object_stamped.header  # type: ignore[attr-defined]  # registered types have it
         stamped = await self.wait_for_transform(
             target_frame, header.frame_id, header.stamp, timeout_sec=timeout_sec
         )
@@ -207,14 +205,14 @@ class Buffer(NodeBufferCore):
         *,
         timeout_sec: float | None = None,
     ) -> StampedT:
-        """Return a message in another frame at another time; see `transform`.
+        """Transform a message to another frame at another time; see `transform`.
 
         Raises:
-            TypeError: there is no function for this type.
+            TypeError: there is no transform function for this type.
             TransformException: as `wait_for_transform_full`.
         """
         apply = transformer_of(type(object_stamped))
-        header = object_stamped.header  # type: ignore[attr-defined]  # of what is registered
+        header = object_stamped.header  # type: ignore[attr-defined]  # registered types have it
         transform = await self.wait_for_transform_full(
             target_frame,
             target_time,
@@ -227,10 +225,10 @@ class Buffer(NodeBufferCore):
         return result
 
     def follow(self, target_frame: str, source_frame: str) -> Changes:
-        """Return an iterator over the latest transform between two frames: each time it changes.
+        """Iterate over the latest transform between two frames, each time it changes.
 
-        ``async for stamped in buffer.follow("map", "base_link")``. A slow loop gets the newest one
-        only. It waits while there is none.
+        ``async for stamped in buffer.follow("map", "base_link")``. A slow loop gets only the newest
+        one. It waits while there is none.
 
         Raises:
             InvalidArgumentException: a name is empty or begins with a slash (a ValueError).
@@ -241,15 +239,15 @@ class Buffer(NodeBufferCore):
     def filter(
         self, subscription: Subscription[StampedT], target_frame: str, *, queue_size: int = 100
     ) -> Filtered[StampedT]:
-        """Return an iterator over messages whose transform is available: tf2's MessageFilter.
+        """Iterate over messages once their transform is available, like tf2's MessageFilter.
 
         ``async for msg, stamped in buffer.filter(subscription, "map")``.
 
         Args:
             subscription: A subscription without a callback, of messages with headers; the iterator
                 reads it.
-            target_frame: The frame to express the messages in.
-            queue_size: How many messages wait; beyond that the oldest one is dropped.
+            target_frame: The frame to transform the messages to.
+            queue_size: How many messages may wait; beyond that the oldest one is dropped.
 
         Raises:
             ValueError: `queue_size` is less than 1.

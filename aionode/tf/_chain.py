@@ -1,4 +1,4 @@
-"""The names of the frames between two frames, in the form that tf2 gives them."""
+"""The names of the frames between two frames, as returned by tf2."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ __all__ = ["chain"]
 
 
 def chain(frames: Tree, target: tuple[str, int], source: tuple[str, int], fixed: str) -> list[str]:
-    """Return the frames between a source and a target, by way of a fixed frame.
+    """Return the frames between a source and a target, via a fixed frame.
 
-    tf2 leaves out some of the frames where both branches meet, and so does this.
+    tf2 omits some of the frames where both branches meet, and so does this.
 
     Args:
         frames: The frames by name.
         target: The target frame and its time, in nanoseconds.
         source: The source frame and its time, in nanoseconds.
-        fixed: The frame that stands still between both times.
+        fixed: The frame that is fixed between the two times.
 
     Raises:
         TransformException: there is no such chain.
@@ -62,7 +62,7 @@ def chain_at(frames: Tree, target: str, source: str, time_ns: int) -> list[str]:
 
 
 def to_top(frames: Tree, frame: str, time_ns: int, *, stop: str) -> list[str]:
-    """Return a frame and those above it at a time, up to the last one, or to `stop`."""
+    """Return a frame and its ancestors at a time, up to the root or to `stop`."""
     chain = [frame]
     while frame != stop:
         history = frames.get(frame)
@@ -75,7 +75,7 @@ def to_top(frames: Tree, frame: str, time_ns: int, *, stop: str) -> list[str]:
 
 
 def common_end(first: list[str], second: list[str]) -> tuple[int, int]:
-    """Return the indices, from the end of two lists, at which they differ first."""
+    """Return the indices at which two lists, compared from the end, first differ."""
     n, m = len(first), len(second)
     while n > 0 and m > 0:
         n -= 1

@@ -1,4 +1,4 @@
-"""The changes of the transform between two frames, one after the other."""
+"""The changes of the transform between two frames, one at a time."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Changes:
         raise StopAsyncIteration
 
     async def _change(self) -> None:
-        """Wait until a frame on the way has new data."""
+        """Wait until a frame on the path has new data."""
         buffer = self._buffer
         changed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         tree = buffer._BufferCore__frames

@@ -1,4 +1,4 @@
-"""Point clouds in another frame, by numpy."""
+"""Transform point clouds, with numpy."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ AXES = ("x", "y", "z")
 
 
 def transformed_cloud(cloud: PointCloud2, by: TransformStamped) -> PointCloud2:
-    """Return a cloud whose points are moved and turned; as in tf2, its stamp stays.
+    """Transform the points of a cloud; as in tf2, its stamp is kept.
 
     Raises:
         ValueError: the cloud lacks x, y or z.

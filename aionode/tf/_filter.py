@@ -1,4 +1,4 @@
-"""Messages that wait until their transform is available: tf2's MessageFilter."""
+"""Messages that wait until their transform is available, like tf2's MessageFilter."""
 
 from __future__ import annotations
 
@@ -48,11 +48,11 @@ class Filtered(Generic[MsgT]):
         self._subscription = subscription
         self._target = target
         self._queue_size = queue_size
-        self._waiting: dict[Waiter, None] = {}  # the oldest first
+        self._waiting: dict[Waiter, None] = {}  # oldest first
         self._ready: deque[tuple[MsgT, TransformStamped]] = deque()
         self._wake: asyncio.Future[None] | None = None
         self._turn_ends_ns = 0
-        # An iterator that is left behind leaves no waiters in the buffer.
+        # An abandoned iterator leaves no waiters in the buffer.
         finalize(self, remove_all, buffer._BufferCore__waiters, self._waiting)
 
     @property
@@ -69,7 +69,7 @@ class Filtered(Generic[MsgT]):
         subscription = self._subscription
         subscription._refuse_if_it_has_a_callback()
         if perf_ns() >= self._turn_ends_ns:
-            # With messages that are all ready this never waits, so nothing else would run.
+            # If all messages are ready this never waits, so nothing else would run.
             await checkpoint()
             self._turn_ends_ns = perf_ns() + subscription._reader.slice_ns
         while True:
@@ -83,7 +83,7 @@ class Filtered(Generic[MsgT]):
             await subscription._reader.wait(self._wake)
 
     def _take(self, msg: Any) -> None:
-        """Let a message wait for its transform, if it has to."""
+        """Make a message wait for its transform, if necessary."""
         header = msg.header
         source = header.frame_id.removeprefix("/")
         if not source:
@@ -103,7 +103,7 @@ class Filtered(Generic[MsgT]):
         self._buffer._BufferCore__waiters.add(waiter)
 
     def _end(self, waiter: Waiter, msg: Any, source: str, failure: Failure | None) -> None:
-        """Take a message whose wait has ended."""
+        """Handle a message whose wait has ended."""
         self._waiting.pop(waiter, None)
         if failure is not None:
             self._drop(msg, OLD)
@@ -127,7 +127,7 @@ class Filtered(Generic[MsgT]):
         self._count(reason, msg.header.frame_id, time_ns_of(msg.header.stamp))
 
     def _count(self, reason: str, frame: str, time_ns: int) -> None:
-        """Count a dropped message; the log tells of the first one for each reason."""
+        """Count a dropped message; the first one for each reason is logged."""
         self.dropped[reason] += 1
         if self.dropped[reason] == 1:
             topic = self._subscription.topic_name
@@ -138,6 +138,6 @@ class Filtered(Generic[MsgT]):
 
 
 def remove_all(waiters: Waiters, waiting: dict[Waiter, None]) -> None:
-    """End the waits of an iterator that is gone."""
+    """End the waits of an abandoned iterator."""
     for waiter in list(waiting):
         waiters.remove(waiter)

@@ -1,4 +1,4 @@
-"""A frame in a buffer: its history, or the one pose of a static frame."""
+"""A frame in a buffer: its history, or the single pose of a static frame."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 __all__ = ["MAX_SAMPLES", "DynamicFrame", "Frame", "Room", "StaticFrame", "Tree"]
 
 MAX_SAMPLES = 1_000_000
-"""Most poses that a buffer keeps of all frames together: some 340 MB."""
+"""Maximum poses that a buffer stores for all frames together, some 340 MB."""
 
 MAX_EQUAL = 100
-"""Among how many poses of one stamp an exact duplicate is searched."""
+"""How many poses with the same stamp are searched for an exact duplicate."""
 
 COMPACT = 64
-"""Most forgotten poses at the start of a history before they are removed at once."""
+"""Maximum expired poses at the start of a history before they are removed together."""
 
 
 class Room:
-    """The number of poses that the frames of one buffer may still keep."""
+    """The number of poses that the frames of one buffer may still store."""
 
     __slots__ = ("left",)
 
@@ -34,12 +34,12 @@ class Room:
 class DynamicFrame:
     """The history of a frame whose transform changes, sorted by stamp.
 
-    Equal stamps are kept in the order of their arrival; exact duplicates are not kept.
+    Equal stamps are kept in order of arrival; exact duplicates are not stored.
 
     Args:
         max_ns: How much older than the newest pose a pose may be, in nanoseconds.
-        room: Shared by the frames of a buffer. Without any left, the history of a frame does not
-            grow: its oldest pose leaves for each new one.
+        room: Shared by the frames of a buffer. When it is used up, histories stop growing: each new
+            pose replaces the oldest one.
     """
 
     __slots__ = ("first", "max_ns", "parents", "poses", "reparented", "room", "stamps")
@@ -52,8 +52,8 @@ class DynamicFrame:
         self.stamps: list[int] = []
         self.parents: list[str] = []
         self.poses: list[Pose] = []
-        # The index of the oldest pose that counts: removing each from the front of a list would
-        # move all others every time.
+        # The index of the oldest valid pose, as removing each from the front of the list would move
+        # all others every time.
         self.first = 0
         self.reparented = False  # whether the history has, or had, more than one parent
 
@@ -61,7 +61,7 @@ class DynamicFrame:
         return len(self.stamps) - self.first
 
     def insert(self, stamp_ns: int, parent: str, pose: Pose) -> bool:
-        """Add a pose; return False if it is older than the history reaches."""
+        """Add a pose; return False if it is older than the history."""
         stamps = self.stamps
         if not stamps:
             self._put(0, stamp_ns, parent, pose)
@@ -92,7 +92,7 @@ class DynamicFrame:
             self._compact()
 
     def _has(self, index: int, stamp_ns: int, parent: str, pose: Pose) -> bool:
-        """Return whether this very pose is among those of its stamp, which end before `index`."""
+        """Return whether this exact pose is among those of its stamp, which end before `index`."""
         for before in range(index - 1, max(self.first, index - MAX_EQUAL) - 1, -1):
             if self.stamps[before] != stamp_ns:
                 return False
@@ -101,7 +101,7 @@ class DynamicFrame:
         return False
 
     def _forget(self, before_ns: int) -> None:
-        """Forget the poses that are older than a stamp."""
+        """Drop the poses older than a stamp."""
         kept = bisect_right(self.stamps, before_ns - 1, self.first)
         self.room.left += kept - self.first
         self.first = kept
@@ -113,7 +113,7 @@ class DynamicFrame:
             self.first = 0
 
     def pose_at(self, time_ns: int) -> Pose | None:
-        """Return the pose at a time, for histories with one parent; None as for `find`."""
+        """Return the pose at a time, for histories with one parent; None as in `find`."""
         stamps = self.stamps
         index = bisect_right(stamps, time_ns, self.first)
         if self.first < index < len(stamps):
@@ -125,7 +125,7 @@ class DynamicFrame:
         return None if nearest is None else nearest[1][0]
 
     def find(self, time_ns: int) -> tuple[str, Edge] | None:
-        """Return the parent and the pose at a time; None if the history does not reach there.
+        """Return the parent and the pose at a time; None if outside the history.
 
         Args:
             time_ns: 0 means the newest.
@@ -140,7 +140,7 @@ class DynamicFrame:
         first = self.first
         if time_ns > newest or time_ns < stamps[first]:
             return None
-        # Of equal stamps tf2 takes the last one, but of the oldest the first.
+        # Of equal stamps tf2 uses the last one, but for the oldest stamp the first one.
         index = first if time_ns == stamps[first] else bisect_right(stamps, time_ns, first) - 1
         stamp = stamps[index]
         parents, poses = self.parents, self.poses
@@ -152,20 +152,20 @@ class DynamicFrame:
 
     @property
     def newest_ns(self) -> int:
-        """The newest stamp; 0 without any."""
+        """The newest stamp; 0 if there is none."""
         return self.stamps[-1] if self.stamps else 0
 
     @property
     def oldest_ns(self) -> int:
-        """The oldest stamp; 0 without any."""
+        """The oldest stamp; 0 if there is none."""
         return self.stamps[self.first] if self.stamps else 0
 
     def latest(self) -> tuple[int, str] | None:
-        """Return the newest stamp and its parent; None without any."""
+        """Return the newest stamp and its parent; None if there is none."""
         return (self.stamps[-1], self.parents[-1]) if self.stamps else None
 
     def clear(self) -> None:
-        """Forget all poses."""
+        """Drop all poses."""
         self.room.left += len(self)
         self.stamps.clear()
         self.parents.clear()
@@ -175,7 +175,7 @@ class DynamicFrame:
 
 
 class StaticFrame:
-    """The one pose of a frame that never moves; a new one replaces it."""
+    """The single pose of a static frame; a new one replaces it."""
 
     __slots__ = ("parent", "pose")
 
@@ -205,7 +205,7 @@ class StaticFrame:
         return self.parent, (self.pose, None, 0.0)
 
     def latest(self) -> tuple[int, str]:
-        """Return 0, as the pose holds at any time, and the parent."""
+        """Return 0, as the pose is valid at any time, and the parent."""
         return 0, self.parent
 
     def clear(self) -> None:
@@ -219,7 +219,7 @@ class Tree(dict[str, Frame]):
     """The frames that have had a transform, by name.
 
     Attributes:
-        names: All frames that were ever mentioned, also as parents, in the order of that.
+        names: All frames ever mentioned, even as parents, in order of first mention.
     """
 
     def __init__(self) -> None:
@@ -227,5 +227,5 @@ class Tree(dict[str, Frame]):
         self.names: dict[str, None] = {}
 
     def in_order(self) -> dict[str, Frame]:
-        """Return the frames in the order of `names`, in which tf2 lists them."""
+        """Return the frames in the order of `names`, as listed by tf2."""
         return {name: self[name] for name in self.names if name in self}

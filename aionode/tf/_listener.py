@@ -20,25 +20,25 @@ TOPIC = "/tf"
 STATIC_TOPIC = "/tf_static"
 
 DEPTH = 100
-"""Most messages of each topic that wait, as in tf2."""
+"""Maximum queued messages of each topic, as in tf2."""
 
 MAX_SENDERS = 1_000
-"""For how many publishers the name of their node is remembered."""
+"""For how many publishers the node name is remembered."""
 
 
 class TransformListener:
     """Puts the transforms of /tf and /tf_static into a buffer, as in tf2_ros.
 
-    A `Buffer` makes its own; this is for a `BufferCore`, and for transforms of other topics. The
-    authority of a transform is the node that has published it.
+    A `Buffer` creates its own; this is for a `BufferCore`, and for transforms of other topics. The
+    authority of a transform is the node that published it.
 
     Args:
-        buffer: Where the transforms go.
+        buffer: The buffer to fill.
         node: The node that subscribes. In a managed node, transforms arrive in every state.
         qos: A profile or depth for /tf; by default 100 messages.
         static_qos: The same for /tf_static; by default also transient local.
-        tf_topic: The topic of transforms that change.
-        tf_static_topic: The topic of transforms that do not.
+        tf_topic: The topic of changing transforms.
+        tf_static_topic: The topic of static transforms.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class TransformListener:
         self.buffer = buffer
         self.node = node
         self.__senders: dict[bytes, str] = {}
-        self.__unnamed: set[bytes] = set()  # publishers whose node is not known yet
+        self.__unnamed: set[bytes] = set()  # publishers whose node is not yet known
         self.tf_sub: Subscription[TFMessage] = node.create_subscription(
             TFMessage, tf_topic, self.callback, qos or DEPTH
         )
@@ -68,19 +68,19 @@ class TransformListener:
             subscription._watch(self.__note_publisher)
 
     def callback(self, data: TFMessage, info: MessageInfo) -> None:
-        """Take transforms that may change."""
+        """Handle changing transforms."""
         authority = self.__sender(info["publisher_gid"])
         for transform in data.transforms:
             self.buffer.set_transform(transform, authority)
 
     def static_callback(self, data: TFMessage, info: MessageInfo) -> None:
-        """Take transforms that hold at any time."""
+        """Handle static transforms."""
         authority = self.__sender(info["publisher_gid"])
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, authority)
 
     def __sender(self, gid: bytes) -> str:
-        """Return the full name of the node of a publisher; its gid while that is not known."""
+        """Return the full name of a publisher's node; its gid while unknown."""
         known = self.__senders.get(gid)
         if known is not None:
             return known
@@ -96,9 +96,9 @@ class TransformListener:
         return nameless(gid)
 
     def __note_publisher(self, endpoint: EndpointInfo, present: bool) -> None:
-        """Name the sender of transforms that have arrived before the graph knew their publisher.
+        """Name the sender of transforms that arrived before the graph knew their publisher.
 
-        Static transforms come once: without this, their sender would never be named.
+        Static transforms arrive once; without this their sender would never be named.
         """
         if present and endpoint.gid in self.__unnamed:
             self.__unnamed.discard(endpoint.gid)
@@ -112,5 +112,5 @@ class TransformListener:
 
 
 def nameless(gid: bytes) -> str:
-    """Return how a publisher is called while its node is not known."""
+    """Return the placeholder name of a publisher whose node is unknown."""
     return f"publisher {gid.hex()}"

@@ -1,4 +1,4 @@
-"""The core of a node's buffer: fed by topics, cleared when the clock jumps back, awaited."""
+"""The core of a node's buffer: fed by topics, cleared by clock jumps, and awaitable."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 __all__ = ["LATEST", "NodeBufferCore"]
 
 LATEST = Time()
-"""The latest common time, as tf2 writes it."""
+"""The latest common time, as in tf2."""
 
 
 class BufferEnd(Entity):
@@ -44,7 +44,7 @@ class BufferEnd(Entity):
 
 
 class NodeBufferCore(BufferCore):
-    """A core that ends with its node, and in which one can wait; see `Buffer`."""
+    """A core that ends with its node, and supports waiting; see `Buffer`."""
 
     def __init__(
         self,
@@ -61,7 +61,7 @@ class NodeBufferCore(BufferCore):
         self._BufferCore__clock: Clock = node.get_clock()
         self._BufferCore__waiters = Waiters(self._BufferCore__frames, self._BufferCore__cache_ns)
         self._BufferCore__followers: dict[str, dict[asyncio.Future[None], None]] = {}
-        # Each pending wait, with what ends it and, if it has a limit, its length in nanoseconds.
+        # Each pending wait, with the alarm that ends it and its timeout in nanoseconds, if any.
         self._BufferCore__pending: dict[asyncio.Future[Any], tuple[int, Alarm | None]] = {}
         self.listener = TransformListener(
             self,
@@ -93,7 +93,7 @@ class NodeBufferCore(BufferCore):
         self._BufferCore__entity._refuse_if_destroyed("wait for a transform")
         self._BufferCore__expect_names(*(frame for part in parts for frame in part[:2]))
         ended: asyncio.Future[Any] = asyncio.get_running_loop().create_future()
-        # The answer is taken when it is there: until the task runs, the data may have gone.
+        # The answer is taken at once, as the data may be gone by the time the task runs.
         waiter = Waiter(
             parts,
             lambda failure: settle(ended, look_up if failure is None else failure.exception()),
@@ -116,10 +116,10 @@ class NodeBufferCore(BufferCore):
             raise self._BufferCore__entity._end_of_wait()
         if result is TIMED_OUT:
             raise TimeoutException(f"{self._BufferCore__reason(parts)}; waited {timeout_sec:g} s")
-        return result  # type: ignore[no-any-return]  # a future has one type only
+        return result  # type: ignore[no-any-return]  # a future has a single type
 
     def _BufferCore__reason(self, parts: tuple[Part, ...]) -> str:
-        """Return what is waited for, and why it is not there."""
+        """Describe what is awaited, and why it is not available."""
         failure, _ = problem_of(self._BufferCore__frames, parts)
         reason = "it is available now" if failure is None else failure.text
         for part in parts:
@@ -131,13 +131,13 @@ class NodeBufferCore(BufferCore):
         return f"Timed out waiting for transform from [{source}] to [{target}] at {at}: {reason}"
 
     def _BufferCore__expect_names(self, *frames: str) -> None:
-        """Refuse names that no frame can have, as `lookup_transform_core` does."""
+        """Refuse invalid frame names, like `lookup_transform_core`."""
         for frame in frames:
             if not frame or frame.startswith("/"):
                 self._BufferCore__expect_frame("wait_for_transform", frame)
 
     def _BufferCore__alarm(self, ended: asyncio.Future[Any], limit_ns: int) -> Alarm | None:
-        """Return what ends a wait when its limit is over, on the node's clock."""
+        """Return the alarm that ends a wait after its timeout, on the node's clock."""
         if not limit_ns:
             return None
         until_ns = self._BufferCore__clock.now_ns() + limit_ns
@@ -157,18 +157,18 @@ class NodeBufferCore(BufferCore):
         return None if isinstance(result, Failure) else (unit(result[0]), result[1])
 
     def clear(self) -> None:
-        """Forget the history of all frames; static transforms, names and waits stay."""
+        """Clear the history of all frames; static transforms, names and waits are kept."""
         super().clear()
         self._BufferCore__waiters.ask_all()
 
     def _BufferCore__on_jump(self, jump: TimeJump) -> None:
-        """Clear the buffer: its transforms are from another time."""
+        """Clear the buffer, as its transforms are from another time."""
         self._BufferCore__logger.warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
         if jump.clock_change is ClockChange.ROS_TIME_NO_CHANGE:
             return
         for ended, (limit_ns, alarm) in list(self._BufferCore__pending.items()):
-            if alarm is not None:  # it belongs to the time that was followed before
+            if alarm is not None:  # it belongs to the previous source of time
                 alarm.cancel()
                 self._BufferCore__pending[ended] = (
                     limit_ns,
@@ -191,7 +191,7 @@ DESTROYED: Any = object()
 
 
 def settle(future: asyncio.Future[Any], outcome: Callable[[], Any] | Exception) -> None:
-    """End a wait with what a function returns, or with an error; no effect if it has ended."""
+    """End a wait with a function's result or an error; no effect if it has ended."""
     if future.done():
         return
     if isinstance(outcome, Exception):

@@ -1,4 +1,4 @@
-"""Transforms that tf2 refuses to take into a buffer, in tf2's words."""
+"""Transforms that tf2 rejects, with tf2's messages."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ if TYPE_CHECKING:
 __all__ = ["TOLERANCE", "mistakes", "old_data", "too_long", "too_many", "two_broadcasters"]
 
 TOLERANCE = 10e-3
-"""By how much the square of a quaternion's length may differ from 1."""
+"""Tolerance for the squared length of a quaternion."""
 
 
 def mistakes(child: str, parent: str, pose: Pose, authority: str) -> list[tuple[str, str]]:
-    """Return everything that is wrong with a transform: kinds of mistakes, and texts."""
+    """Return everything that is wrong with a transform, as pairs of kind and text."""
     refusals = []
     by = f'authority "{authority}"'
     if child == parent:

@@ -1,4 +1,4 @@
-"""Ways through the tree that hold at any time, so that most lookups need no walk."""
+"""Paths through the tree that are valid at any time, so that most lookups need no walk."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
 __all__ = ["Route", "Routes"]
 
 MAX_ROUTES = 1_000
-"""Most routes that a buffer remembers."""
+"""Maximum routes cached by a buffer."""
 
 
 class Route:
-    """The frames between two frames; they, and all above, have had one parent only."""
+    """The frames between two frames; they and their ancestors only ever had one parent."""
 
     __slots__ = ("down", "names", "up")
 
@@ -40,7 +40,7 @@ class Route:
 
 
 def pose_over(frames: list[Frame], time_ns: int) -> Pose | None:
-    """Return the pose that a series of frames leads to; None if one has no data for the time."""
+    """Compose the poses of a series of frames; None if one has no data for the time."""
     total = None
     for frame in frames:
         pose = frame.pose_at(time_ns)
@@ -51,7 +51,7 @@ def pose_over(frames: list[Frame], time_ns: int) -> Pose | None:
 
 
 class Routes:
-    """The routes of a buffer, found once and forgotten when the tree changes.
+    """The routes of a buffer, cached until the tree changes.
 
     Args:
         frames: The frames of the buffer.
@@ -62,11 +62,11 @@ class Routes:
         self._known: dict[tuple[str, str], Route | None] = {}
 
     def forget(self) -> None:
-        """Forget all routes: a frame is new, of another kind, or has another parent."""
+        """Drop all routes, as a frame is new, of another kind, or has another parent."""
         self._known.clear()
 
     def find(self, target: str, source: str) -> Route | None:
-        """Return the route between two frames; None if only a walk can tell."""
+        """Return the route between two frames; None if it takes a walk."""
         key = target, source
         known = self._known.get(key)
         if known is not None or key in self._known:
@@ -78,7 +78,7 @@ class Routes:
 
     def _search(self, target: str, source: str) -> Route | None:
         if target == source:
-            return None  # its stamp is that of the frame
+            return None  # its stamp is the frame's own
         above_source = self._above(source)
         above_target = self._above(target)
         common = next((name for name in above_source if name in above_target), None)
@@ -87,13 +87,13 @@ class Routes:
         up = above_source[: above_source.index(common)]
         down = above_target[: above_target.index(common)]
         frames = self._frames
-        # Also above the common ancestor: at another time, the walk may have met the target there.
+        # Also above the common ancestor, where at another time the walk may have met the target.
         if any(frames[name].reparented for name in (*above_source, *down) if name in frames):
             return None
         return Route([frames[name] for name in up], [frames[name] for name in down], [*up, *down])
 
     def _above(self, frame: str) -> list[str]:
-        """Return a frame and those above it; empty if they form a loop."""
+        """Return a frame and its ancestors; empty if they form a loop."""
         chain = [frame]
         while (history := self._frames.get(frame)) is not None:
             latest = history.latest()

@@ -16,10 +16,10 @@ __all__ = ["Vector", "Velocity", "velocity"]
 
 Vector = tuple[float, float, float]
 Velocity = tuple[Vector, Vector]
-"""Linear in metres a second, and angular in radians a second."""
+"""Linear in m/s, and angular in rad/s."""
 
 SMALL = 10.0 * 2.220446049250313e-16
-"""Below this square of the sine of half an angle, a rotation has no axis."""
+"""Below this squared sine of half the angle, a rotation has no axis."""
 
 
 def velocity(
@@ -35,10 +35,11 @@ def velocity(
     Args:
         look_up: Returns the pose of a frame in another at a time: (target, source, time_ns).
         latest_ns: The newest time at which the frame is known.
-        frames: Which frame moves, from where it is seen, in whose axes, and that of the point.
+        frames: The moving frame, the observing frame, the frame of the axes, and the frame of the
+            point.
         point: The point.
         time_ns: The middle of the interval.
-        interval_ns: Over which time to average.
+        interval_ns: The averaging interval.
     """
     tracking, observation, reference, point_frame = frames
     time_sec, interval_sec = to_seconds(time_ns), to_seconds(interval_ns)
@@ -46,7 +47,7 @@ def velocity(
     start_sec = max(0.00001 + interval_sec, end_sec) - interval_sec
     start = look_up(observation, tracking, from_seconds(start_sec))
     end = look_up(observation, tracking, from_seconds(end_sec))
-    elapsed_sec = end_sec - start_sec  # not the interval, if that began before time 0
+    elapsed_sec = end_sec - start_sec  # differs from the interval if that started before time 0
     axis, angle = axis_and_angle(start, end)
     turn = scaled(rotated(start, axis), angle / elapsed_sec)
     shift = scaled((end[0] - start[0], end[1] - start[1], end[2] - start[2]), 1 / elapsed_sec)
@@ -55,20 +56,20 @@ def velocity(
     angular = rotated(seen, turn)
     linear = added(rotated(seen, shift), cross(seen[:3], angular))
     moved = composed(look_up(reference, point_frame, at), (*point, 0.0, 0.0, 0.0, 1.0))
-    # Component by component, where one would expect a cross product: so does tf2.
+    # Component by component instead of a cross product, as in tf2.
     offset = (moved[0] - seen[0], moved[1] - seen[1], moved[2] - seen[2])
     linear = added(linear, (angular[0] * offset[0], angular[1] * offset[1], angular[2] * offset[2]))
     return linear, angular
 
 
 def from_seconds(time_sec: float) -> int:
-    """Return seconds in nanoseconds, rounded as tf2 rounds."""
+    """Convert seconds to nanoseconds, rounded like tf2."""
     whole = floor(time_sec)
     return whole * S_TO_NS + floor((time_sec - whole) * 1e9 + 0.5)
 
 
 def axis_and_angle(start: Pose, end: Pose) -> tuple[Vector, float]:
-    """Return the rotation that leads from one pose to another, in the axes of the first."""
+    """Return the rotation from one pose to another, in the axes of the first."""
     back = (0.0, 0.0, 0.0, -start[3], -start[4], -start[5], start[6])
     _, _, _, i, j, k, w = unit(composed(back, (0.0, 0.0, 0.0, *end[3:])))
     square = 1.0 - w * w
@@ -80,7 +81,7 @@ def axis_and_angle(start: Pose, end: Pose) -> tuple[Vector, float]:
 
 
 def rotated(pose: Pose, vector: Vector) -> Vector:
-    """Return a vector turned by the rotation of a pose."""
+    """Rotate a vector by the rotation of a pose."""
     turned = composed((0.0, 0.0, 0.0, *pose[3:]), (*vector, 0.0, 0.0, 0.0, 1.0))
     return turned[:3]
 

@@ -1,4 +1,4 @@
-"""The way between two frames through the tree, and why there is none."""
+"""The path between two frames through the tree, or the reason why there is none."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["MAX_DEPTH", "Failure", "Walk", "latest_common_ns", "walk"]
 
 MAX_DEPTH = 1000
-"""Most edges of a way; beyond that, tf2 takes the tree for a loop."""
+"""Maximum edges of a path; beyond that, tf2 assumes a loop."""
 
 
 class Failure:
@@ -42,12 +42,12 @@ class Failure:
     ) -> None:
         self.error = error
         self.frame = frame
-        # A waiter only asks whether there is a transform: the text is made for those who read it.
+        # A waiter only asks whether there is a transform, so the text is created lazily.
         self._text = text
 
     @property
     def text(self) -> str:
-        """The text of tf2."""
+        """The message, as in tf2."""
         return self._text()
 
     def exception(self) -> TransformException:
@@ -56,14 +56,14 @@ class Failure:
 
 
 class Walk:
-    """The way from a source frame up to a common ancestor, and from a target frame up to it.
+    """The path from a source frame up to a common ancestor, and from a target frame up to it.
 
     Attributes:
-        time_ns: The time of the transforms; of the latest common one, if that was asked for.
+        time_ns: The time of the transforms; the latest common time, if requested.
         up: The edges from the source, the innermost first.
         down: The edges from the target.
         visited: The frames on which the outcome depends.
-        failure: Why there is no way; None if there is one.
+        failure: Why there is no path; None if there is one.
     """
 
     __slots__ = ("down", "failure", "time_ns", "up", "visited")
@@ -84,11 +84,11 @@ class Walk:
 
 
 def walk(frames: Tree, target: str, source: str, time_ns: int) -> Walk:
-    """Return the way from `source` to `target` at a time; 0 means the latest common time.
+    """Return the path from `source` to `target` at a time; 0 means the latest common time.
 
-    The order of the steps is tf2's, as it decides which error is reported: first from the source to
-    the root, or as far as there is data, then from the target until both meet. An error names an
-    edge of the way, and none above it: tf2 did before its pull request 896.
+    The order of the steps is tf2's, since it decides which error is reported: first from the source
+    to the root, or as far as there is data, then from the target until both meet. An error names an
+    edge of the path and none above it, unlike tf2 before its pull request 896.
     """
     way = Walk(time_ns)
     if target == source:
@@ -110,7 +110,7 @@ def walk_up(frames: Tree, way: Walk, target: str, source: str) -> dict[str, int]
     """Walk from the source to the root, or as far as there is data.
 
     Returns:
-        For each frame that was reached, how many edges lead to it; None if the target is reached.
+        For each reached frame, the number of edges to it; None if the target is reached.
     """
     counts: dict[str, int] = {}
     frame = source
@@ -131,8 +131,8 @@ def walk_up(frames: Tree, way: Walk, target: str, source: str) -> dict[str, int]
 
 
 def walk_down(frames: Tree, way: Walk, target: str, source: str, counts: dict[str, int]) -> None:
-    """Walk from the target to a frame that was reached from the source."""
-    last = way.visited[-1]  # the root, or a frame without data, above which the target may be
+    """Walk from the target to a frame reached from the source."""
+    last = way.visited[-1]  # the root, or a frame without data with the target perhaps above it
     frame = target
     while frame not in counts:
         way.visited.append(frame)
@@ -146,7 +146,7 @@ def walk_down(frames: Tree, way: Walk, target: str, source: str, counts: dict[st
             return
         nearest = history.find(way.time_ns)
         if nearest is None:
-            # Where the source's way ends below this frame, this edge is above where both meet.
+            # If the source's path ends below this frame, this edge is above the meeting point.
             missing = last if frame in ancestors(frames, last) else frame
             way.failure = extrapolation(frames, missing, way.time_ns, target, source)
             return
@@ -164,7 +164,7 @@ def latest_common_ns(frames: Tree, target: str, source: str) -> int | Failure:
     It is 0 if all of them are static.
     """
     stamps: list[int] = []
-    above: dict[str, int] = {}  # for each frame above the source, how many edges lead to it
+    above: dict[str, int] = {}  # for each ancestor of the source, the number of edges to it
     frame = source
     while (history := frames.get(frame)) is not None and (latest := history.latest()) is not None:
         stamp, frame = latest
@@ -189,12 +189,12 @@ def latest_common_ns(frames: Tree, target: str, source: str) -> int | Failure:
 
 
 def lowest(stamps: list[int]) -> int:
-    """Return the lowest stamp that is not 0; 0 is that of static frames."""
+    """Return the lowest non-zero stamp; 0 belongs to static frames."""
     return min((stamp for stamp in stamps if stamp), default=0)
 
 
 def ancestors(frames: Tree, frame: str) -> list[str]:
-    """Return a frame and those above it now, up to one without a parent."""
+    """Return a frame and its current ancestors, up to one without a parent."""
     chain = [frame]
     while (history := frames.get(frame)) is not None and (latest := history.latest()) is not None:
         frame = latest[1]
@@ -205,7 +205,7 @@ def ancestors(frames: Tree, frame: str) -> list[str]:
 
 
 def loop(frames: Tree) -> Failure:
-    """Return the failure of a tree that is none."""
+    """Return the failure for a tree with a loop."""
     return Failure(
         LookupException,
         lambda: f"The tf tree is invalid because it contains a loop.\n{frames_as_string(frames)}\n",
@@ -213,7 +213,7 @@ def loop(frames: Tree) -> Failure:
 
 
 def unconnected(target: str, source: str) -> Failure:
-    """Return the failure of two frames that are in different trees."""
+    """Return the failure for two frames in different trees."""
     return Failure(
         ConnectivityException,
         lambda: (
@@ -224,7 +224,7 @@ def unconnected(target: str, source: str) -> Failure:
 
 
 def extrapolation(frames: Tree, missing: str, time_ns: int, target: str, source: str) -> Failure:
-    """Return the failure of a frame that has no data for a time."""
+    """Return the failure for a frame without data for a time."""
     frame = frames[missing]
     wanted = seconds_text(time_ns)
     oldest_ns, newest_ns = frame.oldest_ns, frame.newest_ns

@@ -1,4 +1,4 @@
-"""Expressing stamped messages in another frame."""
+"""Transform stamped messages to another frame."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ MessageT = TypeVar("MessageT")
 Matrix = tuple[tuple[float, float, float], ...]
 
 REGISTERED: dict[type[Any], Callable[[Any, Any], Any]] = {}
-"""The functions that programs have registered, by type."""
+"""The transform functions registered by programs, by type."""
 
 
 def register_transform(
     msg_type: type[MessageT], function: Callable[[MessageT, TransformStamped], MessageT]
 ) -> None:
-    """Say how messages of a type are expressed in another frame, for `Buffer.transform`.
+    """Register the function that transforms messages of a type, for `Buffer.transform`.
 
     Args:
         msg_type: A class whose objects have a `header`.
@@ -46,7 +46,7 @@ def register_transform(
 
 
 def transformer_of(msg_type: type[Any]) -> Callable[[Any, Any], Any]:
-    """Return the function for messages of a type.
+    """Return the transform function for messages of a type.
 
     Raises:
         TypeError: there is none.
@@ -62,13 +62,14 @@ def transformer_of(msg_type: type[Any]) -> Callable[[Any, Any], Any]:
 
 
 def do_transform(stamped: MessageT, transform: TransformStamped) -> MessageT:
-    """Return a stamped message, expressed in the target frame of a transform.
+    """Transform a stamped message to the target frame of a transform.
 
-    Positions and poses are moved and turned, vectors such as velocities and forces only turned;
-    covariances and inertia tensors are turned with them. The header is that of the transform.
+    Positions and poses are translated and rotated, vectors such as velocities and forces only
+    rotated; covariances and inertia tensors are rotated with them. The header is that of the
+    transform.
 
     Raises:
-        TypeError: there is no function for this type.
+        TypeError: there is no transform function for this type.
     """
     result: MessageT = transformer_of(type(stamped))(stamped, transform)
     return result
@@ -84,21 +85,21 @@ def pose_of(transform: TransformStamped) -> Pose:
 
 
 def moved_by(pose: Pose, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Return a point, moved and turned."""
+    """Translate and rotate a point."""
     return composed(pose, (x, y, z, 0.0, 0.0, 0.0, 1.0))[:3]
 
 
 def turned_by(pose: Pose, vector: geometry.Vector3) -> geometry.Vector3:
-    """Return a vector, turned."""
+    """Rotate a vector."""
     turn = (0.0, 0.0, 0.0, *pose[3:])
     x, y, z = moved_by(turn, vector.x, vector.y, vector.z)
     return geometry.Vector3(x=x, y=y, z=z)
 
 
 def placed(pose: Pose, inner: geometry.Pose) -> geometry.Pose:
-    """Return a pose, moved and turned."""
+    """Translate and rotate a pose."""
     at, turned = inner.position, inner.orientation
-    # A message that nobody has filled in has no rotation, and tf2 takes that for none.
+    # An unset message has an all-zero quaternion, which tf2 treats as no rotation.
     w = turned.w or float(not (turned.x or turned.y or turned.z))
     own = (at.x, at.y, at.z, turned.x, turned.y, turned.z, w)
     x, y, z, i, j, k, w = unit(composed(pose, own))
@@ -116,7 +117,7 @@ def matrix_of(pose: Pose) -> Matrix:
 
 
 def rotation_matrix(rotation: geometry.Quaternion) -> Matrix:
-    """Return a quaternion as three rows of a matrix, which turns columns."""
+    """Convert a quaternion to the rows of a matrix that rotates column vectors."""
     whole = geometry.Transform(rotation=rotation)
     return matrix_of(pose_of(geometry.TransformStamped(transform=whole)))
 
@@ -128,7 +129,7 @@ def turned_tensor(rotation: Matrix, tensor: Sequence[Sequence[float]]) -> list[l
 
 
 def turned_covariance(pose: Pose, numbers: Iterable[float]) -> list[float]:
-    """Return a covariance of 36 numbers: each of its four blocks is turned, as in tf2."""
+    """Rotate each of the four blocks of a 6x6 covariance, as in tf2."""
     covariance = list(numbers)
     rotation = matrix_of(pose)
     result = [0.0] * 36
@@ -145,31 +146,31 @@ def turned_covariance(pose: Pose, numbers: Iterable[float]) -> list[float]:
 
 
 def point(msg: geometry.PointStamped, by: TransformStamped) -> geometry.PointStamped:
-    """Move and turn a point."""
+    """Transform a point."""
     x, y, z = moved_by(pose_of(by), msg.point.x, msg.point.y, msg.point.z)
     return geometry.PointStamped(header=by.header, point=geometry.Point(x=x, y=y, z=z))
 
 
 def vector(msg: geometry.Vector3Stamped, by: TransformStamped) -> geometry.Vector3Stamped:
-    """Turn a vector."""
+    """Rotate a vector."""
     return geometry.Vector3Stamped(header=by.header, vector=turned_by(pose_of(by), msg.vector))
 
 
 def quaternion(msg: geometry.QuaternionStamped, by: TransformStamped) -> geometry.QuaternionStamped:
-    """Turn an orientation."""
+    """Rotate an orientation."""
     whole = placed(pose_of(by), geometry.Pose(orientation=msg.quaternion))
     return geometry.QuaternionStamped(header=by.header, quaternion=whole.orientation)
 
 
 def pose(msg: geometry.PoseStamped, by: TransformStamped) -> geometry.PoseStamped:
-    """Move and turn a pose."""
+    """Transform a pose."""
     return geometry.PoseStamped(header=by.header, pose=placed(pose_of(by), msg.pose))
 
 
 def pose_with_covariance(
     msg: geometry.PoseWithCovarianceStamped, by: TransformStamped
 ) -> geometry.PoseWithCovarianceStamped:
-    """Move and turn a pose, and turn its covariance."""
+    """Transform a pose with its covariance."""
     frame = pose_of(by)
     return geometry.PoseWithCovarianceStamped(
         header=by.header,
@@ -181,7 +182,7 @@ def pose_with_covariance(
 
 
 def transform(msg: geometry.TransformStamped, by: TransformStamped) -> geometry.TransformStamped:
-    """Move and turn another transform; its child frame stays."""
+    """Transform another transform; its child frame is kept."""
     at, turned = msg.transform.translation, msg.transform.rotation
     whole = placed(
         pose_of(by),
@@ -198,13 +199,13 @@ def transform(msg: geometry.TransformStamped, by: TransformStamped) -> geometry.
 
 
 def moved_polygon(frame: Pose, polygon: geometry.Polygon) -> geometry.Polygon:
-    """Move and turn the points of a polygon."""
+    """Transform the points of a polygon."""
     moved = [moved_by(frame, point.x, point.y, point.z) for point in polygon.points]
     return geometry.Polygon(points=[geometry.Point32(x=x, y=y, z=z) for x, y, z in moved])
 
 
 def polygon(msg: geometry.PolygonStamped, by: TransformStamped) -> geometry.PolygonStamped:
-    """Move and turn a polygon."""
+    """Transform a polygon."""
     return geometry.PolygonStamped(
         header=by.header, polygon=moved_polygon(pose_of(by), msg.polygon)
     )
@@ -213,7 +214,7 @@ def polygon(msg: geometry.PolygonStamped, by: TransformStamped) -> geometry.Poly
 def polygon_instance(
     msg: geometry.PolygonInstanceStamped, by: TransformStamped
 ) -> geometry.PolygonInstanceStamped:
-    """Move and turn a polygon; its id stays."""
+    """Transform a polygon; its id is kept."""
     return geometry.PolygonInstanceStamped(
         header=by.header,
         polygon=geometry.PolygonInstance(
@@ -223,21 +224,21 @@ def polygon_instance(
 
 
 def turned_twist(frame: Pose, twist: geometry.Twist) -> geometry.Twist:
-    """Turn a velocity; it stays that of the same point."""
+    """Rotate a velocity, which remains that of the same point."""
     return geometry.Twist(
         linear=turned_by(frame, twist.linear), angular=turned_by(frame, twist.angular)
     )
 
 
 def twist(msg: geometry.TwistStamped, by: TransformStamped) -> geometry.TwistStamped:
-    """Turn a velocity."""
+    """Rotate a velocity."""
     return geometry.TwistStamped(header=by.header, twist=turned_twist(pose_of(by), msg.twist))
 
 
 def twist_with_covariance(
     msg: geometry.TwistWithCovarianceStamped, by: TransformStamped
 ) -> geometry.TwistWithCovarianceStamped:
-    """Turn a velocity and its covariance."""
+    """Rotate a velocity and its covariance."""
     frame = pose_of(by)
     return geometry.TwistWithCovarianceStamped(
         header=by.header,
@@ -249,7 +250,7 @@ def twist_with_covariance(
 
 
 def velocity(msg: geometry.VelocityStamped, by: TransformStamped) -> geometry.VelocityStamped:
-    """Turn a velocity of one frame against another."""
+    """Rotate the velocity of one frame relative to another."""
     return geometry.VelocityStamped(
         header=by.header,
         body_frame_id=msg.body_frame_id,
@@ -259,21 +260,21 @@ def velocity(msg: geometry.VelocityStamped, by: TransformStamped) -> geometry.Ve
 
 
 def turned_accel(frame: Pose, accel: geometry.Accel) -> geometry.Accel:
-    """Turn an acceleration."""
+    """Rotate an acceleration."""
     return geometry.Accel(
         linear=turned_by(frame, accel.linear), angular=turned_by(frame, accel.angular)
     )
 
 
 def accel(msg: geometry.AccelStamped, by: TransformStamped) -> geometry.AccelStamped:
-    """Turn an acceleration."""
+    """Rotate an acceleration."""
     return geometry.AccelStamped(header=by.header, accel=turned_accel(pose_of(by), msg.accel))
 
 
 def accel_with_covariance(
     msg: geometry.AccelWithCovarianceStamped, by: TransformStamped
 ) -> geometry.AccelWithCovarianceStamped:
-    """Turn an acceleration and its covariance."""
+    """Rotate an acceleration and its covariance."""
     frame = pose_of(by)
     return geometry.AccelWithCovarianceStamped(
         header=by.header,
@@ -285,7 +286,7 @@ def accel_with_covariance(
 
 
 def wrench(msg: geometry.WrenchStamped, by: TransformStamped) -> geometry.WrenchStamped:
-    """Turn a force and a torque, as tf2 does; they stay those of the same point."""
+    """Rotate a force and a torque, like tf2; they remain those of the same point."""
     frame = pose_of(by)
     return geometry.WrenchStamped(
         header=by.header,
@@ -296,7 +297,7 @@ def wrench(msg: geometry.WrenchStamped, by: TransformStamped) -> geometry.Wrench
 
 
 def inertia(msg: geometry.InertiaStamped, by: TransformStamped) -> geometry.InertiaStamped:
-    """Move the center of mass, and turn the tensor about it."""
+    """Transform the center of mass, and rotate the tensor about it."""
     frame, body = pose_of(by), msg.inertia
     x, y, z = moved_by(frame, body.com.x, body.com.y, body.com.z)
     tensor = turned_tensor(
@@ -323,7 +324,7 @@ def inertia(msg: geometry.InertiaStamped, by: TransformStamped) -> geometry.Iner
 
 
 def point_cloud(msg: PointCloud2, by: TransformStamped) -> PointCloud2:
-    """Move and turn the x, y, z of all points; other fields stay.
+    """Transform x, y and z of all points; other fields are kept.
 
     Raises:
         ValueError: the cloud lacks one of the three fields.
@@ -333,7 +334,7 @@ def point_cloud(msg: PointCloud2, by: TransformStamped) -> PointCloud2:
 
 @cache
 def cloud_transformer() -> Callable[[PointCloud2, TransformStamped], PointCloud2]:
-    """Return the function for clouds; numpy is imported with the first one."""
+    """Return the function for clouds; numpy is imported on first use."""
     from aionode.tf._cloud import transformed_cloud
 
     return transformed_cloud

@@ -1,4 +1,4 @@
-"""The tree of frames and its history: tf2's BufferCore, without input or output."""
+"""The tree of frames with its history: tf2's BufferCore, without I/O."""
 
 from __future__ import annotations
 
@@ -39,23 +39,23 @@ if TYPE_CHECKING:
 __all__ = ["CACHE_TIME_SEC", "MAX_FRAMES", "MAX_NAME", "BufferCore", "duration_ns", "time_ns_of"]
 
 CACHE_TIME_SEC = 10.0
-"""Time for which transforms are kept by default, in seconds."""
+"""How long transforms are kept by default, in seconds."""
 
 MAX_FRAMES = 10_000
-"""Most frames that a buffer takes; tf2 has no limit, but memory has."""
+"""Maximum frames of a buffer; tf2 has no limit."""
 
 MAX_NAME = 1_000
-"""Most characters of the name of a frame."""
+"""Maximum length of a frame name."""
 
 MAX_REPORTS = 1_000
-"""Most refusals that are logged; further ones of the same kind and sender are not."""
+"""Maximum refusals that are logged, each kind and sender once."""
 
 ROUNDING = 1e-12
-"""Up to this excess, a quaternion is not divided by its length: that would only round again."""
+"""Below this excess a quaternion is not normalized, which would only add rounding."""
 
 
 def time_ns_of(time: Any) -> int:
-    """Return a time in nanoseconds: anything with `sec` and `nanosec`, or `nanoseconds`.
+    """Convert a time to nanoseconds: anything with `sec` and `nanosec`, or `nanoseconds`.
 
     Raises:
         TypeError: it has neither.
@@ -72,7 +72,7 @@ def time_ns_of(time: Any) -> int:
 
 
 def duration_ns(duration: Any) -> int:
-    """Return a duration in nanoseconds: seconds, or what `time_ns_of` takes.
+    """Convert a duration to nanoseconds: seconds, or anything that `time_ns_of` accepts.
 
     Raises:
         TypeError: it is none of these.
@@ -111,43 +111,40 @@ class BufferCore:
         self._BufferCore__frames = Tree()
         self._BufferCore__routes = Routes(self._BufferCore__frames)
         self._BufferCore__authorities: dict[str, str] = {}
-        self._BufferCore__rivals: dict[
-            str, str
-        ] = {}  # for each frame, who has sent it before its authority
+        self._BufferCore__rivals: dict[str, str] = {}  # for each frame, its previous sender
         self._BufferCore__reported: set[tuple[str, str]] = (
             set()
-        )  # kinds of refusals, and their senders
+        )  # kinds of refusals and their senders
         self._BufferCore__logger = get_logger("tf2_buffer")
 
     # Setting
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Add a transform that may change; it replaces a static one of the same frame.
+        """Add a changing transform; it replaces a static one of the same frame.
 
-        What tf2 refuses is refused, and logged once for each sender: a frame that is its own
-        parent, empty names, NaN, a quaternion whose length is not 1, data older than the cache
-        time.
+        What tf2 rejects is rejected, and logged once per sender: a frame that is its own parent,
+        empty names, NaN, a quaternion whose length is not 1, data older than the cache time.
 
         Args:
             transform: A TransformStamped.
-            authority: Who has sent it.
+            authority: Its sender.
         """
         self._BufferCore__set(transform, authority, is_static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Add a transform that holds at any time; it replaces the history of the frame.
+        """Add a static transform; it replaces the history of the frame.
 
         Args:
             transform: A TransformStamped.
-            authority: Who has sent it.
+            authority: Its sender.
         """
         self._BufferCore__set(transform, authority, is_static=True)
 
     def _BufferCore__set(self, msg: Any, authority: str, *, is_static: bool) -> bool:  # the checks
-        """Add a transform; return whether it was taken."""
+        """Add a transform; return whether it was accepted."""
         header = msg.header
         child, parent = msg.child_frame_id, header.frame_id
-        if child[:1] == "/" or parent[:1] == "/":  # tf had such names, tf2 has not
+        if child[:1] == "/" or parent[:1] == "/":  # names of tf, which tf2 does not have
             child, parent = child.removeprefix("/"), parent.removeprefix("/")
         translation, rotation = msg.transform.translation, msg.transform.rotation
         x, y, z = translation.x, translation.y, translation.z
@@ -159,7 +156,7 @@ class BufferCore:
             or not child
             or not parent
             or not excess < TOLERANCE  # also for NaN
-            or isnan(x + y + z)  # also for an infinite coordinate, which is no mistake
+            or isnan(x + y + z)  # also true for infinite coordinates, which are valid
         ):
             refusals = mistakes(child, parent, pose, authority)
             if refusals:
@@ -192,7 +189,7 @@ class BufferCore:
     def _BufferCore__changed(
         self, child: str, frame: Frame, before: tuple[int, str] | None
     ) -> None:
-        """Take note that a frame has a new transform; for subclasses.
+        """Handle a frame's new transform; a hook for subclasses.
 
         Args:
             child: The name of the frame.
@@ -203,7 +200,7 @@ class BufferCore:
     def _BufferCore__admitted(
         self, child: str, parent: str, pose: Pose, authority: str, *, is_static: bool
     ) -> Frame | None:
-        """Return the place for a frame of the given kind; None if there is no room for its name."""
+        """Return the frame object of the given kind; None if there is no room for its name."""
         new = [name for name in (child, parent) if name not in self._BufferCore__frames.names]
         if any(len(name) > MAX_NAME for name in new):
             self._BufferCore__report("TF_LONG_FRAME_ID", authority, too_long(MAX_NAME, authority))
@@ -217,7 +214,7 @@ class BufferCore:
         frame = self._BufferCore__frames.get(child)
         if frame is None or frame.is_static is not is_static:
             if frame is not None:
-                frame.clear()  # gives back its room
+                frame.clear()  # releases its room
             frame = (
                 StaticFrame(parent, pose)
                 if is_static
@@ -228,7 +225,7 @@ class BufferCore:
         return frame
 
     def _BufferCore__note_authority(self, child: str, authority: str) -> None:
-        """Record who sends a frame, and report it if two do so in turns."""
+        """Record the sender of a frame, and report two alternating senders."""
         last = self._BufferCore__authorities.get(child)
         self._BufferCore__authorities[child] = authority
         if last is None:
@@ -239,7 +236,7 @@ class BufferCore:
         self._BufferCore__rivals[child] = last
 
     def _BufferCore__rename_authority(self, before: str, name: str) -> None:
-        """Give an authority another name in all that is recorded."""
+        """Rename an authority everywhere."""
         for record in (self._BufferCore__authorities, self._BufferCore__rivals):
             record.update(dict.fromkeys([c for c, by in record.items() if by == before], name))
         for child in [
@@ -247,7 +244,7 @@ class BufferCore:
             for c, by in self._BufferCore__rivals.items()
             if by == self._BufferCore__authorities[c]
         ]:
-            del self._BufferCore__rivals[child]  # two publishers of one node
+            del self._BufferCore__rivals[child]  # they were two publishers of one node
 
     def _BufferCore__refuse(self, refusals: list[tuple[str, str]], authority: str) -> None:
         """Log what is wrong with a transform."""
@@ -257,7 +254,7 @@ class BufferCore:
     def _BufferCore__report(
         self, kind: str, about: str, text: str, *, is_error: bool = False
     ) -> None:
-        """Log a refusal, once for each kind and sender: others decide how often it comes."""
+        """Log a refusal once per kind and sender, as others decide how often it occurs."""
         if (kind, about) in self._BufferCore__reported or len(
             self._BufferCore__reported
         ) >= MAX_REPORTS:
@@ -270,7 +267,7 @@ class BufferCore:
             self._BufferCore__logger.warning(text)
 
     def clear(self) -> None:
-        """Forget the history of all frames; static transforms and the names of frames stay."""
+        """Clear the history of all frames; static transforms and frame names are kept."""
         for frame in self._BufferCore__frames.values():
             frame.clear()
         self._BufferCore__routes.forget()
@@ -290,7 +287,7 @@ class BufferCore:
         """
         time_ns = time_ns_of(time)
         route = self._BufferCore__routes.find(target_frame, source_frame)
-        if route is not None:  # and so both frames exist
+        if route is not None:  # so both frames exist
             stamp_ns = time_ns or route.latest_ns()
             pose = route.pose(stamp_ns)
             if pose is not None:
@@ -309,11 +306,11 @@ class BufferCore:
         """Return the transform from a source frame at one time to a target frame at another.
 
         Args:
-            target_frame: The frame to express things in.
-            target_time: When to look at the target frame.
-            source_frame: The frame that they are in.
-            source_time: When to look at the source frame.
-            fixed_frame: The frame that stands still between both times.
+            target_frame: The frame to transform to.
+            target_time: The time in the target frame.
+            source_frame: The frame to transform from.
+            source_time: The time in the source frame.
+            fixed_frame: The frame that is fixed between the two times.
 
         Raises:
             TransformException: as `lookup_transform_core`.
@@ -373,7 +370,7 @@ class BufferCore:
         return True, ""
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Time:
-        """Return the newest time at which the transform is available; 0 between static frames.
+        """Return the latest time at which the transform is available; 0 between static frames.
 
         Raises:
             LookupException: a frame does not exist.
@@ -390,13 +387,13 @@ class BufferCore:
     def lookupVelocityCore(  # tf2's name
         self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any
     ) -> Velocity:
-        """Return the linear and angular velocity of a frame, seen from another.
+        """Return the linear and angular velocity of a frame relative to another.
 
         Args:
-            tracking_frame: The frame that moves; the velocity is that of its origin.
-            observation_frame: The frame it is seen from, and in whose axes the result is.
+            tracking_frame: The moving frame; the velocity is that of its origin.
+            observation_frame: The frame it is observed from, in whose axes the result is.
             time: The middle of the interval.
-            averaging_interval: Over which time to average: a Duration, or seconds.
+            averaging_interval: The averaging interval: a Duration, or seconds.
 
         Raises:
             TransformException: as `lookup_transform_core`.
@@ -424,13 +421,13 @@ class BufferCore:
         """Return the linear and angular velocity of a point that moves with a frame.
 
         Args:
-            tracking_frame: The frame that moves.
-            observation_frame: The frame it is seen from.
+            tracking_frame: The moving frame.
+            observation_frame: The frame it is observed from.
             reference_frame: The frame in whose axes the result is.
             reference_point: The point, in `reference_point_frame`.
             reference_point_frame: The frame of the point.
             time: The middle of the interval.
-            averaging_interval: Over which time to average: a Duration, or seconds.
+            averaging_interval: The averaging interval: a Duration, or seconds.
 
         Raises:
             TransformException: as `lookup_transform_core`.
@@ -454,11 +451,11 @@ class BufferCore:
         return frame_listing.frames_as_yaml(self._BufferCore__frames, self._BufferCore__authorities)
 
     def all_frames_as_string(self) -> str:
-        """Return one line for each frame, with its parent."""
+        """Return a line per frame, with its parent."""
         return frame_listing.frames_as_string(self._BufferCore__frames)
 
     def _allFramesAsDot(self, time: Any = None) -> str:  # tf2's name
-        """Return the tree in the language of Graphviz; with a time, also how old the data is."""
+        """Return the tree in Graphviz's language; with a time, including the age of the data."""
         now_ns = 0 if time is None else time_ns_of(time)
         return frame_listing.frames_as_dot(
             self._BufferCore__frames, self._BufferCore__authorities, now_ns
@@ -480,7 +477,7 @@ class BufferCore:
         source_time: Any,
         fixed_frame: str,
     ) -> list[str]:
-        """Return the frames between source and target, as tf2 does.
+        """Return the frames between source and target, like tf2.
 
         Raises:
             TransformException: as `lookup_transform_full_core`.
@@ -496,7 +493,7 @@ class BufferCore:
 
     def _BufferCore__lookup(self, target: str, source: str, time_ns: int) -> tuple[Pose, int]:
         """Return the pose of `source` in `target`, and its stamp."""
-        if target == source:  # tf2 answers for frames that do not exist, too
+        if target == source:  # tf2 answers even for unknown frames
             frame = self._BufferCore__frames.get(target)
             if time_ns == 0 and frame is not None:
                 time_ns = frame.newest_ns
@@ -522,14 +519,14 @@ class BufferCore:
         return way.failure or (way.pose(), way.time_ns)
 
     def _BufferCore__latest_ns(self, target: str, source: str) -> int | Failure:
-        """Return the newest time at which a transform is available."""
+        """Return the latest time at which a transform is available."""
         if target == source:
             frame = self._BufferCore__frames.get(source)
             return 0 if frame is None else frame.newest_ns
         return latest_common_ns(self._BufferCore__frames, target, source)
 
     def _BufferCore__expect_frame(self, subject: str, frame: str) -> None:
-        """Raise the error of tf2 if a frame does not exist."""
+        """Raise tf2's error if a frame does not exist."""
         if frame in self._BufferCore__frames.names:
             return
         if not frame or frame.startswith("/"):
@@ -540,7 +537,7 @@ class BufferCore:
         raise LookupException(f'"{frame}" passed to {subject} does not exist. ')
 
     def _BufferCore__problem_of(self, arguments: dict[str, str]) -> str:
-        """Return why one of some frames cannot be asked for; empty if all can."""
+        """Return why one of some frames cannot be looked up; empty if all can."""
         for argument, frame in arguments.items():
             if frame in self._BufferCore__frames.names:
                 continue
@@ -559,7 +556,7 @@ class BufferCore:
     ) -> TransformStamped:
         sec, nanosec = divmod(stamp_ns, S_TO_NS)
         x, y, z, i, j, k, w = pose
-        # In the order of the fields: with their names, which the types ask for, this takes three
+        # Positional, in the order of the fields; with names, as the types demand, this takes three
         # times as long.
         make: Any = TransformStamped
         header, time, whole, vector, turn = PARTS

@@ -1,4 +1,4 @@
-"""Listings of all frames of a buffer, with rates and times, as tf2 writes them."""
+"""Listings of all frames of a buffer, with rates and times, in tf2's formats."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SHORTEST_NS = 100_000
 
 
 def to_seconds(ns: int) -> float:
-    """Return nanoseconds as seconds, rounded as tf2 rounds."""
+    """Convert nanoseconds to seconds, rounded like tf2."""
     fraction = (
         int(math.fmod(ns, 1e9)) if abs(ns) < 2**53 else abs(ns) % 10**9 * (1 if ns > 0 else -1)
     )
@@ -38,17 +38,17 @@ def to_seconds(ns: int) -> float:
 
 
 def seconds_text(ns: int) -> str:
-    """Return a time in seconds, with six digits after the point."""
+    """Format a time in seconds with six decimals."""
     return f"{to_seconds(ns):.6f}"
 
 
 def rate_of(frame: Frame) -> float:
-    """Return how many transforms a second have come, over the history of a frame."""
+    """Return the rate of transforms per second over the history of a frame."""
     return len(frame) * 1e9 / max(frame.newest_ns - frame.oldest_ns, SHORTEST_NS)
 
 
 def frames_as_string(frames: Tree) -> str:
-    """Return one line for each frame, with its parent."""
+    """Return a line per frame, with its parent."""
     lines = []
     for name, frame in frames.in_order().items():
         latest = frame.latest()
@@ -62,8 +62,8 @@ def frames_as_yaml(frames: Tree, authorities: Mapping[str, str], now_ns: int = 0
 
     Args:
         frames: The frames by name.
-        authorities: Who has sent them.
-        now_ns: The time, to tell how old the newest transforms are; 0 leaves that out.
+        authorities: Their senders.
+        now_ns: The current time, for the age of the newest transforms; 0 omits it.
     """
     if not frames.names:
         return "[]"
@@ -88,12 +88,12 @@ def frames_as_yaml(frames: Tree, authorities: Mapping[str, str], now_ns: int = 0
 
 
 def frames_as_dot(frames: Tree, authorities: Mapping[str, str], now_ns: int = 0) -> str:
-    """Return the tree in the language of Graphviz.
+    """Return the tree in Graphviz's language.
 
     Args:
         frames: The frames by name.
-        authorities: Who has sent them.
-        now_ns: The time, to tell how old the newest transforms are; 0 leaves that out.
+        authorities: Their senders.
+        now_ns: The current time, for the age of the newest transforms; 0 omits it.
     """
     parts = ["digraph G {\n"]
     if not frames.names:

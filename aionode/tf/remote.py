@@ -1,4 +1,4 @@
-"""One buffer for several programs: a server that looks transforms up, and its client."""
+"""One buffer for several programs: a server that looks up transforms, and its client."""
 
 from __future__ import annotations
 
@@ -36,10 +36,10 @@ __all__ = ["SERVER", "BufferClient", "BufferServer"]
 StampedT = TypeVar("StampedT")
 
 SERVER = "tf2_buffer_server"
-"""The name that tf2's server has when it is started as a program."""
+"""The name of tf2's server when it is started as a program."""
 
 PADDING_SEC = 2.0
-"""Time for which a client waits longer than the server, in seconds."""
+"""How much longer than the server a client waits, in seconds."""
 
 CODES: tuple[tuple[type[TransformException], int], ...] = (
     (ConnectivityException, TF2Error.CONNECTIVITY_ERROR),
@@ -52,7 +52,7 @@ CODES: tuple[tuple[type[TransformException], int], ...] = (
 
 
 class BufferServer:
-    """Looks transforms up for other programs: the action LookupTransform, and tf2_frames.
+    """Looks up transforms for other programs: the action LookupTransform, and tf2_frames.
 
     Args:
         buffer: The buffer that answers.
@@ -77,7 +77,7 @@ class BufferServer:
             LookupTransform.Goal, LookupTransform.Result, LookupTransform.Feedback
         ],
     ) -> LookupTransform.Result:
-        """Answer one question, as soon as the transform is there, or its time is over."""
+        """Answer one request, as soon as the transform is available or it has timed out."""
         try:
             result = LookupTransform.Result(
                 transform=await self._BufferServer__transform_of(handle.request)
@@ -88,7 +88,7 @@ class BufferServer:
             if isinstance(error, TimeoutException):
                 handle.abort(result)
                 return result
-        # An error is an answer as well: tf2's client in C++ drops the result of an aborted goal.
+        # Errors succeed too, as tf2's C++ client drops the result of an aborted goal.
         handle.succeed(result)
         return result
 
@@ -126,7 +126,7 @@ class BufferServer:
 
 
 class BufferClient:
-    """Asks a `BufferServer`, or tf2's, for transforms; keeps none itself.
+    """Requests transforms from a `BufferServer` or tf2's server; stores none itself.
 
     Args:
         node: The node that asks.
@@ -154,7 +154,7 @@ class BufferClient:
     ) -> TransformStamped:
         """Return the transform that expresses in `target_frame` what is given in `source_frame`.
 
-        Cancelling cancels the question at the server.
+        Cancelling cancels the request at the server.
 
         Args:
             target_frame: The frame to express things in.
@@ -219,7 +219,7 @@ class BufferClient:
     async def transform(
         self, object_stamped: StampedT, target_frame: str, *, timeout_sec: float = 0.0
     ) -> StampedT:
-        """Return a message in another frame; see `Buffer.transform` for the types.
+        """Transform a message to another frame; see `Buffer.transform` for the types.
 
         Raises:
             TypeError: there is no function for this type.
@@ -259,7 +259,7 @@ class BufferClient:
 
 
 def transform_in(result: Any) -> Any:
-    """Return the transform of a server's answer, whose class may be of either family.
+    """Return the transform in a server's answer, whose class may be aionode's or rclpy's.
 
     Raises:
         TransformException: the answer is an error; the class is that of the error.
@@ -271,6 +271,6 @@ def transform_in(result: Any) -> Any:
 
 
 def time_msg(time: Any) -> TimeMsg:
-    """Return a time as a message."""
+    """Convert a time to a message."""
     sec, nanosec = divmod(time_ns_of(time), S_TO_NS)
     return TimeMsg(sec=sec, nanosec=nanosec)
