@@ -1,6 +1,6 @@
-"""Finds interfaces for programs of rclpy, in the places that `aionode.interfaces` looks into.
+"""Finds interfaces for rclpy programs, in the places searched by `aionode.interfaces`.
 
-A folder that is named may define a type that aionode ships in another way: such programs get that.
+A given folder may define a type differently from aionode; rclpy programs get that definition.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ __all__ = ["add_folder", "find", "has_interfaces", "module_name", "names_in"]
 def add_folder(path: str | Path) -> None:
     """Add the interfaces of a folder: a package, or a folder of packages.
 
-    Nothing of it is read before a program imports a package that aionode does not have.
+    It is not read until a program imports a package that aionode does not have.
 
     Raises:
         FileNotFoundError: The folder does not exist.
     """
-    from aionode.idl.named import named  # parsers, for few programs
+    from aionode.idl.named import named  # parsers, needed by few programs
 
     named().add(path)
 
 
 def folders() -> NamedInterfaces | None:
-    """Return the interfaces of the folders that were named, if any was or may have been."""
+    """Return the interfaces of the given folders, if there may be any."""
     if "aionode.idl.named" not in sys.modules and not os.environ.get("AIONODE_INTERFACES"):
         return None
     from aionode.idl.named import named
@@ -43,7 +43,7 @@ def folders() -> NamedInterfaces | None:
 
 
 def find(name: str) -> type[Any]:
-    """Return aionode's class of a type, by its ROS name.
+    """Return aionode's class for a type, by its ROS name.
 
     Raises:
         InterfaceNotFoundError: There is no such type.
@@ -56,7 +56,7 @@ def find(name: str) -> type[Any]:
 
 
 def has_interfaces(package: str, kind: str = "") -> bool:
-    """Return whether a package defines interfaces, of one kind if that is given."""
+    """Return whether a package defines interfaces, or interfaces of one kind."""
     if kind:
         return any(name.split("/")[1] == kind for name in names_in(package))
     if (named := folders()) is not None and named.names(package):

@@ -1,7 +1,7 @@
-"""Programs of rclpy on aionode: `install`, and ``python -m aionode.rclpy PROGRAM.py``.
+"""Run rclpy programs on aionode: `install`, and ``python -m aionode.rclpy PROGRAM.py``.
 
-After `install`, `rclpy`, `launch`, `tf2_ros`, message packages and others of ROS's Python packages
-are imported under their own names. Those in Python lie in the folder ``aionode/ros_packages``.
+After `install`, `rclpy`, `launch`, `tf2_ros`, message packages and other Python packages of ROS can
+be imported under their own names. Their sources are in ``aionode/ros_packages``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ __all__ = ["install"]
 
 
 def __getattr__(name: str) -> NoReturn:
-    """Say where the names of rclpy are."""
+    """Raise an error that says where rclpy's names are."""
     problem = (
         f"aionode.rclpy has no {name!r}: call aionode.rclpy.install(), then import rclpy's names "
         "from rclpy"

@@ -1,4 +1,4 @@
-"""``python -m aionode.rclpy program.py``: runs a program of rclpy."""
+"""``python -m aionode.rclpy program.py`` runs an rclpy program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Lists what programs import and whether it is there, without running them."""
+"""Lists what programs import and whether it is available, without running them."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from aionode.rclpy.missing import advice
 __all__ = ["check"]
 
 HIDDEN: Final = ("build", "install", "log", "node_modules", "site-packages")
-"""Folders of a workspace in which no source lies; nor does any in those that begin with a dot."""
+"""Folders of a workspace without sources, like those that begin with a dot."""
 
 
 @dataclass(frozen=True)
 class Import:
-    """A module that a program imports, and the name that it takes from there, if any.
+    """A module that a program imports, and the name it imports from there, if any.
 
-    The name of a module of the same package begins with dots, as it stands in the program.
+    A relative module name begins with dots, as in the program.
     """
 
     module: str
@@ -37,13 +37,13 @@ class Import:
 
 @dataclass(frozen=True)
 class Finding:
-    """A module or name that a program imports, and where it is, or why it is not there.
+    """A module or name that a program imports, and where it is or why it is missing.
 
     Attributes:
-        shown: Its name; nothing if it need not be listed.
+        shown: Its name; empty if it need not be listed.
         where: Where it is, or what is missing.
-        is_there: Whether it is there.
-        files: The files that an own module consists of, with those of its packages.
+        is_there: Whether it is available.
+        files: The files of one of the user's own modules, including its packages.
     """
 
     shown: str
@@ -54,13 +54,13 @@ class Finding:
 
 @dataclass
 class Report:
-    """What one file imports.
+    """The imports of one file.
 
     Attributes:
-        lines: A line for each module.
+        lines: A line per module.
         is_complete: Whether the file finds what it needs.
-        needed: The own files that it imports.
-        optional: The own files that it can do without.
+        needed: The user's files that it imports.
+        optional: The user's files that it can do without.
     """
 
     lines: list[str]
@@ -70,11 +70,11 @@ class Report:
 
 
 def check(paths: Sequence[str]) -> tuple[str, bool]:
-    """Return a text that lists what each file imports and from where, and whether all is there.
+    """List what each file imports and from where; return the text, and whether all is available.
 
-    The modules of Python's standard library are left out, and those that are imported for type
-    checkers alone. A folder stands for the Python files in it. The user's own modules that a file
-    imports are looked at, too, and listed if they import something.
+    Modules of Python's standard library and those imported only for type checkers are omitted. A
+    folder stands for its Python files. The user's own modules that a file imports are examined too,
+    and listed if they import something.
 
     Args:
         paths: Files and folders.
@@ -103,7 +103,7 @@ def check(paths: Sequence[str]) -> tuple[str, bool]:
 
 
 def report_on(file: Path) -> Report:
-    """Return what one file imports."""
+    """Report the imports of one file."""
     try:
         tree = ast.parse(file.read_bytes(), str(file))
     except (OSError, SyntaxError, ValueError) as error:
@@ -142,12 +142,12 @@ def files_of(path: Path) -> list[Path]:
 
 
 def imports_of(tree: ast.Module) -> list[Import]:
-    """Return what a program imports, in the order of its lines."""
+    """Return a program's imports, in the order of its lines."""
     return list(dict.fromkeys(imported(tree, optional=False)))
 
 
 def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
-    """Yield what is imported in a part of a program."""
+    """Yield the imports in a part of a program."""
     match node:
         case ast.Import():
             yield from (Import(alias.name, optional=optional) for alias in node.names)
@@ -161,7 +161,7 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
             for statement in node.orelse:
                 yield from imported(statement, optional=optional)
         case ast.Try() if any(catches_import_error(handler.type) for handler in node.handlers):
-            # The replacement of a missing module is needed only where the module is missing.
+            # The replacement of a missing module is needed only if the module is missing.
             for part in ast.iter_child_nodes(node):
                 yield from imported(part, optional=True)
         case ast.With() if any(is_suppressing(item.context_expr) for item in node.items):
@@ -173,13 +173,13 @@ def imported(node: ast.AST, *, optional: bool) -> Iterator[Import]:
 
 
 def is_for_types(test: ast.expr) -> bool:
-    """Return whether a condition is ``TYPE_CHECKING``, alone or as an attribute of a module."""
+    """Return whether a condition is ``TYPE_CHECKING``, as a name or an attribute of a module."""
     name = test.attr if isinstance(test, ast.Attribute) else getattr(test, "id", None)
     return name == "TYPE_CHECKING"
 
 
 def catches_import_error(caught: ast.expr | None) -> bool:
-    """Return whether the exceptions of a handler have that of an import that fails."""
+    """Return whether a handler catches a failed import."""
     names = {"ImportError", "ModuleNotFoundError", "Exception", "BaseException"}
     return caught is None or any(
         isinstance(part, ast.Name) and part.id in names for part in ast.walk(caught)
@@ -187,7 +187,7 @@ def catches_import_error(caught: ast.expr | None) -> bool:
 
 
 def is_suppressing(entered: ast.expr) -> bool:
-    """Return whether ``with suppress(ImportError):`` is entered."""
+    """Return whether a context manager is ``suppress(ImportError)``."""
     if not isinstance(entered, ast.Call):
         return False
     name = ast.unparse(entered.func).rpartition(".")[2]
@@ -195,7 +195,7 @@ def is_suppressing(entered: ast.expr) -> bool:
 
 
 def find(wanted: Import, file: Path) -> Finding:
-    """Return where an import of a file comes from."""
+    """Find where an import of a file comes from."""
     if wanted.module.startswith("."):
         return beside(wanted, file)
     module, name = wanted.module, wanted.name
@@ -223,19 +223,19 @@ def find(wanted: Import, file: Path) -> Finding:
 
 
 def in_aionode(module: str, name: str) -> Finding:
-    """Return whether a module of aionode has a name, and what it needs besides."""
+    """Return whether a module of aionode has a name, or what it lacks."""
     try:
         if not name or has_name(module, name):
             if is_module_here(module):
                 import_module(module)
             return Finding(module, "aionode")
-    except ImportError as error:  # such as that of bags without what reads them
+    except ImportError as error:  # such as rosbag2_py without the bag extra
         return Finding(module, str(error), is_there=False)
     return Finding(f"{module}.{name}", f"aionode's {module} has no such name", is_there=False)
 
 
 def beside(wanted: Import, file: Path) -> Finding:
-    """Return where a relative import leads; it is listed only if it leads nowhere."""
+    """Resolve a relative import; it is listed only if it fails."""
     module = wanted.module.lstrip(".")
     level = len(wanted.module) - len(module)
     above = file.resolve().parents
@@ -247,7 +247,7 @@ def beside(wanted: Import, file: Path) -> Finding:
 
 
 def own_folders(file: Path) -> list[Path]:
-    """Return the folder of a file, and the folder in which its package lies."""
+    """Return the folder of a file, and the folder that contains its package."""
     folder = file.resolve().parent
     top = folder
     while (top / "__init__.py").is_file():
@@ -256,7 +256,7 @@ def own_folders(file: Path) -> list[Path]:
 
 
 def source_of(module: str) -> str | None:
-    """Return ``aionode``, ``installed``, or None for a module that is not there."""
+    """Return ``aionode``, ``installed``, or None for a missing module."""
     package = module.partition(".")[0]
     if is_module_here(module) and not gives_way(package):
         return "aionode" if exists(module) else None
@@ -266,15 +266,15 @@ def source_of(module: str) -> str | None:
 
 
 def is_module_here(module: str) -> bool:
-    """Return whether a module is one of a package in Python that aionode has."""
+    """Return whether a module belongs to a Python package that aionode provides."""
     return module.partition(".")[0] in {*SUPPLIED, "aionode"}
 
 
 def specs_on(path: list[str] | None, module: str) -> list[ModuleSpec]:
-    """Return the descriptions of a module and the packages that it is in; none are imported."""
+    """Return the specs of a module and its parent packages, without importing them."""
     specs: list[ModuleSpec] = []
     for part in module.split("."):
-        spec = PathFinder.find_spec(part, path)  # the whole name would need the parent imported
+        spec = PathFinder.find_spec(part, path)  # the full name would import the parent
         if spec is None:
             return []
         specs.append(spec)
@@ -283,9 +283,9 @@ def specs_on(path: list[str] | None, module: str) -> list[ModuleSpec]:
 
 
 def files_on(folder: Path, module: str, name: str) -> tuple[Path, ...]:
-    """Return the files in Python of a module below a folder, and of a name that is a module.
+    """Return the Python files of a module below a folder, and of a name that is a submodule.
 
-    A folder without Python is importable too, such as that of a message package, and is none.
+    A folder without Python, such as a message package, is importable too but does not count.
     """
     whole = [f"{module}.{name}".strip("."), module] if name else [module]
     for wanted in filter(None, whole):
@@ -297,7 +297,7 @@ def files_on(folder: Path, module: str, name: str) -> tuple[Path, ...]:
 
 
 def has_name(module: str, name: str) -> bool:
-    """Return whether a module of aionode has a name, be it a module in turn."""
+    """Return whether a module of aionode has a name, which may be a submodule."""
     if is_module_here(module):
         return hasattr(import_module(module), name) or exists(f"{module}.{name}")
     package, _, inside = module.partition(".")

@@ -18,13 +18,13 @@ from aionode.interfaces import shipped_packages
 __all__ = ["SUPPLIED", "install", "provide"]
 
 FOLDER: Final = Path(__file__).parents[1] / "ros_packages"
-"""The folder with the Python packages of ROS that aionode has."""
+"""The folder with the Python packages of ROS that aionode provides."""
 SUPPLIED: Final = frozenset(path.name for path in FOLDER.iterdir() if path.name != "__pycache__")
 """Their names."""
 YIELDING: Final = ("launch_param_builder", "nav2_common")
-"""The packages that give way to one of the same name in the workspace or installed."""
+"""The packages that yield to one with the same name in the workspace or installed."""
 A_MODULE_FOR_EACH_CLASS: Final = ("launch", "launch_ros", "nav2_common")
-"""The packages that have a module for each class in ROS, and one for several classes here."""
+"""The packages that have one module per class in ROS, but fewer here."""
 
 FOR_SEVERAL: Final = frozenset(
     {
@@ -54,15 +54,15 @@ def install(
 ) -> None:
     """Make `import rclpy` and `from std_msgs.msg import String` mean aionode's, in this process.
 
-    Message packages are those of aionode, those of the given folders, and those that are installed
-    below AMENT_PREFIX_PATH. Where an rclpy of ROS 2 is installed as well, a line of the log says
-    which of the two is used. A second call only adds folders.
+    Message packages come from aionode, from the given folders, and from AMENT_PREFIX_PATH. If ROS
+    2's rclpy is installed as well, the log says which of the two is used. A second call only adds
+    folders.
 
     Args:
         interfaces: Folders with message packages (``my_msgs/msg/Words.msg``), which need no build.
-        workspace: The folder with the packages of the program, which need no build either; else
+        workspace: The folder with the program's packages, which need no build either; by default
             the workspace around the program.
-        prefer_ros: Use ROS 2's own packages, and change nothing, if its rclpy is installed.
+        prefer_ros: If ROS 2's rclpy is installed, use ROS 2's packages and change nothing.
 
     Raises:
         ImportError: Another rclpy has been imported already.
@@ -78,7 +78,7 @@ def install(
     if FINDER not in sys.meta_path:
         ros = rclpy_of_ros()
         if ros is not None:
-            from aionode.logging import get_logger  # only if there is something to say
+            from aionode.logging import get_logger  # only if there is something to log
 
             which = f"ROS ({ros})" if prefer_ros else f"aionode, not that of ROS ({ros})"
             get_logger("aionode.rclpy").info(f"using the rclpy of {which}")
@@ -88,13 +88,13 @@ def install(
     for folder in interfaces:
         add_folder(folder)
     if workspace is not None:
-        from aionode._packages import use  # which looks for packages
+        from aionode._packages import use  # it searches for packages
 
         use(workspace)
 
 
 def rclpy_of_ros() -> Path | None:
-    """Return the folder of an installed rclpy that is not aionode's, if there is one."""
+    """Return the folder of an installed rclpy that is not aionode's, if any."""
     spec = PathFinder.find_spec("rclpy")
     if spec is None or spec.origin is None:
         return None
@@ -102,15 +102,15 @@ def rclpy_of_ros() -> Path | None:
 
 
 def is_own(spec: ModuleSpec) -> bool:
-    """Return whether a package is one of aionode's, or of the distribution ``aionode-rclpy``."""
-    read = getattr(spec.loader, "get_data", None)  # from a wheel that is on the path, too
+    """Return whether a package is aionode's or the distribution ``aionode-rclpy``'s."""
+    read = getattr(spec.loader, "get_data", None)  # works for a wheel on the path, too
     return read is not None and b"aionode" in read(spec.origin)[:300]
 
 
 def provide(name: str) -> None:
-    """Replace a module that is being imported by aionode's of that name.
+    """Replace a module that is being imported by aionode's module of that name.
 
-    The message packages of the distribution ``aionode-rclpy`` consist of this call.
+    The message packages of the distribution ``aionode-rclpy`` consist of just this call.
     """
     if FINDER not in sys.meta_path:
         sys.meta_path.insert(0, FINDER)
@@ -120,9 +120,9 @@ def provide(name: str) -> None:
 
 
 def shared_errors_take_names() -> None:
-    """Give the exceptions that rclpy has as well the names of rclpy's modules.
+    """Give exceptions shared with rclpy the module names that they have there.
 
-    For processes that run a program of rclpy; elsewhere they are those of `aionode.errors`.
+    For processes that run an rclpy program; elsewhere they are in `aionode.errors`.
     """
     from aionode import errors
 
@@ -135,7 +135,7 @@ def shared_errors_take_names() -> None:
 
 
 class AionodeFinder(MetaPathFinder):
-    """Finds the modules that aionode has instead of ROS."""
+    """Finds the modules that aionode provides in place of ROS's."""
 
     def find_spec(
         self,
@@ -143,7 +143,7 @@ class AionodeFinder(MetaPathFinder):
         path: Sequence[str] | None,
         target: ModuleType | None = None,  # noqa: ARG002  # the protocol of finders
     ) -> ModuleSpec | None:
-        """Return how a module is loaded; None if it is not one of these."""
+        """Return the spec of a module; None if it is not one of these."""
         package, _, inside = fullname.partition(".")
         if package in SUPPLIED and not gives_way(package):
             return of_supplied(fullname, path)
@@ -163,7 +163,7 @@ class AionodeFinder(MetaPathFinder):
 
 
 def gives_way(package: str) -> bool:
-    """Return whether a package of the workspace or an installed one comes before aionode's."""
+    """Return whether a workspace or installed package takes precedence over aionode's."""
     if package not in YIELDING:
         return False
     spec = PathFinder.find_spec(package)
@@ -175,7 +175,7 @@ def gives_way(package: str) -> bool:
 
 
 def of_supplied(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
-    """Return how a module of a package in `FOLDER` is loaded."""
+    """Return the spec of a module of a package in `FOLDER`."""
     spec = PathFinder.find_spec(fullname, [str(FOLDER)] if path is None else path)
     if spec is None and fullname.partition(".")[0] in A_MODULE_FOR_EACH_CLASS:
         return of_one_name(fullname)
@@ -183,17 +183,17 @@ def of_supplied(fullname: str, path: Sequence[str] | None) -> ModuleSpec | None:
 
 
 def of_package(package: str) -> ModuleSpec | None:
-    """Return how a package is loaded that has messages, or lies in the workspace.
+    """Return the spec of a package that has messages or is in the workspace.
 
-    Python modules come first, those that are installed or on PYTHONPATH before the workspace's: a
-    package may have them beside its messages. A folder without Python is no package for that: in a
-    workspace, the folder around a Python package often has the same name.
+    Python modules come first, installed ones or those on PYTHONPATH before the workspace's, as a
+    package may have them beside its messages. A folder without Python does not count as a package:
+    in a workspace, the folder around a Python package often has the same name.
     """
     if package not in shipped_packages():
         ordinary = PathFinder.find_spec(package)
         if ordinary is not None and ordinary.origin is not None:
             return None
-        from aionode._packages import here  # only for what is not found otherwise
+        from aionode._packages import here  # only for packages not found otherwise
 
         root = here().module_root(package)
         if root is not None:
@@ -203,9 +203,9 @@ def of_package(package: str) -> ModuleSpec | None:
 
 
 def of_one_name(fullname: str) -> ModuleSpec | None:
-    """Return how a module such as ``launch.actions.execute_process`` is loaded.
+    """Return the spec of a module such as ``launch.actions.execute_process``.
 
-    ROS's launch has one for each class. Programs may import a class from there.
+    ROS's launch has one module per class, from which programs may import.
     """
     parent, _, last = fullname.rpartition(".")
     if not exists(parent):
@@ -227,7 +227,7 @@ def exists(module: str) -> bool:
 
 
 class NamesLoader(Loader):
-    """Loads a module that has the names of its package."""
+    """Loads a module with the names of its package."""
 
     def __init__(self, package: ModuleType) -> None:
         self.package = package
@@ -241,9 +241,9 @@ class EmptyLoader(Loader):
     """Loads a package that has only modules."""
 
     def exec_module(self, module: ModuleType) -> None:
-        """Give the module what finds its modules, which a program need not import itself.
+        """Make the package's modules importable on access, which a program need not import itself.
 
-        In ROS they are there as soon as any message needs them, which programs rely on.
+        In ROS they exist as soon as any message needs them, which programs rely on.
         """
 
         def find(kind: str) -> ModuleType:
@@ -255,14 +255,14 @@ class EmptyLoader(Loader):
 
 
 class KindLoader(Loader):
-    """Loads a module such as ``std_msgs.msg``, whose classes are made when they are asked for."""
+    """Loads a module such as ``std_msgs.msg``, whose classes are created on access."""
 
     def __init__(self, package: str, kind: str) -> None:
         self.package = package
         self.kind = kind
 
     def exec_module(self, module: ModuleType) -> None:
-        """Give the module what finds its classes."""
+        """Set the module's hook that finds its classes."""
         from rosidl_generator_py import classes_of  # which this finder finds
 
         package, kind = self.package, self.kind

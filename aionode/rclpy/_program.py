@@ -1,4 +1,4 @@
-"""Runs a program of rclpy as Python would: as ``__main__``, with its arguments and traceback."""
+"""Runs an rclpy program as Python would: as ``__main__``, with its arguments and traceback."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ Runs a program that imports rclpy, with aionode in the place of ROS 2.
 CHECK = "--check"
 STAND_INS = "--stand-ins"
 FOLDERS = ("--interfaces", "--workspace", "--path")
-"""The options with a folder."""
+"""The options that take a folder."""
 
 
 class Parsed(NamedTuple):
@@ -43,9 +43,9 @@ class Parsed(NamedTuple):
 
     Attributes:
         folders: The folders of each option.
-        is_module: Whether a module is run, and no file.
+        is_module: Whether to run a module rather than a file.
         name: The name of the module or file; ``--check`` if nothing is run.
-        arguments: What follows.
+        arguments: The remaining arguments.
     """
 
     folders: dict[str, list[str]]
@@ -55,13 +55,13 @@ class Parsed(NamedTuple):
 
 
 def main(argv: Sequence[str]) -> None:
-    """Run the program that the arguments name; its end is the end of the process.
+    """Run the program named by the arguments; the process ends with it.
 
     Raises:
         SystemExit: There is no such program, or an argument is missing.
     """
     folders, is_module, name, arguments = parsed(argv)
-    # not to be loaded for a usage text
+    # not loaded for the usage text
     from aionode.rclpy._finder import install, shared_errors_take_names
 
     workspace = folders["--workspace"][-1] if folders["--workspace"] else None
@@ -81,7 +81,7 @@ def main(argv: Sequence[str]) -> None:
 
 
 def parsed(argv: Sequence[str]) -> Parsed:
-    """Return what the arguments say; a usage text ends the process."""
+    """Parse the arguments; a usage text ends the process."""
     given = list(argv)
     folders: dict[str, list[str]] = {option: [] for option in FOLDERS}
     while given:
@@ -108,14 +108,14 @@ def parsed(argv: Sequence[str]) -> Parsed:
 
 
 def list_imports(paths: Sequence[str]) -> NoReturn:
-    """Print what programs import and whether it is there; nothing of them is run.
+    """Print what programs import and whether it is available, without running them.
 
     Raises:
         SystemExit: With status 1 if something is missing.
     """
-    from aionode.rclpy._check import check  # which programs that run do not need
+    from aionode.rclpy._check import check  # not needed to run programs
 
-    del sys.path[0]  # the current folder, which is not where a program looks
+    del sys.path[0]  # the current folder, where programs do not look
     try:
         text, complete = check(paths)
     except OSError as error:
@@ -125,7 +125,7 @@ def list_imports(paths: Sequence[str]) -> NoReturn:
 
 
 def of_file(name: str) -> tuple[CodeType, ModuleType]:
-    """Return the code of a file, and the module in which it runs."""
+    """Compile a file; return its code and the module in which it runs."""
     path = Path(name)
     try:
         source = path.read_bytes()
@@ -181,7 +181,7 @@ def code_of(spec: ModuleSpec | None) -> CodeType | None:
 
 
 def code_of_call(module: str, function: str) -> CodeType:
-    """Return code that ends with the result of a function, as the executable of a package does."""
+    """Return code that exits with the result of a function, like a package's executable."""
     if not all(part.isidentifier() for part in (*module.split("."), *function.split("."))):
         fail(f"{module}:{function} is no MODULE:FUNCTION")
     source = f"import sys\nfrom {module} import {function.partition('.')[0]}\n"
@@ -189,8 +189,8 @@ def code_of_call(module: str, function: str) -> CodeType:
 
 
 def no_module(name: str) -> str:
-    """Return the error text for a missing module: where it was looked for, and the closest name."""
-    import difflib  # for a text of an error alone
+    """Return the error text for a missing module: where it was searched, and the closest name."""
+    import difflib  # only for an error text
     import pkgutil
 
     from aionode._packages import here
@@ -210,17 +210,17 @@ def no_module(name: str) -> str:
 
 
 def source_of(spec: ModuleSpec) -> bytes:
-    """Return the source of a module; nothing where that cannot be had."""
+    """Return the source of a module; empty if unavailable."""
     loader: Any = spec.loader
     source = loader.get_source(spec.name) if hasattr(loader, "get_source") else None
     return (source or "").encode()
 
 
 def only_defines_main(source: bytes) -> bool:
-    """Return whether a program defines a function ``main``, and does nothing when it is run."""
+    """Return whether a program only defines a function ``main`` and does nothing when run."""
     if b"main" not in source or b"__main__" in source:
         return False
-    import ast  # which takes as long as a small program does
+    import ast  # takes as long as a small program
 
     quiet = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.ClassDef, ast.Assign, ast.AnnAssign)
     statements = ast.parse(source).body
@@ -236,7 +236,7 @@ def only_defines_main(source: bytes) -> bool:
 
 
 def fail(problem: str) -> NoReturn:
-    """End with a line on standard error."""
+    """Exit with a line on standard error."""
     sys.stderr.write(f"aionode.rclpy: {problem}\n")
     raise SystemExit(2)
 
@@ -244,9 +244,9 @@ def fail(problem: str) -> NoReturn:
 def report(
     kind: type[BaseException], error: BaseException, traceback: TracebackType | None
 ) -> None:
-    """Print an exception that the program did not catch, without the lines of what runs it.
+    """Print an uncaught exception of the program, without the lines of its runner.
 
-    Below a missing module of ROS stands what to do about it.
+    For a missing ROS module, advice follows.
     """
     own = [entry for entry in entries(traceback) if entry.tb_frame.f_globals is globals()]
     if own:

@@ -1,4 +1,4 @@
-"""Advice for a module of ROS that aionode does not have."""
+"""Advice about ROS modules that aionode does not have."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Final
 __all__ = ["advice", "missing_modules"]
 
 INTERFACES: Final = re.compile(r"\w+_(msgs|interfaces|srvs|actions?)")
-"""The names of packages that define messages, services or actions; any author's."""
+"""The pattern of names of packages that define interfaces, by any author."""
 
 PURE_PYTHON: Final = """
     action_tutorials_py camera_info_manager_py diagnostic_common_diagnostics diagnostic_updater
@@ -20,7 +20,7 @@ PURE_PYTHON: Final = """
     rosbridge_server rosidl_adapter rosidl_cli rosidl_pycommon rpyutils smach smach_ros
     teleop_twist_joy teleop_twist_keyboard tf2_tools twist_stamper urdf_parser_py
 """
-"""Packages of ROS without compiled modules, whose source works where it lies."""
+"""ROS packages without compiled modules, which work from source."""
 
 INSTEAD: Final = {
     "launch_testing": "aionode's fixtures for pytest start nodes in tests",
@@ -34,30 +34,30 @@ INSTEAD: Final = {
     "transforms3d": "`pip install transforms3d` has it",
     "cv2": "`pip install opencv-python-headless` has it",
 }
-"""The replacement of a package, or its source."""
+"""The replacement of a package, or where to get it."""
 
 COMPILED: Final = """
     controller_manager image_transport_py moveit point_cloud_transport_py python_qt_binding
     qt_dotgraph qt_gui rmw_implementation rosidl_runtime_c rqt rqt_gui
     rqt_gui_py rqt_py_common sros2
 """
-"""Packages with compiled modules, or that need a ROS 2 that is installed."""
+"""Packages with compiled modules, or that need an installed ROS 2."""
 
 ROS_1: Final = """
     actionlib dynamic_reconfigure message_generation roslaunch roslib rosnode rosparam rospy rostest
     rostopic tf tf_conversions
 """
-"""Packages of ROS 1 alone."""
+"""Packages that exist only in ROS 1."""
 
 NOT_OF_ROS: Final = ("cv2", "transforms3d")
 
 
 def advice(module: str, supplied: frozenset[str] = frozenset()) -> str | None:
-    """Return what a missing module of ROS is, and what to do; None if its name is not known.
+    """Explain a missing ROS module and what to do; None if its name is unknown.
 
     Args:
-        module: The whole name of the module.
-        supplied: The packages that aionode has, in the place of ROS.
+        module: The full name of the module.
+        supplied: The packages that aionode provides in place of ROS's.
     """
     package = module.partition(".")[0]
     if package in supplied:
@@ -91,12 +91,12 @@ def advice(module: str, supplied: frozenset[str] = frozenset()) -> str | None:
 
 
 def missing_modules(error: BaseException | None) -> list[str]:
-    """Return the modules that an exception, its causes and its parts did not find, each once."""
+    """Return, without duplicates, the modules not found in an exception, its causes and parts."""
     return list(dict.fromkeys(found_missing(error, set())))
 
 
 def found_missing(error: BaseException | None, seen: set[int]) -> Iterator[str]:
-    """Yield the module of each failed import that a traceback of the exception shows."""
+    """Yield the module of each failed import shown by a traceback of the exception."""
     if error is None or id(error) in seen:
         return
     seen.add(id(error))
@@ -107,7 +107,7 @@ def found_missing(error: BaseException | None, seen: set[int]) -> Iterator[str]:
     if isinstance(error, BaseExceptionGroup):
         for part in error.exceptions:
             yield from found_missing(part, seen)
-    # A folder beside the program has been taken for a package, such as that of a message package.
+    # A folder beside the program, such as a message package, was imported as a package.
     is_folder = isinstance(error, ImportError) and "(unknown location)" in str(error)
     if isinstance(error, ModuleNotFoundError) or is_folder:
         yield getattr(error, "name", None) or ""
