@@ -1,8 +1,8 @@
-"""Small programs of ROS's own packages that launch files name, as nodes of aionode.
+"""Small programs from ROS's own packages that launch files use, as aionode nodes.
 
-`aionode._packages` has the table by which they are found: under the names of ROS's package and
-executable, where neither a workspace nor a ROS 2 that is sourced has that package. Each module is
-one program: its parameters, topics, arguments and texts are those of the original.
+`aionode._packages` finds them under the names of ROS's package and executable, if neither the
+workspace nor a sourced ROS 2 has that package. Each module is one program, with the parameters,
+topics, arguments and messages of the original.
 """
 
 __all__: list[str] = []

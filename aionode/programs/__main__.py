@@ -9,10 +9,10 @@ from aionode._packages import program_module
 
 
 def main() -> None:
-    """Run the program that the first two arguments name; those that follow are its own.
+    """Run the program named by the first two arguments; the remaining ones are its own.
 
     Raises:
-        SystemExit: With status 2: they name none.
+        SystemExit: With status 2 if there is no such program.
     """
     module = program_module(*sys.argv[1:3]) if len(sys.argv) > 2 else None
     if module is None:

@@ -1,4 +1,4 @@
-"""What the programs of topic_tools have in common: a topic of any type goes on to another one."""
+"""The base of topic_tools' programs: a topic of any type is republished on another one."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from aionode.parameter import ParameterType
 __all__ = ["AnyTypeNode", "given_number"]
 
 DISCOVERY_SEC = 0.1
-"""How often publishers and subscriptions are looked for."""
+"""How often publishers and subscriptions are searched for."""
 
 
 class AnyTypeNode(Node):
     """Subscribes to `input_topic` as its publishers offer it, and publishes on `output_topic`.
 
-    The type and the QoS are those of the publishers of the moment: messages are not decoded.
+    Type and QoS are those of the current publishers; messages are not decoded.
 
     Args:
         name: The name of the node.
-        given: The parameters that arguments say, which come before all others.
+        given: The parameters given as arguments, which take precedence over all others.
 
     Attributes:
         input_topic: The topic that is read.
@@ -76,11 +76,11 @@ class AnyTypeNode(Node):
             )
 
     def process(self, data: bytes) -> None:
-        """Do what the program is for with a message, in CDR."""
+        """Process a message, as CDR bytes."""
         self.send(data)
 
     def send(self, data: bytes) -> None:
-        """Publish a message, if the input still has a publisher."""
+        """Publish a message if the input still has a publisher."""
         if self.output is not None:
             self.output.publish(data)
 
@@ -93,7 +93,7 @@ class AnyTypeNode(Node):
         self.__input = self.output = self.__found = None
 
     def listen(self, topic: str) -> None:
-        """Read another topic from now on."""
+        """Read a different topic from now on."""
         full = self.resolve_topic_name(topic)
         if self.__input is not None and full != self.resolve_topic_name(self.input_topic):
             self.__input.destroy()
@@ -101,7 +101,7 @@ class AnyTypeNode(Node):
         self.input_topic = topic
 
     async def discover(self) -> None:
-        """Subscribe and publish as the publishers of the input offer it; without any, neither."""
+        """Subscribe and publish according to the input's publishers; without any, do neither."""
         publishers = self.get_publishers_info_by_topic(self.input_topic)
         if not publishers:
             self.forget()
@@ -127,7 +127,7 @@ class AnyTypeNode(Node):
             )
 
     def common_qos(self, offered: list[QoSProfile]) -> QoSProfile:
-        """Return a QoS with which all publishers can be heard that offer these."""
+        """Return a QoS that is compatible with all of these offers."""
         reliable = {each.reliability is ReliabilityPolicy.RELIABLE for each in offered}
         latched = {each.durability is DurabilityPolicy.TRANSIENT_LOCAL for each in offered}
         for both, policy, other in (
@@ -153,14 +153,14 @@ class AnyTypeNode(Node):
         )
 
     def warn_once(self, text: str) -> None:
-        """Warn, unless that was the last warning: publishers are looked for ten times a second."""
+        """Warn, unless that was the last warning; discovery runs ten times a second."""
         if text != self.__warned:
             self.get_logger().warning(text)
         self.__warned = text
 
 
 def given_number(text: str, kind: type[int | float], name: str) -> int | float:
-    """Return the number that an argument is.
+    """Parse a number in an argument.
 
     Raises:
         CommandError: It is none.

@@ -1,4 +1,4 @@
-"""``joint_state_publisher``: publishes where all joints are, also those that nobody measures."""
+"""``joint_state_publisher``: publishes the states of all joints, even unmeasured ones."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ DEFAULTS: dict[str, Any] = {
 
 @dataclass
 class State:
-    """Where a joint is that follows no other one.
+    """The state of a joint that follows no other one.
 
     Attributes:
-        least: Its least position.
-        greatest: Its greatest position.
-        is_endless: Whether it turns without end.
-        position: Where it is; None if nobody has said so.
-        velocity: How fast it is; as above.
-        effort: With which effort; as above.
-        is_rising: Which way `delta` moves it.
+        least: Its minimum position.
+        greatest: Its maximum position.
+        is_endless: Whether it rotates without limits.
+        position: Its position; None if unknown.
+        velocity: Its velocity; None if unknown.
+        effort: Its effort; None if unknown.
+        is_rising: The direction in which `delta` moves it.
     """
 
     least: float
@@ -68,10 +68,10 @@ class State:
 
 
 class JointStatePublisher(Node):
-    """Publishes `joint_states` for all joints that move, of a description that is published.
+    """Publishes `joint_states` for all movable joints of a published description.
 
     Args:
-        file: A file with the description, if it is not to be waited for.
+        file: A file with the description, instead of waiting for it.
 
     Raises:
         CommandError: There is no such file, it is no URDF, or a parameter does not fit.
@@ -112,7 +112,7 @@ class JointStatePublisher(Node):
         return self.get_parameter(name).value
 
     def _given_followers(self) -> dict[str, Mimic]:
-        """Return the joints that parameters let follow others.
+        """Return the joints that follow others according to parameters.
 
         Raises:
             CommandError: They are not as documented.
@@ -138,7 +138,7 @@ class JointStatePublisher(Node):
         }
 
     def use(self, text: str) -> None:
-        """Take a description.
+        """Use a description.
 
         Raises:
             ValueError: It is no URDF.
@@ -159,7 +159,7 @@ class JointStatePublisher(Node):
         }
 
     def state(self, joint: Joint) -> State:
-        """Return where a joint begins: at its zero, or in its middle if it cannot be there."""
+        """Return the initial state of a joint: at zero, or in its middle if it cannot be there."""
         least, greatest = joint.limits or (-math.pi, math.pi)
         if self.value("use_smallest_joint_limits"):
             soft_least, soft_greatest = joint.soft_limits
@@ -179,14 +179,14 @@ class JointStatePublisher(Node):
         )
 
     def on_description(self, msg: String) -> None:
-        """Take a description that was published."""
+        """Handle a published description."""
         try:
             self.use(msg.data)
         except ValueError as error:
             self.get_logger().warning(f"robot_description is not used: {error}")
 
     def on_source(self, msg: JointState) -> None:
-        """Take over what another topic says of joints; of parts that it has not, nothing."""
+        """Adopt the joint states of another topic, as far as it has them."""
         for part in ("position", "velocity", "effort"):
             values = getattr(msg, part).tolist()
             for name, value in zip(msg.name, values, strict=False):
@@ -194,7 +194,7 @@ class JointStatePublisher(Node):
                     setattr(self.states[name], part, value)
 
     def publish(self) -> None:
-        """Publish where all joints are."""
+        """Publish the states of all joints."""
         if not self.joints:
             return
         delta = self.value("delta")
@@ -212,7 +212,7 @@ class JointStatePublisher(Node):
 
 
 def leader(name: str, followers: dict[str, Mimic]) -> Mimic:
-    """Return which joint a joint follows in the end, itself if none, and how.
+    """Return the joint that a joint ultimately follows, itself if none, and how.
 
     Raises:
         ValueError: It follows itself.
@@ -230,7 +230,7 @@ def leader(name: str, followers: dict[str, Mimic]) -> Mimic:
 
 
 def part_of(part: str, state: State | None, mimic: Mimic) -> float:
-    """Return a number of a joint that follows another one; 0 where nothing is known."""
+    """Return a value of a joint that follows another one; 0 if unknown."""
     value: float | None = None if state is None else getattr(state, part)
     if value is None:
         return 0.0

@@ -23,13 +23,13 @@ __all__ = ["RobotStatePublisher", "main"]
 
 
 class RobotStatePublisher(Node):
-    """Publishes where the links of a robot are, by its description and the positions of its joints.
+    """Publishes the poses of a robot's links, from its description and joint positions.
 
-    Fixed joints go to /tf_static once, moved ones to /tf, and the description to
-    `robot_description`, for those who come later as well.
+    Fixed joints go to /tf_static once, movable ones to /tf, and the description to
+    `robot_description`, where late subscriptions get it too.
 
     Args:
-        file: A file with the description, where the parameter `robot_description` has none.
+        file: A file with the description, if the parameter `robot_description` is not set.
 
     Raises:
         CommandError: There is no description, or it is no URDF.
@@ -65,7 +65,7 @@ class RobotStatePublisher(Node):
         self.add_post_set_parameters_callback(self.update)
 
     def _read(self, file: str | None) -> str:
-        """Return the description of a file, and have the parameter say it."""
+        """Read the description from a file, and set the parameter."""
         if file is None:
             raise CommandError("robot_description parameter must not be empty")
         self.get_logger().warning(
@@ -81,7 +81,7 @@ class RobotStatePublisher(Node):
         return text
 
     def use(self, text: str) -> None:
-        """Take a description, and publish it and what is fixed.
+        """Use a description, and publish it and the fixed joints.
 
         Raises:
             ValueError: It is no URDF.
@@ -103,7 +103,7 @@ class RobotStatePublisher(Node):
         """Return the transform from the parent of a joint to its child, at a position."""
         prefix = self.get_parameter("frame_prefix").value
         x, y, z, i, j, k, w = joint.pose(position)
-        sign = -1.0 if w < 0 else 1.0  # one of two quaternions that are the same rotation
+        sign = -1.0 if w < 0 else 1.0  # of the two quaternions for the same rotation
         return TransformStamped(
             header=Header(stamp=stamp, frame_id=prefix + joint.parent),
             child_frame_id=prefix + joint.child,
@@ -114,7 +114,7 @@ class RobotStatePublisher(Node):
         )
 
     def on_joints(self, state: JointState) -> None:
-        """Publish where links are, unless that was done less than a period ago."""
+        """Publish the poses of links, unless that was done less than a period ago."""
         if len(state.name) != len(state.position):
             if len(state.position):
                 self.get_logger().error(
@@ -149,7 +149,7 @@ class RobotStatePublisher(Node):
         self.published.update(dict.fromkeys(known, stamp))
 
     def check(self, parameters: list[Parameter]) -> SetParametersResult:
-        """Refuse values that do not fit."""
+        """Reject invalid values."""
         for parameter in parameters:
             if parameter.name == "robot_description":
                 if not parameter.value:
@@ -166,7 +166,7 @@ class RobotStatePublisher(Node):
         return SetParametersResult(successful=True)
 
     def update(self, parameters: list[Parameter]) -> None:
-        """Publish a new description, and what is fixed in it."""
+        """Publish a new description and its fixed joints."""
         for parameter in parameters:
             if parameter.name == "robot_description":
                 self.use(parameter.value)

@@ -47,22 +47,22 @@ OLD_STYLES: Final = {
     8: (*TRANSLATION, "yaw", "pitch", "roll", *FRAMES),
     9: (*TRANSLATION, *QUATERNION, *FRAMES),
 }
-"""What values mean by their places, by their number."""
+"""The meaning of positional values, by their number."""
 
 LENGTH_TOLERANCE: Final = 0.01
-"""By how much the square of a quaternion's length may differ from 1: tf2 ignores others."""
+"""Tolerance for the squared length of a quaternion; tf2 ignores others."""
 
 
 @dataclass
 class Given:
-    """What the arguments say.
+    """The parsed arguments.
 
     Attributes:
         translation: x, y and z in metres.
         rotation: x, y, z and w of the quaternion.
         frame_id: The parent frame.
         child_frame_id: The child frame.
-        is_old_style: Whether values stand by their places instead of after options.
+        is_old_style: Whether values are positional instead of options.
     """
 
     translation: tuple[float, ...]
@@ -73,7 +73,7 @@ class Given:
 
     @classmethod
     def of(cls, args: Sequence[str]) -> Given:
-        """Return what arguments say, in either style.
+        """Parse arguments in either style.
 
         Raises:
             ValueError: They do not fit.
@@ -97,7 +97,7 @@ class Given:
 
 
 def separated(args: Sequence[str]) -> tuple[dict[str, str], list[str]]:
-    """Return the values of options by their names, and all other arguments."""
+    """Separate the values of options, by name, from all other arguments."""
     options: dict[str, str] = {}
     others = []
     rest = list(args)
@@ -114,7 +114,7 @@ def separated(args: Sequence[str]) -> tuple[dict[str, str], list[str]]:
 
 
 def number(name: str, text: str) -> float:
-    """Return the number that an argument is."""
+    """Parse a number in an argument."""
     try:
         value = float(text)
     except ValueError:
@@ -171,7 +171,7 @@ class StaticTransformPublisher(Node):
         )
 
     def _publish(self, given: Given) -> None:
-        """Publish the transform, which stays for subscriptions that come later."""
+        """Publish the transform, which is kept for late subscriptions."""
         x, y, z = given.translation
         qx, qy, qz, qw = given.rotation
         stamped = TransformStamped(
@@ -186,10 +186,10 @@ class StaticTransformPublisher(Node):
 
 
 def main() -> None:
-    """Publish the transform that the arguments say until Ctrl-C.
+    """Publish the transform given by the arguments, until Ctrl-C.
 
     Raises:
-        SystemExit: With status 1: they say none.
+        SystemExit: With status 1 if they are invalid.
     """
     args = remove_ros_args(sys.argv)[1:]
     if not {"-h", "--help"}.isdisjoint(args):

@@ -1,4 +1,4 @@
-"""``twist_mux``: of several who command a base, the one with the highest priority is heard."""
+"""``twist_mux``: of several command sources for a base, the one with the highest priority wins."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ DIAGNOSTICS_SEC: Final = 1.0
 
 
 class Source:
-    """A topic of commands, or one that locks those of lower priority.
+    """A topic with commands, or a lock for sources of lower priority.
 
     Args:
         name: Its name in the parameters.
         topic: The topic.
-        timeout: For how long a message counts, in seconds; 0 for ever.
+        timeout: How long a message is valid, in seconds; 0 for ever.
         priority: From 0 to 255.
         now: Returns the time in nanoseconds.
     """
@@ -47,20 +47,20 @@ class Source:
 
     @property
     def has_expired(self) -> bool:
-        """Whether the last message is too old, or none came."""
+        """Whether the last message is too old, or there was none."""
         return self.timeout > 0 and (self._now() - self.stamp_ns) / 1e9 > self.timeout
 
     @property
     def is_locked(self) -> bool:
-        """Whether it locks: it says so, or it has fallen silent."""
+        """Whether it locks: its value says so, or it has fallen silent."""
         return self.has_expired or self.is_set
 
 
 class TwistMux(Node):
-    """Publishes the commands of whoever has the highest priority on `cmd_vel_out`.
+    """Publishes the commands of the source with the highest priority on `cmd_vel_out`.
 
-    The parameters ``topics.NAME.topic``, ``.timeout`` and ``.priority`` name who commands, those
-    below ``locks`` who stops others.
+    The parameters ``topics.NAME.topic``, ``.timeout`` and ``.priority`` define command sources,
+    those below ``locks`` locks.
 
     Raises:
         CommandError: A parameter is missing or does not fit.
@@ -88,7 +88,7 @@ class TwistMux(Node):
         self.create_timer(DIAGNOSTICS_SEC, self.tell)
 
     def sources(self, prefix: str) -> list[Source]:
-        """Return the topics below a prefix of parameters, and say which they are."""
+        """Return the sources below a prefix of parameters, and log them."""
         given = self.get_parameters_by_prefix(prefix)
         found = []
         for name in sorted({key.rpartition(".")[0] for key in given}):
@@ -122,7 +122,7 @@ class TwistMux(Node):
         return self.get_clock().now().nanoseconds
 
     def commanding(self, source: Source) -> Callable[[Any], None]:
-        """Return what is called with the commands of a source."""
+        """Return the callback for the commands of a source."""
 
         def on_command(twist: Any) -> None:
             source.hear(is_set=True)
@@ -132,15 +132,15 @@ class TwistMux(Node):
         return on_command
 
     def locking(self, source: Source) -> Callable[[Bool], None]:
-        """Return what is called with what a lock says."""
+        """Return the callback for a lock."""
         return lambda msg: source.hear(is_set=msg.data)
 
     def lock_priority(self) -> int:
-        """Return the highest priority of those who lock."""
+        """Return the highest priority of the active locks."""
         return max((lock.priority for lock in self.locks if lock.is_locked), default=0)
 
     def leader(self) -> Source | None:
-        """Return whose commands count: the highest priority, the first of several."""
+        """Return the source whose commands count: the highest priority, the first of several."""
         lowest = self.lock_priority()
         heard = [
             source
@@ -150,7 +150,7 @@ class TwistMux(Node):
         return max(heard, key=lambda source: source.priority, default=None)
 
     def tell(self) -> None:
-        """Publish who is heard, and who locks."""
+        """Publish diagnostics of the sources and locks."""
         leader, lowest = self.leader(), self.lock_priority()
         values = {
             f"velocity {source.name}": (

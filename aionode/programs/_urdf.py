@@ -1,4 +1,4 @@
-"""The links and joints of a robot's description in URDF, as urdfdom and kdl_parser read it."""
+"""The links and joints of a URDF robot description, as read by urdfdom and kdl_parser."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ __all__ = ["Joint", "Mimic", "Robot"]
 Vector = tuple[float, float, float]
 
 MAX_BYTES: Final = 20_000_000
-"""Most characters of a description: those of robots with meshes elsewhere have at most some MB."""
+"""Maximum length of a description; with meshes in other files they have at most a few MB."""
 
 KINDS: Final = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
 
@@ -25,8 +25,8 @@ class Mimic:
 
     Attributes:
         joint: The name of the joint that it follows.
-        multiplier: By what the position of that one is multiplied.
-        offset: What is added to it then.
+        multiplier: The factor for that joint's position.
+        offset: The offset added afterwards.
     """
 
     joint: str
@@ -41,13 +41,13 @@ class Joint:
     Attributes:
         name: Its name.
         kind: revolute, continuous, prismatic, fixed, floating or planar.
-        parent: The link that it stands in.
+        parent: Its parent link.
         child: The link that it moves.
         origin: The pose of the child in the parent at position 0.
-        axis: What it turns around, or moves along, in the child's frame; its length is 1.
-        limits: The least and the greatest position; None if it turns without end, or is fixed.
-        soft_limits: Those of its safety controller, where it has some.
-        mimic: What it follows, if it follows a joint.
+        axis: The unit axis of its rotation or translation, in the child's frame.
+        limits: The minimum and maximum position; None if it rotates without limits, or is fixed.
+        soft_limits: The limits of its safety controller, if any.
+        mimic: The joint that it follows, if any.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Joint:
 
     @property
     def is_moved(self) -> bool:
-        """Whether a number says where it stands."""
+        """Whether its position is a number."""
         return self.kind in ("revolute", "continuous", "prismatic")
 
     def pose(self, position: float) -> Pose:
@@ -85,10 +85,10 @@ class Robot:
 
     @classmethod
     def of(cls, text: str) -> Robot:
-        """Return the robot that a description in URDF says.
+        """Parse a URDF description.
 
         Raises:
-            ValueError: It is no URDF; the text says why.
+            ValueError: It is not valid URDF; the text says why.
         """
         if len(text) > MAX_BYTES:
             raise ValueError(f"it has {len(text)} characters; {MAX_BYTES} at most")
@@ -113,12 +113,12 @@ class Robot:
         return cls(joints)
 
     def position(self, name: str, positions: dict[str, float]) -> float | None:
-        """Return where a joint stands: by itself, or by the one that it follows, which may follow.
+        """Return a joint's position: its own, or that of the joint it follows, directly or not.
 
-        Nothing is returned if `positions` has none of these.
+        Returns None if `positions` has none of these.
         """
         factor, offset = 1.0, 0.0
-        for _ in self.joints:  # a chain of joints that follow each other is no longer
+        for _ in self.joints:  # a chain of followers cannot be longer
             if name in positions:
                 return positions[name] * factor + offset
             mimic = self.joints[name].mimic if name in self.joints else None
@@ -190,7 +190,7 @@ def mimic_of(element: ET.Element, name: str) -> Mimic | None:
 
 
 def refuse_what_is_no_tree(links: list[str], joints: dict[str, Joint]) -> None:
-    """Raise unless each link but one is the child of one joint."""
+    """Raise unless every link except one is the child of exactly one joint."""
     parents: dict[str, str] = {}
     for joint in joints.values():
         for link in (joint.parent, joint.child):
@@ -239,7 +239,7 @@ def vector(text: str, name: str) -> Vector:
 
 
 def number(text: str, name: str) -> float:
-    """Return a number, which has an end."""
+    """Parse a finite number."""
     try:
         value = float(text)
     except ValueError:
