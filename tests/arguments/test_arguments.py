@@ -173,7 +173,7 @@ def test_a_log_file_is_written_only_when_asked_for(flags: str, prefix: str | Non
         ("-p --", "'-p': no value follows; it needs a parameter"),
         ("--params-file", "'--params-file': no value follows; it needs the path"),
         ("-r foo", "'-r foo': no ':='; a rule is 'from:=to'"),
-        ("-r a:=*", "'-r a:=*': '*' is no name"),
+        ("-r a:=*", "'-r a:=*': '*' is not a name"),
         ("-p foo", "'-p foo': a parameter is 'name:=value' or 'node:name:=value'"),
         ("-p :=1", "'-p :=1': a parameter is"),
         ("-p a:=", "'-p a:=': no value; for an empty string write ''"),
@@ -474,7 +474,7 @@ def test_an_empty_file_has_no_rules(text: str) -> None:
     [
         ("a:\n  ros__parameters:\n    id:\n    x: 1\n", 3, "no value"),
         ("a:\n  b: 1\n", 2, "the value '1' before 'ros__parameters'"),
-        ("ros__parameters:\n  x: 1\n", 2, "there is no name of a node"),
+        ("ros__parameters:\n  x: 1\n", 2, "there is not a name of a node"),
         ("a:\n  ros__parameters:\n  - x: 1\n", 3, "a sequence where parameters should stand"),
         ("a:\n  ros__parameters: 5\n", 2, "the value '5' where parameters should stand"),
         ("a:\n- b\n", 2, "a sequence before 'ros__parameters'"),
