@@ -117,7 +117,7 @@ def description_in_text(path: str, text: bytes, kind: str) -> Any:
 
 
 def kind_of(path: str, text: bytes) -> str:
-    """Return in which language a file is: by its name, else by its text."""
+    """Return the language of a file, judged by its name or else by its text."""
     kind = ENDINGS.get(Path(path).suffix)
     if kind is not None:
         return kind
@@ -344,7 +344,7 @@ def check_later_steps(steps: Iterable[Step], checked: set[int]) -> None:
 
 
 def visit(entity: LaunchDescriptionEntity, context: LaunchContext, depth: int) -> None:
-    """Do what an entity says, and what it consists of."""
+    """Execute an entity and its children."""
     context.visited += 1
     is_too_much = context.visited > MAX_ENTITIES and isinstance(entity, IncludeLaunchDescription)
     if depth > MAX_DEPTH or is_too_much:
