@@ -145,8 +145,8 @@ class Packages:
     def starter(self, program: Path, options: Sequence[str] = ()) -> list[str]:
         """Return the command that starts a program which may look for packages.
 
-        One that is installed for this Python, such as the xacro of PyPI, runs under aionode's
-        rclpy: it finds packages as the workspace has them. Any other one runs as it is.
+        One installed for this Python, such as xacro from PyPI, runs with aionode's rclpy, so that
+        it finds the packages of the workspace. Any other runs as is.
 
         Args:
             program: The file of the program.

@@ -257,7 +257,7 @@ def report(
 
 
 def advise(error: Exception) -> None:
-    """Print what to do about the modules of ROS that an exception did not find."""
+    """Print advice about the ROS modules that an exception did not find."""
     from aionode.idl.search import has_interfaces
     from aionode.rclpy._finder import SUPPLIED
     from aionode.rclpy.missing import advice, missing_modules
