@@ -301,10 +301,10 @@ def test_a_hop_of_a_message_is_a_function_of_its_file() -> None:
         assert fragment((ROOT / file).read_text(encoding="utf-8"), name), (file, name)
 
 
-def test_what_the_design_places_stands_there() -> None:
+def test_the_design_says_where_to_find_things() -> None:
     """Whoever looks for a behaviour opens the file that docs/design.md names."""
     page = (ROOT / "docs/design.md").read_text(encoding="utf-8")
-    section = page.partition("\n## Where it stands\n")[2].partition("\n## ")[0]
+    section = page.partition("\n## Where to find it\n")[2].partition("\n## ")[0]
     places = {(place["file"], place["name"]) for place in PLACE.finditer(section)}
 
     assert len(places) >= 30
