@@ -33,6 +33,7 @@ NOUNS = {
     "deploy": "Bring a workspace onto a robot, where systemd runs it.",
     "doctor": "Find out why endpoints do not communicate.",
     "gateway": "Serve the robot to browsers, programs and apps.",
+    "graph": "Draw nodes and what they share; show what does not match.",
     "interface": "Show message, service and action types.",
     "launch": "Start the processes and nodes of a launch file.",
     "lifecycle": "Show and change the states of managed nodes.",
