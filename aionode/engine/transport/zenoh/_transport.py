@@ -104,7 +104,9 @@ class ZenohTransport(Transport):
         self._answered: asyncio.Future[bool] | None = None
         self._expected = 0  # how many peers accept connections, and so should be connected
         self._dialled: AbstractSet[int] = frozenset()  # the ports of this machine's other sessions
-        self._recovery = Recovery(self._state, network, self._watcher)
+        self._recovery = Recovery(
+            self._state, network, self._watcher, partial(listed, network.meeting_ports[0])
+        )
         self._stale_transports = StaleTransports(self._state, network)
         self._local_router = LocalRouter(self._state, network)
         self._socket_options: SocketOptions | None = None

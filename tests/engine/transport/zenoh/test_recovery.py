@@ -6,6 +6,7 @@ import asyncio
 import itertools
 import os
 import random
+import sys
 from collections.abc import AsyncIterator, Callable
 from contextlib import AsyncExitStack, asynccontextmanager, closing, suppress
 from types import SimpleNamespace
@@ -260,6 +261,32 @@ async def test_one_that_ended_is_looked_for_and_nothing_is_cut(comparisons: Comp
             await until(lambda: set() in comparisons)
 
         assert all_ways(ours) == ways
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="only Linux lists sessions")
+async def test_where_all_sessions_are_listed_nobody_is_asked_about_one_that_ended(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Zenoh dials listed sessions for ever; each question costs a session that is opened for it."""
+    monkeypatch.setattr(recovery, "FIRST_S", 0.01)
+    asked: list[str] = []
+    open_probe = _config.open_probe
+
+    def probe(network: Network, endpoint: str) -> Any:
+        asked.append(endpoint)
+        return open_probe(network, endpoint)
+
+    monkeypatch.setattr(recovery, "open_probe", probe)
+    async with context("a1") as ours, context("a2"):
+        checked = asyncio.Event()
+        monkeypatch.setattr(ours._watcher, "check", checked.set)
+        async with context("a3"):
+            await until(lambda: len(ours.session_state.connections.kinds) == 2)
+        async with asyncio.timeout(LIMIT_S):
+            await checked.wait()
+
+        assert not ours._recovery._later.waits
+    assert asked == []
 
 
 @pytest.mark.parametrize("named", ["nothing", "own", "half"])

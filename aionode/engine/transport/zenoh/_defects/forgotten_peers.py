@@ -14,7 +14,8 @@ Mend:
     its gossip source (a router, or the peer at a configured endpoint) sees: a probe asks for them.
     If that source sees a participant that this session does not, or to which it has lost the
     connection, or does not see this session, the connection to the source is cut, and Zenoh makes
-    it anew at once: the source names all others again.
+    it anew at once: the source names all others again. Where no session is connected but those that
+    this machine lists, nothing is compared: each has the earlier ones in its configuration.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import zenoh
 
+from aionode.engine.transport.network import DiscoveryRange
 from aionode.engine.transport.send_thread import start_thread
 from aionode.engine.transport.zenoh._defects._connection_mend import (
     ATTEMPTS,
@@ -46,7 +48,7 @@ from aionode.engine.wire._liveliness import PREFIX as ROS_PREFIX
 from aionode.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from collections.abc import Set as AbstractSet
 
     from aionode.engine.transport.network import Network
@@ -99,17 +101,26 @@ class Recovery(ConnectionMend):
         state: The session state of the context.
         network: The settings of the context, with the endpoints that it dials.
         watcher: The graph, which is compared a few times after connections were made or lost.
+        listed: Returns the ports of the sessions that this machine lists; None if it has no list.
     """
 
     defect = "forgotten_peers"
 
-    def __init__(self, state: SessionState, network: Network, watcher: Watcher) -> None:
+    def __init__(
+        self,
+        state: SessionState,
+        network: Network,
+        watcher: Watcher,
+        listed: Callable[[], AbstractSet[int] | None],
+    ) -> None:
         super().__init__(state, network)
+        self._listed = listed
         self._watcher = watcher
         self._checks = 0
         self._comparisons = state.queue(self._take_comparison)
         self._is_comparing = False
         self._until_s = 0.0
+        self._has_met_router = False
         self._changing_since_s = 0.0  # when the first change was seen after the last comparison
         # Those that were missing in the last comparison; used by its thread only.
         self._suspected: set[str] = set()
@@ -126,6 +137,7 @@ class Recovery(ConnectionMend):
         self._attempts = {}  # not cleared: a thread may read the old one
 
     def _take_change(self, change: ConnectionChange, now_s: float) -> None:
+        self._has_met_router |= change.kind == zenoh.WhatAmI.ROUTER
         if not change.is_made:
             self._until_s = now_s + WATCH_S
         elif now_s >= self._until_s:
@@ -148,6 +160,10 @@ class Recovery(ConnectionMend):
         if self._is_comparing:
             self._compare_in(FIRST_S)
             return
+        if not self._may_be_introduced():
+            self._until_s = 0.0
+            self._watcher.check()
+            return
         known = self._watcher.node_tokens() | self._state.acknowledgements.tokens()
         self._is_comparing = start_thread(
             threading.Thread(
@@ -158,6 +174,19 @@ class Recovery(ConnectionMend):
                 name="aionode-zenoh",
             )
         )
+
+    def _may_be_introduced(self) -> bool:
+        """Return whether gossip may have named a session that is, or was, connected."""
+        network, connections = self._network, self._state.connections
+        if (
+            self._has_met_router
+            or network.discovery_range is not DiscoveryRange.LOCALHOST
+            or network.config_file is not None
+            or network.static_peers
+        ):
+            return True
+        there = self._listed()
+        return there is None or len(connections.kinds) >= len(there)  # with its own
 
     def _compare_in_thread(self, session: zenoh.Session, lost: set[str], known: set[str]) -> None:
         missing: set[str] | None = None
