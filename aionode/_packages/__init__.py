@@ -16,7 +16,7 @@ from aionode._packages._here import (
     use_stand_ins,
 )
 from aionode._packages._packages import Packages
-from aionode._packages._standard import program_module, remark_on
+from aionode._packages._standard import program_module, remark_on, standard_packages
 from aionode._packages._workspace import workspace_of
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "program_module",
     "remark_on",
     "stand_in",
+    "standard_packages",
     "use",
     "use_stand_ins",
     "workspace_of",

@@ -20,6 +20,7 @@ from aionode._packages._standard import (
     standard_executables,
     standard_packages,
     standard_plugin,
+    standard_share,
 )
 from aionode._packages._workspace import packages_in
 from aionode.errors import ExecutableNotFoundError, PackageNotFoundError
@@ -54,12 +55,16 @@ class Packages:
         """Return the share folder of a package, with its data as installed.
 
         For a package of the workspace that is its source folder, or a folder of links to its files.
+        For one of ROS that is not there it is what aionode has of it.
 
         Raises:
             PackageNotFoundError: There is no such package; the error suggests similar names.
         """
         source = self.sources().get(name)
-        return share_of(source, name) if source else self.prefix(name) / "share" / name
+        if source:
+            return share_of(source, name)
+        standard = None if self.has(name) else standard_share(name)
+        return standard or self.prefix(name) / "share" / name
 
     def prefix(self, name: str) -> Path:
         """Return the prefix into which a package is installed.

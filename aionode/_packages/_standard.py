@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Final
 
 from aionode._packages._executables import Executable
@@ -12,7 +13,11 @@ __all__ = [
     "standard_executables",
     "standard_packages",
     "standard_plugin",
+    "standard_share",
 ]
+
+SHARE: Final = Path(__file__).parents[1] / "programs" / "_share"
+"""Where the data of packages lies of which aionode has programs, such as launch files."""
 
 MODULES: Final[dict[str, dict[str, str]]] = {
     "diagnostic_aggregator": {"aggregator_node": "_diagnostics.aggregator_node"},
@@ -145,6 +150,12 @@ def program_module(package: str, name: str) -> str | None:
 def standard_packages() -> list[str]:
     """Return the names of the packages of which aionode has programs."""
     return sorted(MODULES)
+
+
+def standard_share(package: str) -> Path | None:
+    """Return the folder with the data that aionode has of a package."""
+    folder = SHARE / package
+    return folder if package in MODULES and folder.is_dir() else None
 
 
 def standard_plugin(package: str, plugin: str) -> tuple[str, str] | None:

@@ -41,6 +41,7 @@ NOUNS = {
     "new": "Write a package with a node, a message and a test.",
     "node": "List and inspect nodes.",
     "param": "Read and set the parameters of nodes.",
+    "pkg": "List packages and what they can start.",
     "router": "Connect machines, as rmw_zenohd does.",
     "run": "Run node classes together in one process.",
     "service": "List, find and call services.",

@@ -51,6 +51,13 @@ def test_playing_and_bursting_tell_what_was_played(run: str, capsys: Captured) -
     assert json.loads(capsys.readouterr().out)["played"] == 4
 
 
+def test_topics_may_be_named_without_their_option() -> None:
+    """As in the tutorials, and in ROS 2 until Jazzy."""
+    named = settings("-o", "subset", "/turtle1/cmd_vel", "/turtle1/pose")
+
+    assert named == settings("-o", "subset", "--topics", "/turtle1/cmd_vel", "/turtle1/pose")
+
+
 def test_the_options_of_rosbag2_are_taken(tmp_path: Path) -> None:
     """A command line that works with ros2 works here."""
     static = tmp_path / "static.yaml"
@@ -107,7 +114,7 @@ def test_a_yaml_file_without_what_it_needs_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="writes mcap"):
         outputs_in(str(file))
     file.write_text("a: [")
-    with pytest.raises(ValueError, match="no YAML"):
+    with pytest.raises(ValueError, match="not YAML"):
         static_topics_in(str(file))
     file.write_text("static_topics_and_types_list: [x]")
     with pytest.raises(ValueError, match="static_topics_and_types_list"):

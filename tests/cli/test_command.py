@@ -19,6 +19,7 @@ VERBS = {
     "action": {"find", "info", "list", "send_goal", "type"},
     "interface": {"generate", "list", "package", "packages", "proto", "show"},
     "node": {"info", "list"},
+    "pkg": {"executables", "list", "prefix"},
     "param": {"delete", "describe", "dump", "get", "list", "load", "set"},
     "service": {"call", "find", "info", "list", "type"},
     "topic": {"bw", "delay", "echo", "find", "hz", "info", "list", "pub", "type"},

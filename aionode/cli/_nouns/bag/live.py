@@ -165,9 +165,13 @@ def set_level(node: Node, level: str | None) -> None:
 @click.option("--compression-queue-size", type=int, help=NO_EFFECT)
 @click.option("--compression-threads", type=int, help=NO_EFFECT)
 @click.option("--compression-threads-priority", type=int, help=NO_EFFECT)
+@click.argument("named", metavar="[TOPIC]...", nargs=-1)
 @spread(common_options)
 def record_command(**values: Any) -> None:
-    """Record topics until Ctrl-C. SPACE pauses and resumes."""
+    """Record topics until Ctrl-C. SPACE pauses and resumes.
+
+    Each TOPIC is as one of --topics.
+    """
     from aionode.bag import Recorder
     from aionode.engine.context import Context
 
@@ -201,7 +205,7 @@ def recorder_options(values: dict[str, Any]) -> dict[str, Any]:
     Raises:
         click.UsageError: options exclude each other, or ask for a format that cannot be written.
     """
-    selection = checked_selection(values)
+    selection = checked_selection(values | {"topics": (*values["topics"], *values["named"])})
     if values["use_sim_time"] and values["no_discovery"]:
         raise click.UsageError("--use-sim-time and --no-discovery cannot be combined")
     if values["storage"] != "mcap":
