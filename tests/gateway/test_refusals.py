@@ -38,7 +38,7 @@ ERRORS = {"AionodeError", "RefusedError", "MessageError", "ServiceError", "Timeo
 """What a handler catches that concerns a client."""
 
 TOLD_BY = {"note", "note_failure", "note_refusal", "fail", "_fail", "_refuse", "_note_unreadable"}
-TOLD_BY |= {"failed", "_warn"}
+TOLD_BY |= {"failed", "_warn", "_note_refusal"}
 """What counts and logs it, each by way of `Refusals.note`."""
 
 UNTOLD = {
@@ -54,6 +54,17 @@ UNTOLD = {
     "server/exchange.py:close": "its client reads no goodbye",
     "http/answers.py:_send_chunks": "the session has ended, which was said",
     "http/answers.py:_stay_alive": "some seconds have passed",
+    "mcp/call.py:report": "its client does not read how far the call is; the result follows",
+    "mcp/confirming.py:_elicited": "no answer is a no, which is refused and said as one",
+    "mcp/events.py:reached": "its client is gone, or hears of the next event",
+    "mcp/moving.py:listening": "its time has passed: the answer has the number",
+    "mcp/moving.py:cancelled": "the answer says that the goal has not ended",
+    "mcp/moving.py:stop": "its time has passed: the answer has what still moves",
+    "mcp/reading.py:describe": "a node without parameters",
+    "mcp/reading.py:read": "its time has passed: the answer has what came",
+    "mcp/reading.py:watch": "the same",
+    "mcp/reading.py:transform": "the same: the answer has the problem",
+    "mcp/reading.py:log": "the same as `read`",
 }
 """Functions that catch such an error and say nothing, with the reason."""
 

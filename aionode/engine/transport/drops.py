@@ -8,8 +8,11 @@ from __future__ import annotations
 import enum
 import logging
 from collections import Counter
+from collections.abc import Callable
 from typing import Final
 
+from aionode._process.rated_lines import RatedLines
+from aionode.clock import perf_ns
 from aionode.errors import escaped
 
 __all__ = ["Drop", "Drops"]
@@ -54,21 +57,23 @@ class Drop(enum.Enum):
 
 
 class Drops:
-    """Counts what is dropped by its kind and subject, and logs the first, the tenth and so on.
+    """Counts what is dropped by its kind and subject, and logs it as `RatedLines` says.
 
     Any thread may note something: of two at the same moment one may not be counted, which does no
     harm.
 
     Args:
         log: Where it is said.
+        now_ns: Returns the time of a steady clock, in nanoseconds.
     """
 
-    def __init__(self, log: logging.Logger = logger) -> None:
+    def __init__(self, log: logging.Logger = logger, now_ns: Callable[[], int] = perf_ns) -> None:
         self._log = log
+        self._lines: RatedLines[tuple[Drop, str]] = RatedLines(now_ns, len(Drop) * (SUBJECTS + 1))
         self._counts: dict[Drop, Counter[str]] = {drop: Counter() for drop in Drop}
 
     def note(self, drop: Drop, subject: str, detail: str = "", count: int = 1) -> None:
-        """Count something, and log it when its number reaches 1, 10, 100 and so on.
+        """Count something, and log it unless the same was logged a short while ago.
 
         Args:
             drop: Why it was dropped.
@@ -79,12 +84,11 @@ class Drops:
         counts = self._counts[drop]
         if subject not in counts and len(counts) >= SUBJECTS:
             subject = "other names"
-        before = counts[subject]
-        counts[subject] = after = before + count
-        if not before or len(str(after)) > len(str(before)):
-            number = "more are only counted" if after == 1 else f"{after} so far"
+        counts[subject] += count
+        more = self._lines.note((drop, subject), count)
+        if more is not None:
             text = drop.value.format(escaped(detail))
-            self._log.warning("%s: %s (%s)", escaped(subject), text, number)
+            self._log.warning("%s: %s%s", escaped(subject), text, more)
 
     def of(self, drop: Drop) -> Counter[str]:
         """Return how many were dropped for a reason, by subject."""

@@ -9,6 +9,9 @@ import logging
 from collections import Counter
 from typing import Final
 
+from aionode._process.rated_lines import RatedLines
+from aionode.clock import perf_ns
+
 __all__ = ["REPLACED_TEXTS", "ReplacedTexts"]
 
 logger = logging.getLogger("aionode.wire")
@@ -21,13 +24,14 @@ SHOWN: Final = 40
 
 
 class ReplacedTexts:
-    """Counts them by their type, and logs the first, the tenth and so on of each type.
+    """Counts them by their type, and logs those of each type as `RatedLines` says.
 
     Any thread may note one: of two at the same moment one may not be counted, which does no harm.
     """
 
     def __init__(self) -> None:
         self._counts: Counter[str] = Counter()
+        self._lines: RatedLines[str] = RatedLines(perf_ns, TYPES + 1)
 
     def total(self) -> int:
         """Return how many messages of all types there were."""
@@ -43,15 +47,13 @@ class ReplacedTexts:
         """
         if type_name not in self._counts and len(self._counts) >= TYPES:
             type_name = "other types"
-        self._counts[type_name] = count = self._counts[type_name] + 1
-        if str(count).strip("0") == "1":
+        self._counts[type_name] += 1
+        more = self._lines.note(type_name)
+        if more is not None:
             logger.warning(
-                "%s%s: a text is no Unicode: %r; what is wrong in it was replaced by U+FFFD (%s). "
-                "Strings of ROS 2 are UTF-8: does the sender write Latin-1?",
-                type_name,
-                path,
-                data[:SHOWN],
-                "more are only counted" if count == 1 else f"{count} so far",
+                "%s%s: a text is no Unicode: %r; what is wrong in it was replaced by U+FFFD. "
+                "Strings of ROS 2 are UTF-8: does the sender write Latin-1?%s",
+                *(type_name, path, data[:SHOWN], more),
             )
 
 

@@ -26,13 +26,14 @@ from aionode.gateway.mcp.resources import (
     templates,
 )
 from aionode.gateway.mcp.tools import Tools
+from aionode.gateway.policy.identity import Identity
+from aionode.gateway.session.refusals import Refusal
 from aionode.names import is_hidden
 
 if TYPE_CHECKING:
     from mcp.server.models import InitializationOptions
 
     from aionode.gateway._clients import Clients
-    from aionode.gateway.policy.identity import Identity
     from aionode.gateway.session.session import Session
 
 __all__ = ["McpServer"]
@@ -177,7 +178,17 @@ class McpServer:
             async with self.session(context) as session:
                 return await self._run(context, params, session)
         except RefusedError as error:  # there is no session
+            self._note_refusal(context, error)
             return failure(error)
+
+    def _note_refusal(self, context: Any, error: RefusedError) -> None:
+        """Write down that a call was refused before it had a session."""
+        if context.request is not None:
+            self._clients.note_refusal(context.request.scope["aionode.credentials"], error)
+            return
+        reason = f"refused: {error.reason}"
+        refusals = self._clients.robot.refusals
+        refusals.note(Identity(""), WAY, Refusal.of(error), error.subject, reason)
 
     async def _run(
         self, context: Any, params: types.CallToolRequestParams, session: Session

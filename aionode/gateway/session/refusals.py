@@ -10,7 +10,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from aionode._process.recent import Recent
+from aionode._process.rated_lines import WAIT_NS, RatedLines
 from aionode.clock import S_TO_NS
 from aionode.errors import MessageError, RefusedError, escaped
 
@@ -19,11 +19,6 @@ if TYPE_CHECKING:
     from aionode.node import Node
 
 __all__ = ["Refusal", "Refusals"]
-
-WAIT_NS: Final = 10 * S_TO_NS
-"""The time between two lines about the same; while it goes on, it doubles again and again."""
-
-MOST_WAIT_NS: Final = 640 * S_TO_NS
 
 MOST_LINES: Final = 10
 """Lines about clients of one name within `WAIT_NS`: others have lines of their own."""
@@ -80,15 +75,6 @@ class Refusal(enum.Enum):
 
 
 @dataclass(slots=True)
-class Line:
-    """What was said of one subject, and when it may be said again."""
-
-    due_ns: int
-    wait_ns: int = WAIT_NS
-    unsaid: int = 0
-
-
-@dataclass(slots=True)
 class Window:
     """How many lines there were about one client in `WAIT_NS`, and how many there would have been.
 
@@ -98,6 +84,14 @@ class Window:
     until_ns: int
     lines: int = 0
     left_out: int = 0
+
+    def has_room(self) -> bool:
+        """Count one more line; return whether there may be so many."""
+        if self.lines >= MOST_LINES:
+            self.left_out += 1
+            return False
+        self.lines += 1
+        return True
 
 
 class Refusals:
@@ -118,7 +112,9 @@ class Refusals:
         self.counts: Counter[Refusal] = Counter()
         self._node = node
         self._now_ns = node.context.time_base.steady_ns
-        self._lines: Recent[tuple[tuple[str, str], str, Refusal, str], Line] = Recent(MOST_SUBJECTS)
+        self._lines: RatedLines[tuple[tuple[str, str], str, Refusal, str]] = RatedLines(
+            self._now_ns, MOST_SUBJECTS
+        )
         self._windows: dict[tuple[str, str], Window] = {}
 
     def note(
@@ -139,26 +135,10 @@ class Refusals:
         client = (identity.name, "" if identity.name else identity.place)
         window = self._window(client, now_ns)
         key = (client, way, kind, subject)
-        line = self._lines.get(key)
-        if line is not None and now_ns < line.due_ns:
-            line.unsaid += count
+        more = self._lines.note(key, count, has_room=window.has_room)
+        if more is None:
             return
-        if window.lines >= MOST_LINES:
-            window.left_out += 1
-            if line is not None:
-                line.unsaid += count
-            return
-        window.lines += 1
-        unsaid = 0
-        if line is None:
-            self._lines.put(key, Line(now_ns + WAIT_NS))
-        else:
-            unsaid = line.unsaid
-            is_over = now_ns > line.due_ns + line.wait_ns
-            line.wait_ns = WAIT_NS if is_over else min(2 * line.wait_ns, MOST_WAIT_NS)
-            line.due_ns, line.unsaid = now_ns + line.wait_ns, 0
         where = f"{identity.address or 'this process'}, {way}"
-        more = f" ({unsaid} more since the last line)" if unsaid else ""
         text = f"{identity.name or 'unknown client'} ({where}): {subject}: {reason[:MOST_TEXT]}"
         # On one line, so that a name of a client cannot look like another line of the log.
         self._node.get_logger().warning(f"gateway: {escaped(' '.join(text.split()))}{more}")
