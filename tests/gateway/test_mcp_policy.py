@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import AsyncExitStack
+from pathlib import Path
 from typing import Any, Final, NamedTuple
 
 import httpx
@@ -161,6 +162,18 @@ async def test_a_new_policy_ends_a_move_that_it_does_not_allow(assisted: Bench, 
     await until(lambda: assisted.base.commands[-1] == 0.0)
 
     assert "its policy has changed" in moving.result().content[0].text
+
+
+async def test_the_policy_of_the_documentation_is_one() -> None:
+    """And gives the tools that it says."""
+    policy = (Path(__file__).parents[2] / "examples/gateway/assistant.toml").read_text()
+    async with bench_of(policy.replace("audit_file", "# audit_file")) as bench:
+        client = await bench.connect()
+        tools = {tool.name: tool for tool in (await client.list_tools()).tools}
+
+    assert "linear.x from -0.3 to 0.3" in tools["move"].description
+    assert tools["move"].input_schema["properties"]["seconds"]["maximum"] == 5
+    assert "publish" not in tools
 
 
 # Who
