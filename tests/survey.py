@@ -94,7 +94,9 @@ def missing_in(clone: Path, aionode: Aionode) -> Iterator[tuple[Path, frozenset[
 def launch_files_in(clone: Path, at_most: int | None) -> list[Path]:
     """Return the launch files of a clone, or some of them, evenly over the list."""
     files = sorted(
-        file for file in clone.rglob("*") if file.name.endswith(ENDINGS) and file.is_file()
+        file
+        for file in clone.rglob("*")
+        if file.name.endswith(ENDINGS) and file.is_file() and not is_test(file.relative_to(clone))
     )
     if at_most is None or len(files) <= at_most:
         return files
