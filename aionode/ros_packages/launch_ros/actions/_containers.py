@@ -53,7 +53,7 @@ class ComposableNodeContainer(Node):
             try:
                 super().execute(context)
             except PackageNotFoundError as error:
-                self._leave_out(context, components, error)
+                self.__leave_out(context, components, error)
                 components = [each for each in components if each.is_aionode]
                 self._ExecuteLocal__arguments_of_ros(context)
         if components:
@@ -61,7 +61,7 @@ class ComposableNodeContainer(Node):
                 LoadNodes(self.node_name, components, self._LaunchDescriptionEntity__where)
             )
 
-    def _leave_out(
+    def __leave_out(
         self, context: LaunchContext, components: list[Component], error: PackageNotFoundError
     ) -> None:
         """Note the nodes that need the container, which is not there.
