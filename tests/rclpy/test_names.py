@@ -260,3 +260,17 @@ def test_the_names_are_those_of_rclpy() -> None:
     )
 
     assert json.loads(done.stdout) == EXPECTED
+
+
+@pytest.mark.parametrize("first", ["from rclpy.action import ActionClient", "import rclpy.time"])
+def test_a_module_of_rclpy_is_an_attribute_whatever_was_imported_first(first: str) -> None:
+    """In ROS most modules import most others; drivers' examples say ``rclpy.node.Node``."""
+    program = (
+        f"import aionode.rclpy; aionode.rclpy.install(); import rclpy; {first}; "
+        "print(rclpy.node.Node.__name__, rclpy.executors.__name__, hasattr(rclpy, 'nodes'))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+
+    assert (done.stdout, done.stderr) == ("Node rclpy.executors False\n", "")

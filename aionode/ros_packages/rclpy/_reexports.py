@@ -9,6 +9,8 @@ from __future__ import annotations
 import sys
 import typing
 from importlib import import_module
+from importlib.machinery import PathFinder
+from types import ModuleType
 from typing import Any, Final
 
 __all__ = ["add_names"]
@@ -217,6 +219,8 @@ def add_names(name: str) -> None:
             value = loaded(place) if place else value_of(asked, name)
         elif asked in typing.__all__:
             value = getattr(typing, asked)
+        elif has_module(module, asked):
+            value = import_module(f"{name}.{asked}")
         else:
             raise AttributeError(f"module {name!r} has no attribute {asked!r}")
         vars(module)[asked] = value
@@ -226,6 +230,18 @@ def add_names(name: str) -> None:
         return sorted({*vars(module), *names})
 
     vars(module).update(__getattr__=find, __dir__=listed)
+
+
+def has_module(package: ModuleType, name: str) -> bool:
+    """Return whether a package has a public module of this name.
+
+    In ROS, importing one of them imports most others, and programs take those as attributes:
+    ``rclpy.node`` is there after ``from rclpy.action import ActionClient``.
+    """
+    folder = vars(package).get("__path__")  # not by getattr, which would ask for it here
+    if folder is None or name.startswith("_"):
+        return False
+    return PathFinder.find_spec(f"{package.__name__}.{name}", folder) is not None
 
 
 def value_of(name: str, module: str) -> Any:
