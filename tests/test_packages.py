@@ -6,10 +6,11 @@ import os
 import sys
 from importlib import import_module
 from pathlib import Path
+from pkgutil import walk_packages
 
 import pytest
 
-from aionode import Node
+from aionode import Node, programs
 from aionode._packages import Packages, program_module, workspace_of
 from aionode._packages._share import share_of
 from aionode._packages._standard import MODULES, PLUGINS, standard_plugin
@@ -425,6 +426,15 @@ def test_each_program_of_the_table_is_a_module_with_a_main(package: str, name: s
 
     assert module is not None
     assert callable(import_module(module).main)
+
+
+def test_each_module_with_a_main_is_in_the_table() -> None:
+    """Otherwise nobody can start it."""
+    known = {program_module(package, name) for package in MODULES for name in MODULES[package]}
+    for found in walk_packages(programs.__path__, f"{programs.__name__}."):
+        module = import_module(found.name)
+        if hasattr(module, "main") and not found.name.endswith("__main__"):
+            assert found.name in known
 
 
 @pytest.mark.parametrize(

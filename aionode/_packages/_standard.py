@@ -35,7 +35,9 @@ MODULES: Final[dict[str, dict[str, str]]] = {
     },
     "topic_tools": {
         name: f"_{name}"
-        for name in ("delay", "demux", "drop", "mux", "relay", "throttle", "transform")
+        for name in (
+            *("delay", "demux", "drop", "mux", "relay", "relay_field", "throttle", "transform"),
+        )
     },
     "turtlesim": {
         "draw_square": "_turtlesim.draw_square",

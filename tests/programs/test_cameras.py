@@ -209,7 +209,7 @@ def test_what_is_no_calibration_is_one_error(text: str) -> None:
 @pytest.mark.parametrize(
     ("kind", "parameters", "text"),
     [
-        (UsbCam, {"video_device": "/dev/video77"}, "is '/dev/video77', which is not there"),
+        (UsbCam, {"video_device": "/dev/video77"}, "video_device '/dev/video77' does not exist"),
         (UsbCam, {"pixel_format": "test"}, "pixel_format is 'test'; yuyv, yuyv2rgb"),
         (UsbCam, {"framerate": 0.0}, "numbers above 0 fit"),
         (V4L2Camera, {"image_size": [640]}, "Invalid image size"),

@@ -95,6 +95,7 @@ class Republisher(Node):
             raise CommandError(
                 "compressed images need Pillow, which is not installed: pip install pillow"
             )
+        self.topic = topic_of(self, "in", self.source)
         self.warned = ""
         self.format = "jpeg"
         if "compressed" in transports:
@@ -132,9 +133,8 @@ class Republisher(Node):
         """Listen while somebody listens."""
         is_wanted = any(each.get_subscription_count() for each in self.outputs.values())
         if is_wanted and self.input is None:
-            topic = topic_of(self, "in", self.source)
             self.input = self.create_subscription(
-                INPUTS[self.source], topic, self.on_image, 10, offload=True
+                INPUTS[self.source], self.topic, self.on_image, 10, offload=True
             )
         elif not is_wanted and self.input is not None:
             self.input.destroy()

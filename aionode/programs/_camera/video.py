@@ -65,8 +65,8 @@ def check_device(path: str) -> None:
     if not Path(path).exists():
         there = sorted(str(each) for each in Path("/dev").glob("video*"))
         raise CommandError(
-            f"video_device is {path!r}, which is not there; "
-            f"{', '.join(there) or 'no camera'} is, and a file of a video fits as well"
+            f"video_device {path!r} does not exist; cameras here: {', '.join(there) or 'none'}; "
+            "the path of a video file fits as well"
         )
     try:
         import av  # noqa: F401  # only whether it is there

@@ -57,8 +57,8 @@ def input_devices() -> Iterator[Device]:
         import evdev
     except ModuleNotFoundError:
         raise CommandError(
-            "joysticks are read by the package evdev, which is not installed: pip install "
-            "'aionode[joy]'; Linux has them, other systems have not"
+            "joysticks need the package evdev, which is not installed: pip install "
+            "'aionode[joy]'; it exists for Linux only"
         ) from None
     paths = evdev.list_devices()
     for path in sorted(paths, key=lambda path: (len(path), path)):
