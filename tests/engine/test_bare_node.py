@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from aionode import Context, Node
+from aionode.clock import Duration
 from aionode.engine.bare_node import BareNode
 from aionode.engine.transport.base import SampleInfo
 from aionode.engine.wire import cdr
@@ -236,6 +237,20 @@ async def test_a_publisher_says_that_it_is_alive(context: Context) -> None:
         publisher.assert_liveliness()
 
         assert reader.alive == [publisher.endpoint.gid]
+
+
+async def test_a_publisher_keeps_no_message_longer_than_its_lifespan(context: Context) -> None:
+    """Of a hundred large ones for late subscriptions, those that have expired only take memory."""
+    profile = TEN.replace(depth=100, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    async with context:
+        node = BareNode(context, "bare")
+        limited = profile.replace(lifespan=Duration(seconds=1))
+        publisher = node.create_publisher(String, "/words", limited)
+        for number in range(5):
+            publisher.publish(String(data=str(number)), (number + 1) * 600_000_000)
+        reader = Kept()
+        node.create_subscription(String, "/words", profile, reader)
+        assert [message.data for message in reader.messages] == ["3", "4"]
 
 
 class Answers:

@@ -79,7 +79,7 @@ def compare(
         a: The outputs of a run, a bag or its path, or records.
         b: What to compare it with.
         tolerance: Allowed difference of numbers: for all, by topic, or by topic and field, such as
-        ``{"/cmd_vel": 1e-6, "/odom pose.pose.position.x": 0.01}``. NaN equals NaN.
+            ``{"/cmd_vel": 1e-6, "/odom pose.pose.position.x": 0.01}``. NaN equals NaN.
         time_tolerance_sec: Allowed difference between the times of two messages, in seconds.
         limit: Maximum number of differences to list per topic.
 

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from aionode.engine.rules.lifespan import NEVER_NS
 from aionode.engine.transport.base import (
     Registration,
     Request,
@@ -22,7 +23,7 @@ from aionode.engine.transport.base import (
 )
 from aionode.errors import ServiceError
 from aionode.message import snapshotter
-from aionode.qos import DurabilityPolicy, depth_of, keeps_all
+from aionode.qos import DurabilityPolicy, depth_of, is_unlimited, keeps_all
 
 if TYPE_CHECKING:
     from aionode.engine.transport.base import Call, Reader, ReplyTo, Serve
@@ -176,6 +177,7 @@ class LocalWriter(Writer):
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
             self._history = deque(maxlen=depth_of(qos))
+        self._lifespan_ns = NEVER_NS if is_unlimited(qos.lifespan) else qos.lifespan.nanoseconds
         self.active = self._history is not None
         self.bounded = False
 
@@ -208,9 +210,17 @@ class LocalWriter(Writer):
         """Give one snapshot of `msg` to all."""
         snapshot = self._snapshot(msg)
         if self._history is not None:
-            self._history.append((snapshot, sequence, source_ns))
+            self._keep(self._history, snapshot, sequence, source_ns)
         for deliver in self._deliveries:
             deliver(snapshot, self._gid, sequence, source_ns)
+
+    def _keep(
+        self, history: deque[tuple[Any, int, int]], msg: Any, sequence: int, source_ns: int
+    ) -> None:
+        """Keep a message for late readers, and those before it that have not expired."""
+        while history and source_ns - history[0][2] >= self._lifespan_ns:
+            history.popleft()
+        history.append((msg, sequence, source_ns))
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # it reaches all
         """Return what sends the stop of a lease."""
@@ -222,7 +232,7 @@ class LocalWriter(Writer):
         To others it is the newest message, which no full queue drops.
         """
         if self._history is not None:
-            self._history.append((stop, sequence, source_ns))
+            self._keep(self._history, stop, sequence, source_ns)
         for reader, deliver in list(self._matched.items()):
             if reader.bounded and not reader.reader.has_room():
                 reader.reader.when_room(partial(deliver, stop, self._gid, sequence, source_ns))

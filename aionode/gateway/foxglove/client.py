@@ -145,6 +145,7 @@ class Client:
             self._refuse(error)
             return
         try:
+            await self._lanes.admit(frame)
             await self._begin(asked)
         except MessageError as error:  # too much is under way
             self._refuse(error)

@@ -102,7 +102,13 @@ class Client:
     async def take(self, frame: str | bytes) -> None:
         """Begin the op in a frame."""
         try:
-            op = self._op_of(frame)
+            await self._lanes.admit(frame)
+        except MessageError as error:
+            self._link.session.rights.refused += 1
+            self._link.fail(error, head_of(frame))
+            return
+        try:
+            op = await self._op_of(frame)
         except MessageError as error:
             self.malformed += 1
             self._link.session.rights.refused += 1
@@ -111,7 +117,7 @@ class Client:
             if op is not None:
                 await self._begin(op)
 
-    def _op_of(self, frame: str | bytes) -> Op | None:
+    async def _op_of(self, frame: str | bytes) -> Op | None:
         """Return the op in a frame; None if the frame is a fragment, and others are missing.
 
         Raises:
@@ -123,6 +129,7 @@ class Client:
         whole = self._fragments.add(op)
         if whole is None:
             return None
+        await self._lanes.admit(whole)
         op = op_of(whole, self._most_parts)
         if op["op"] == "fragment":
             raise MessageError("fragment.data", "has fragments in it")

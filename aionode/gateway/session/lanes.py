@@ -10,10 +10,19 @@ from typing import Final
 from aionode._process.concurrency import checkpoint
 from aionode.errors import MessageError
 
-__all__ = ["Lanes"]
+__all__ = ["Lanes", "weight_of"]
 
 MOST_WAITING: Final = 100
 """Ops of one lane that may wait."""
+
+MOST_WEIGHT: Final = 8 << 20
+"""Bytes that the waiting and running ops of a client may take; one alone may take more."""
+
+PART_BYTES: Final = 64
+"""Bytes that an object or list of JSON takes besides those of its text, at least."""
+
+PATIENCE_SEC: Final = 1.0
+"""Time for which a frame waits for room; meanwhile its client is not read."""
 
 MOST_TASKS: Final = 1000
 """Calls, goals and lanes of one client that may run; the policy limits the first two, too."""
@@ -30,8 +39,37 @@ class Lanes:
 
     def __init__(self, tasks: asyncio.TaskGroup) -> None:
         self._tasks = tasks
-        self._lanes: dict[Hashable, deque[Callable[[], Awaitable[None]]]] = {}
+        self._lanes: dict[Hashable, deque[tuple[Callable[[], Awaitable[None]], int]]] = {}
         self._running: set[asyncio.Task[None]] = set()
+        self._weight = self._next_weight = 0
+        self._has_room = asyncio.Event()
+
+    async def admit(self, frame: str | bytes) -> None:
+        """Wait until there is room in memory for the ops of a frame, which are put or started next.
+
+        Raises:
+            MessageError: there is none, as earlier ops take long.
+        """
+        weight = weight_of(frame)
+        try:
+            async with asyncio.timeout(PATIENCE_SEC):
+                while self._weight and self._weight + weight > MOST_WEIGHT:
+                    self._has_room.clear()
+                    await self._has_room.wait()
+        except TimeoutError:
+            problem = f"its earlier ops take {self._weight} bytes; wait for them, or send smaller"
+            raise MessageError("client", problem) from None
+        self._next_weight = weight
+
+    def _taken_weight(self) -> int:
+        """Count the weight of the last frame, for the first of its ops."""
+        weight, self._next_weight = self._next_weight, 0
+        self._weight += weight
+        return weight
+
+    def _release(self, weight: int) -> None:
+        self._weight -= weight
+        self._has_room.set()
 
     async def put(self, lane: Hashable, work: Callable[[], Awaitable[None]]) -> None:
         """Run `work` after the earlier work of the same lane.
@@ -46,10 +84,10 @@ class Lanes:
         if waiting is None:
             if len(self._running) >= MOST_TASKS:
                 await checkpoint()  # those of a burst may have nothing to wait for
-            self.start(lambda: self._run(lane))
-            self._lanes[lane] = deque([work])
+            self._begin(lambda: self._run(lane))
+            self._lanes[lane] = deque([(work, self._taken_weight())])
         elif len(waiting) < MOST_WAITING:
-            waiting.append(work)
+            waiting.append((work, self._taken_weight()))
         else:
             raise MessageError("client", f"{MOST_WAITING} ops wait for an earlier one; send fewer")
 
@@ -59,6 +97,12 @@ class Lanes:
         Raises:
             MessageError: too many tasks are running.
         """
+        task = self._begin(work)
+        weight = self._taken_weight()
+        task.add_done_callback(lambda _: self._release(weight))
+        return task
+
+    def _begin(self, work: Callable[[], Awaitable[None]]) -> asyncio.Task[None]:
         if len(self._running) >= MOST_TASKS:
             raise MessageError("client", f"{MOST_TASKS} ops are under way; wait for their ends")
 
@@ -79,8 +123,23 @@ class Lanes:
         waiting = self._lanes[lane]
         try:
             while waiting:
-                await waiting[0]()
-                waiting.popleft()
+                work, weight = waiting[0]
+                try:
+                    await work()
+                finally:
+                    waiting.popleft()
+                    self._release(weight)
+                del work  # so that the values of its op do not wait with the lane
                 await checkpoint()  # the work of many small ops in one burst
         finally:
             del self._lanes[lane]
+            self._release(sum(weight for _, weight in waiting))
+
+
+def weight_of(frame: str | bytes) -> int:
+    """Return about how many bytes the values in a frame take if it is JSON."""
+    if isinstance(frame, bytes):
+        parts = frame.count(b"{") + frame.count(b"[")
+    else:
+        parts = frame.count("{") + frame.count("[")
+    return len(frame) + PART_BYTES * parts
