@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Offer what a robot can do as tools, to a loop with any language model.
+"""Offer what a robot can do as tools to a language model of any kind.
 
 Here lines of JSON stand for the model: ``{"tool": "call_add_two_ints", "input": {"a": 1}}`` from
 standard input, and the results go to standard output, after a line with the tools.
@@ -20,14 +20,14 @@ from aionode.message import documentation, from_builtins, json_schema, summarize
 
 
 class Tool(NamedTuple):
-    """What a model is told of a tool, and the function that does it."""
+    """The description of a tool for a model, and the function that runs it."""
 
     definition: dict[str, Any]
     run: Callable[[dict[str, Any]], Awaitable[dict[str, Any]]]
 
 
 async def tools_of(node: Node) -> dict[str, Tool]:
-    """Return a tool for each service and action of the robot, and for the newest of each topic."""
+    """Return a tool for each service and action, and one for the next message of each topic."""
     tools: dict[str, Tool] = {}
     offered = node.graph.offered()
 
@@ -52,12 +52,12 @@ async def tools_of(node: Node) -> dict[str, Tool]:
 
 
 def described(interface: Any, asked: Any) -> tuple[str, dict[str, Any]]:
-    """Return what a type says of itself, and the schema of what it is asked with."""
+    """Return the description of a type, and the JSON schema of its request, goal or message."""
     return documentation(interface)[0], json_schema(asked)
 
 
 def answering(client: Any, asked: Any) -> Any:
-    """Return what calls a service, or executes a goal, with values of a model."""
+    """Return a function that calls a service or executes a goal with a model's values."""
 
     async def run(given: dict[str, Any]) -> dict[str, Any]:
         async with asyncio.timeout(30):  # which cancels a goal
@@ -67,7 +67,7 @@ def answering(client: Any, asked: Any) -> Any:
 
 
 def reading(node: Node, message: Any, topic: str) -> Any:
-    """Return what waits for the next message of a topic."""
+    """Return a function that waits for the next message of a topic."""
 
     async def run(_: dict[str, Any]) -> dict[str, Any]:
         subscription = node.create_subscription(message, topic)
@@ -81,7 +81,7 @@ def reading(node: Node, message: Any, topic: str) -> Any:
 
 
 async def answer(tools: dict[str, Tool], asked: dict[str, Any]) -> dict[str, Any]:
-    """Run a tool; what goes wrong is told in words that a model can mend it from."""
+    """Run a tool; an error is returned as a text from which the model can correct its input."""
     if asked.get("tool") not in tools:
         return {"error": f"there is no tool {asked.get('tool')!r}; there are {', '.join(tools)}"}
     try:
@@ -91,7 +91,7 @@ async def answer(tools: dict[str, Tool], asked: dict[str, Any]) -> dict[str, Any
 
 
 async def lines_of_model() -> asyncio.StreamReader:
-    """Return the lines of standard input: here a program asks the model."""
+    """Return the lines of standard input; a real program would query the model here."""
     reader, loop = asyncio.StreamReader(), asyncio.get_running_loop()
     await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(reader), sys.stdin)
     return reader

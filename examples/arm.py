@@ -33,7 +33,7 @@ URDF = Path(__file__).with_name("arm.urdf")
 
 @dataclass(frozen=True)
 class Joint:
-    """One joint of a URDF: where it sits in its parent, and around which axis it turns."""
+    """One joint of a URDF: where it sits in its parent, and the axis around which it turns."""
 
     name: str
     parent: str
@@ -43,7 +43,7 @@ class Joint:
     is_fixed: bool
 
     def transform(self, angle: float, header: Header) -> TransformStamped:
-        """Return how the child lies in the parent while the joint stands at an angle."""
+        """Return the pose of the child in the parent when the joint is at an angle."""
         half, (x, y, z) = angle / 2, self.axis
         return TransformStamped(
             header=Header(stamp=header.stamp, frame_id=self.parent),
@@ -56,7 +56,7 @@ class Joint:
 
 
 def joints_of(urdf: Path) -> list[Joint]:
-    """Return the joints of a robot's description."""
+    """Return the joints of a robot description."""
     found: list[Joint] = []
     # Those of transmissions and sensors, deeper in the file, only name joints.
     for joint in ET.parse(urdf).getroot().findall("joint"):  # noqa: S314  # our own file
@@ -75,7 +75,7 @@ def joints_of(urdf: Path) -> list[Joint]:
 
 
 def unit(axis: tuple[float, ...]) -> tuple[float, ...]:
-    """Return an axis with the length 1, which a URDF need not give it."""
+    """Return an axis normalized to length 1, since a URDF may give any length."""
     length = hypot(*axis)
     return tuple(part / length for part in axis) if length else axis
 
@@ -86,7 +86,7 @@ def numbers(text: str) -> tuple[float, ...]:
 
 
 class Joints(Node):
-    """Swings all joints, and says on /joint_states where they are."""
+    """Swings all joints, and publishes their positions on /joint_states."""
 
     def __init__(self) -> None:
         super().__init__("joints")
@@ -107,7 +107,7 @@ class Joints(Node):
 
 
 class RobotState(Node):
-    """Turns the angles of joints into transforms: those of fixed joints once, others each time."""
+    """Turns joint angles into transforms: those of fixed joints once, the others each time."""
 
     def __init__(self) -> None:
         super().__init__("robot_state")
@@ -120,7 +120,7 @@ class RobotState(Node):
         self.create_subscription(JointState, "joint_states", self.on_joints, 10)
 
     def on_joints(self, msg: JointState) -> None:
-        """Publish where the links are."""
+        """Publish the transforms of the links."""
         self.broadcaster.sendTransform(
             [
                 self.joints[name].transform(float(angle), msg.header)
@@ -131,7 +131,7 @@ class RobotState(Node):
 
 
 async def find_gripper() -> None:
-    """Await the gripper in the map, now and as it moves."""
+    """Await the pose of the gripper in the map, now and as it moves."""
     async with Joints(), RobotState(), Node("gripper_finder") as node:
         buffer = Buffer(node)
         found = await buffer.wait_for_transform("map", "gripper", timeout_sec=5.0)

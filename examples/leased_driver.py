@@ -1,4 +1,4 @@
-"""Drive with a lease: the wheels stop however this program ends, and when it stands still.
+"""Drive with a lease: the wheels stop however this program ends, and when it hangs.
 
 Run it with ``python examples/leased_driver.py``, and the wheels with ``python examples/wheels.py``.
 """
@@ -17,7 +17,7 @@ class Driver(Node):
         self.start = self.create_timer(0.0, self.drive)
 
     async def drive(self) -> None:
-        """Drive; the stop goes out when the block ends, or after 0.3 s without a command."""
+        """Drive; the stop is sent when the block ends, or after 0.3 s without a command."""
         self.start.cancel()
         async with self.cmd_vel.lease(stop=Twist(), ttl_sec=0.3) as lease:
             async for _ in self.create_rate(20):

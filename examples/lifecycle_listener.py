@@ -1,4 +1,4 @@
-"""ROS 2's listener to a managed talker: to what it says, and to its transitions."""
+"""ROS 2's listener to a managed talker: to its messages, and to its transitions."""
 
 import aionode
 from aionode import Node
@@ -7,7 +7,7 @@ from aionode.interfaces.std_msgs.msg import String
 
 
 class LifecycleListener(Node):
-    """Hears `lifecycle_talker.py`."""
+    """Listens to `lifecycle_talker.py`."""
 
     def __init__(self) -> None:
         super().__init__("lc_listener")

@@ -22,7 +22,7 @@ STEPS = (
 
 
 async def manage() -> None:
-    """Ask for one transition after the other, and say which state the talker is in then."""
+    """Request one transition after another, and print the state of the talker after each."""
     async with Node("lc_client") as node:
         pause_s = node.declare_parameter("pause", 1.0).value
         manager = LifecycleManager(node, ["/lc_talker"])

@@ -31,7 +31,7 @@ class LifecycleTalker(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: State) -> TransitionCallbackReturn:
-        """Publish no more."""
+        """Stop publishing."""
         self.get_logger().info("on_deactivate() is called.")
         super().on_deactivate(state)
         return TransitionCallbackReturn.SUCCESS
@@ -51,7 +51,7 @@ class LifecycleTalker(LifecycleNode):
         return TransitionCallbackReturn.SUCCESS
 
     def say(self) -> None:
-        """Publish one greeting; while the node is not active it is discarded."""
+        """Publish one greeting, which is discarded while the node is not active."""
         self.count += 1
         text = f"Lifecycle HelloWorld #{self.count}"
         if self.publisher.is_activated:

@@ -16,7 +16,7 @@ def program(name: str) -> PathJoinSubstitution:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Return what is started, and with which parameters."""
+    """Return the programs to start, with their parameters."""
     driver = Node(
         executable=program("driver.py"),
         name="driver",

@@ -1,4 +1,4 @@
-"""A robot of four processes, started, watched and stopped as one thing.
+"""A robot of four processes, started, supervised and stopped as one unit.
 
 Run it with ``python examples/robot_system.py``; Ctrl-C stops the wheels and leaves nothing behind.
 From a second terminal, ``aionode system status`` shows the same table, and ``aionode system restart
@@ -18,7 +18,7 @@ FOLDER = Path(__file__).parent
 
 
 class Battery(Node):
-    """Tells once a second what is left."""
+    """Publishes the remaining charge once a second."""
 
     def __init__(self) -> None:
         super().__init__("battery")
@@ -27,7 +27,7 @@ class Battery(Node):
         self.create_timer(1.0, self.measure)
 
     def measure(self) -> None:
-        """Publish what is left, as a part of what it was when it was full."""
+        """Publish the remaining charge as a fraction of a full one."""
         self.left -= 0.01
         self.publisher.publish(BatteryState(percentage=self.left))
 
@@ -40,7 +40,7 @@ class Watch(Node):
         self.create_subscription(BatteryState, "/battery", self.look, 10)
 
     def look(self, battery: BatteryState) -> None:
-        """Log what is left."""
+        """Log the remaining charge."""
         log = self.get_logger()
         (log.info if battery.percentage > 0.2 else log.warning)(
             f"battery: {battery.percentage:.0%}"
@@ -48,7 +48,7 @@ class Watch(Node):
 
 
 async def robot(system: System) -> None:
-    """Start the robot; the driver may move it when the wheels are there, and stops before them."""
+    """Start the robot; the driver starts after the wheels are ready, and stops before them."""
     wheels, driver = (
         [sys.executable, str(FOLDER / name)] for name in ("wheels.py", "leased_driver.py")
     )

@@ -57,7 +57,7 @@ class Settings(msgspec.Struct):
 
 
 class Robot(Node):
-    """Drives over a floor of tiles, and sees them."""
+    """Drives over a floor of tiles, and shows them with a camera."""
 
     def __init__(self, context: Context | None = None) -> None:
         super().__init__("robot", context=context)
@@ -81,7 +81,7 @@ class Robot(Node):
         self.show(0.0, 0.0)
 
     def show(self, speed: float, turn: float) -> None:
-        """Drive at a speed in m/s and rad/s, and log when it begins and ends."""
+        """Drive at a speed in m/s and rad/s, and log when the robot starts and stops."""
         if (speed, turn) == (0.0, 0.0) != (self.speed, self.turn):
             self.get_logger().info(f"Stopped at {self.x:.2f}, {self.y:.2f}")
         elif (self.speed, self.turn) == (0.0, 0.0) != (speed, turn):
@@ -103,7 +103,7 @@ class Robot(Node):
         self.odometry.publish(message)
 
     def look(self) -> None:
-        """Publish a picture of the tiles ahead."""
+        """Publish an image of the tiles ahead."""
         if not self.settings.camera:
             return
         row, column = np.mgrid[0:120, 0:160]
@@ -119,7 +119,7 @@ class Robot(Node):
         )
 
     def reset(self, _request: Trigger.Request) -> Trigger.Response:
-        """Put the robot back to where it began."""
+        """Move the robot back to its start."""
         self.x = self.y = self.heading = 0.0
         self.get_logger().warn("The robot was put back")
         return Trigger.Response(success=True, message="back at 0, 0")

@@ -37,7 +37,7 @@ class Wheels(Node):
             self.set_motors(msg.linear.x)
 
     def stop(self) -> None:
-        """Stop: nobody has moved the wheels for 0.3 s, or whoever did has gone."""
+        """Stop: no command for 0.3 s, or the publisher of the last one is gone."""
         self.set_motors(0.0)
 
     def hold(self, _msg: Empty) -> None:
@@ -58,7 +58,7 @@ class Wheels(Node):
             self.set_motors(0.0)
 
     def set_motors(self, speed: float) -> None:
-        """Tell the motors; here they are the log."""
+        """Set the speed of the motors, which this example only logs."""
         self.get_logger().info(f"Motors: {speed:.1f} m/s")
 
 

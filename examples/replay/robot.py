@@ -1,4 +1,4 @@
-"""A robot of four nodes, a recording of its sensors, and its run on that recording in stepped time.
+"""A robot of four nodes, a recording of its sensors, and a run on that recording in stepped time.
 
 ``python examples/replay/robot.py`` writes a recording of 60 s, runs the nodes on it, and prints
 how many messages each topic got, and the digest of all of them. The digest is the same each time.
@@ -27,7 +27,7 @@ OUTPUTS = ["/cmd_vel", "/tf", "/report", "/count/_action/feedback"]
 
 
 class Odometry(Node):
-    """Adds up accelerations, and broadcasts where the robot is."""
+    """Integrates accelerations, and broadcasts the pose of the robot."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("odometry", **options)
@@ -36,7 +36,7 @@ class Odometry(Node):
         self.create_subscription(Imu, "/imu", self.on_imu, 10)
 
     def on_imu(self, msg: Imu) -> None:
-        """Move on by 10 ms."""
+        """Advance by 10 ms."""
         self.speed += 0.01 * msg.linear_acceleration.x
         self.x += 0.01 * self.speed
         transform = TransformStamped(child_frame_id="base_link")
@@ -59,11 +59,11 @@ class Driver(Node):
         self.create_timer(0.02, self.drive)
 
     def on_goal(self, msg: Float64) -> None:
-        """Take a new goal."""
+        """Accept a new goal."""
         self.goal = msg.data
 
     def drive(self) -> None:
-        """Publish a command once the robot knows where it is."""
+        """Publish a command once the pose of the robot is known."""
         try:
             pose = self.buffer.lookup_transform("odom", "base_link", Time())
         except TransformException:
@@ -75,14 +75,14 @@ class Driver(Node):
 
 
 class Counting(Node):
-    """Serves an action that takes a while."""
+    """Serves an action that takes some time."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("counting", **options)
         self.create_action_server(Fibonacci, "/count", self.execute)
 
     async def execute(self, goal: Any) -> Fibonacci.Result:
-        """Compute one number each 50 ms."""
+        """Compute one number every 50 ms."""
         sequence = [0, 1]
         for _ in range(goal.request.order):
             await self.get_clock().sleep(0.05)
@@ -93,7 +93,7 @@ class Counting(Node):
 
 
 class Mission(Node):
-    """Sends a goal each second, works on the result in a thread, and reports."""
+    """Sends a goal every second, processes the result in a thread, and reports it."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("mission", **options)
@@ -102,7 +102,7 @@ class Mission(Node):
         self.create_timer(1.0, self.report)
 
     async def report(self) -> None:
-        """Report the sum of a result, and when it came."""
+        """Report the sum of a result, and when it arrived."""
         result = await self.client.call(Fibonacci.Goal(order=5))
         total = await asyncio.to_thread(sum, result.sequence.tolist())
         seconds = self.get_clock().now().nanoseconds / 1e9
