@@ -256,6 +256,19 @@ async def test_an_assistant_is_who_it_is_started_as(node: Any) -> None:
         Assistant(node, strangers).identity()
 
 
+async def test_a_name_that_the_policy_knows_no_more_is_refused(era: str) -> None:
+    """A policy may change while the program is connected."""
+    async with bench_of(POLICY, name="model") as bench:
+        client = await bench.connect(era)
+        await client.call_tool("list", {})
+        bench.use('[[who]]\nname = "b"\nloopback = true\n')
+        refused = await client.call_tool("list", {})
+
+        assert refused.structured_content["code"] == "unauthorized"
+        with pytest.raises(mcp.MCPError, match="no \\[\\[who\\]\\]"):
+            await client.list_tools(cache_mode="bypass")
+
+
 async def test_a_gateway_without_assistants_has_no_path_for_them(node: Any) -> None:
     """It has to be asked for."""
     async with Gateway(node, port=0) as gateway, httpx.AsyncClient(trust_env=False) as http:

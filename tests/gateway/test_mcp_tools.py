@@ -5,12 +5,15 @@ from __future__ import annotations
 import asyncio
 import json
 import re
+from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from aionode.bag import BagWriter
+from aionode.clock import Time
 from aionode.gateway.mcp.answers import MOST_BYTES, bounded
 from aionode.gateway.mcp.names import MOST_CHARACTERS, tool_name
 from aionode.gateway.mcp.tools import MOST_TYPED
@@ -244,6 +247,24 @@ async def test_many_services_have_one_tool(era: str) -> None:
 
     assert names[-2:] == ["call", "do"]
     assert response["response"]["value"] == {"success": False, "message": ""}
+
+
+async def test_a_recording_is_summed_up(era: str, tmp_path: Path) -> None:
+    """Only those of the folder: no path leads out of it."""
+    with BagWriter(tmp_path / "bags/run") as writer:
+        for number in range(3):
+            writer.write_message("/text", String(data="x"), Time(nanoseconds=number * 10**9))
+    (tmp_path / "secret").mkdir()
+    async with bench_of(bags=str(tmp_path / "bags")) as bench:
+        client = await bench.connect(era)
+        listed = await answered(client, "bag")
+        summary = await answered(client, "bag", name="run")
+        assert "no such bag" in await refused(client, "bag", name="../secret")
+        assert "did you mean run?" in await refused(client, "bag", name="ran")
+
+    assert listed["bags"] == ["run"]
+    assert summary["topics"] == {"/text": {"type": "std_msgs/msg/String", "messages": 3}}
+    assert summary["seconds"] == 2.0
 
 
 # Laws

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Self
 from mcp.server.stdio import stdio_server
 
 from aionode._process.concurrency import to_the_end
-from aionode.errors import ConfigurationError
+from aionode.errors import ConfigurationError, RefusedError
 from aionode.gateway._clients import Clients
 from aionode.gateway.mcp.server import McpServer
 from aionode.gateway.policy.identity import Credentials, Identity
@@ -65,7 +65,7 @@ class Assistant:
         self._name = name
         if name:
             self.identity()
-        self._mcp = McpServer(self.clients, self.identity, about, bags)
+        self._mcp = McpServer(self.clients, self._client, about, bags)
 
     @property
     def server(self) -> Any:
@@ -88,6 +88,17 @@ class Assistant:
         raise ConfigurationError(
             "assistant's name", self._name, f"no [[who]] of the policy has it; there is {known}"
         )
+
+    def _client(self) -> Identity:
+        """Return who the client of a request is.
+
+        Raises:
+            RefusedError: the policy, which may have changed, does not know it.
+        """
+        try:
+            return self.identity()
+        except ConfigurationError as error:
+            raise RefusedError("client", str(error), "unauthorized") from error
 
     async def __aenter__(self) -> Self:
         """Begin; clients are served from now on.

@@ -165,7 +165,7 @@ class McpServer:
     async def _list_tools(
         self, context: Any, _params: types.PaginatedRequestParams | None
     ) -> types.ListToolsResult:
-        async with self.session(context) as session:
+        async with self._asked(context) as session:
             await session.graph.turn()
             tools = await self._tools.of(session)
         self.events.note(context)
