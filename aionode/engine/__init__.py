@@ -1,1 +1,1 @@
-"""One participant of a ROS 2 system: what asyncio's nodes and programs of rclpy stand on."""
+"""One participant in a ROS 2 system: what asyncio nodes and rclpy programs are built on."""

@@ -1,16 +1,16 @@
 """Nodes and endpoints without callbacks, queues and tasks, for other APIs over aionode.
 
 A `BareNode` is a node in the graph and nothing else: no parameters, services, log or clock. Its
-endpoints hand what arrives to functions of yours, and send what you give them. Together with
+endpoints pass what arrives to your functions, and send what you give them. Together with
 `aionode.message.serialized`, which leaves messages in their encoded form, they carry the messages
 of programs that have message classes, threads and queues of their own.
 
-Everything here belongs to the thread of the context's event loop, in which the context has been
-opened with ``async with``: make, use and destroy it there. Only the functions and objects that you
-give are called back, in that thread as well; they never wait. Where a loop is lent to other
-threads, as aionode's own for programs of rclpy, the borrower may send, too: messages, requests and
-responses, with `BarePublisher.publish`, `BarePublisher.publish_elsewhere`, `BareClient.send`,
-`BareCall.cancel` and the methods of `Request`.
+Everything here belongs to the thread of the context's event loop, where the context was opened with
+``async with``: create, use and destroy it there. Your functions and objects are called in that
+thread as well, and must not block. Where a loop is lent to other threads, as aionode's own is for
+rclpy programs, the borrower may also send messages, requests and responses, with
+`BarePublisher.publish`, `BarePublisher.publish_elsewhere`, `BareClient.send`, `BareCall.cancel` and
+the methods of `Request`.
 """
 
 from __future__ import annotations
@@ -46,10 +46,10 @@ __all__ = ["BareCall", "BareClient", "BareEndpoint", "BareNode", "BarePublisher"
 
 
 class BareEndpoint:
-    """One endpoint of a bare node: announced from the beginning until `destroy`.
+    """One endpoint of a bare node, announced from its creation until `destroy`.
 
     Attributes:
-        endpoint: What the graph knows of it, with its resolved QoS.
+        endpoint: Its entry in the graph, with its resolved QoS.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class BareEndpoint:
         self._registrations = registrations
 
     def matched(self) -> list[EndpointInfo]:
-        """Return the endpoints of the opposite kind that this one communicates with now."""
+        """Return the endpoints of the opposite kind that this one currently communicates with."""
         endpoint = self.endpoint
         others = self._node.context.graph.endpoints(endpoint.kind.opposite, name=endpoint.name)
         return [other for other in others if endpoint.matches(other)]
@@ -77,7 +77,7 @@ class BarePublisher(BareEndpoint):
     """A publisher of a bare node.
 
     Attributes:
-        published: How many messages it has sent.
+        published: Number of messages sent.
     """
 
     def __init__(self, node: BareNode, endpoint: EndpointInfo, writers: Sequence[Writer]) -> None:
@@ -91,7 +91,7 @@ class BarePublisher(BareEndpoint):
         """Send a message to every matched subscription.
 
         Args:
-            msg: An object of the class that the publisher was made with.
+            msg: An object of the class that the publisher was created with.
             source_ns: When it was published, in nanoseconds since 1970.
 
         Raises:
@@ -104,20 +104,20 @@ class BarePublisher(BareEndpoint):
             self.publish_elsewhere(msg, sample_info)
 
     def publish_here(self, msg: Any, source_ns: int) -> SampleInfo | None:
-        """Send a message to the subscriptions of this context only, whose readers get it at once.
+        """Send a message to the subscriptions of this context only, and deliver it immediately.
 
-        Any thread may call it, one at a time, and not while a subscription is made in the
-        context; the readers have to expect that thread.
+        Any thread may call it, but only one at a time, and not while a subscription is being
+        created in the context; the readers must expect that thread.
 
         Args:
-            msg: An object of the class that the publisher was made with.
+            msg: An object of the class that the publisher was created with.
             source_ns: When it was published, in nanoseconds since 1970.
 
         Returns:
-            What `publish_elsewhere` takes; None if no other context has to get the message.
+            The argument for `publish_elsewhere`; None if no other context needs the message.
 
         Raises:
-            QueueFullError: as `publish`.
+            QueueFullError: as for `publish`.
         """
         for writer in self._here:
             if writer.bounded and not writer.has_room():
@@ -135,8 +135,8 @@ class BarePublisher(BareEndpoint):
     def publish_elsewhere(self, msg: Any, sample_info: SampleInfo) -> None:
         """Send a message to other contexts, after `publish_here`; in the thread of the loop.
 
-        Messages have to come in their order. A link takes the message at once, unless its socket
-        is full or the subscription's window used up: then it waits for the loop.
+        Messages must be passed in order. A link takes the message immediately, unless its socket is
+        full or the subscription's window is used up; then the message waits for the loop.
         """
         for writer in self._elsewhere:
             if writer.active:
@@ -148,7 +148,7 @@ class BarePublisher(BareEndpoint):
             writer.assert_liveliness()
 
     async def drain(self) -> None:
-        """Wait until every reliable KEEP_ALL subscription has room and nothing is left to send."""
+        """Wait until all reliable KEEP_ALL subscriptions have room and nothing is left to send."""
         for writer in self._writers:
             await writer.drain()
 
@@ -157,7 +157,7 @@ class BareClient(BareEndpoint):
     """A client of a bare node.
 
     Attributes:
-        calls: How many requests it has sent; the number of the last one.
+        calls: Number of requests sent, which is the number of the last one.
     """
 
     def __init__(
@@ -169,7 +169,7 @@ class BareClient(BareEndpoint):
 
     @property
     def servers(self) -> int:
-        """The number of servers that are matched now."""
+        """The number of servers currently matched."""
         return sum(requester.servers for requester in self._requesters)
 
     def send(
@@ -179,14 +179,14 @@ class BareClient(BareEndpoint):
         on_reply: Callable[[Any], None],
         on_error: Callable[[ServiceError | None], None],
     ) -> BareCall:
-        """Send a request to every matched server; exactly one of the functions is called, once.
+        """Send a request to every matched server; exactly one of the callbacks is called, once.
 
         Args:
-            request: An object of the request class that the client was made with.
+            request: An object of the request class that the client was created with.
             source_ns: When it was sent, in nanoseconds since 1970.
-            on_reply: Called with the first response, which may be before this returns.
+            on_reply: Called with the first response, possibly before this method returns.
             on_error: Called with the error that a server sent instead, or with None if no matched
-                server is left that could answer. Without any server neither function is called.
+                server is left that could answer. If there is no server at all, neither is called.
 
         Raises:
             MessageError: a value does not fit its field; nothing was sent.
@@ -206,11 +206,11 @@ class BareClient(BareEndpoint):
 
 
 class BareCall:
-    """A request under way; `cancel` forgets it. For transports it is the `ReplyTo`.
+    """A pending request; `cancel` forgets it. Transports see it as the `ReplyTo`.
 
     Attributes:
         calls: The request in each transport.
-        open: How many of them may still be answered.
+        open: Number of transports that may still answer.
     """
 
     def __init__(
@@ -225,25 +225,25 @@ class BareCall:
         self._finished = False
 
     def cancel(self) -> None:
-        """Forget the request: no function is called, and a server need not begin with it."""
+        """Forget the request: no callback is called, and a server need not start serving it."""
         self._finished = True
         for call in self.calls:
             call.cancel()
 
     def reply(self, response: Any, sample_info: SampleInfo) -> None:  # noqa: ARG002  # part of ReplyTo
-        """Take a response."""
+        """Handle a response."""
         if not self._finished:
             self._finished = True
             self._on_reply(response)
 
     def fail(self, error: ServiceError) -> None:
-        """Take a server's error."""
+        """Handle a server's error."""
         if not self._finished:
             self._finished = True
             self._on_error(error)
 
     def end(self) -> None:
-        """Count a transport that has no more answers."""
+        """Handle that a transport has no more answers."""
         self.open -= 1
         if self.open == 0 and not self._finished:
             self._finished = True
@@ -258,13 +258,13 @@ class BareNode:
 
     Args:
         context: The context that it joins.
-        name: Its name without namespace.
-        namespace: Its namespace, which begins with a slash.
+        name: Its name without the namespace.
+        namespace: Its namespace, starting with a slash.
         enclave: Its security enclave.
 
     Attributes:
         context: The context.
-        info: What the graph knows of it.
+        info: Its entry in the graph.
 
     Raises:
         EntityDestroyedError: the context was shut down (a RuntimeError).
@@ -284,7 +284,7 @@ class BareNode:
         context.graph.add_node(self.info)
 
     def create_publisher(self, msg_type: Any, topic: str, profile: QoSProfile) -> BarePublisher:
-        """Return a publisher of `msg_type`, a message class or what `serialized` made of one.
+        """Create a publisher of `msg_type`, a message class or the result of `serialized` for one.
 
         Raises:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -298,9 +298,9 @@ class BareNode:
     def create_subscription(
         self, msg_type: Any, topic: str, profile: QoSProfile, reader: Reader
     ) -> BareEndpoint:
-        """Return a subscription whose messages go to `reader`, whose `endpoint` is set first.
+        """Create a subscription that passes messages to `reader`, whose `endpoint` is set first.
 
-        Messages that a transient local publisher has kept may be delivered before this returns.
+        Messages kept by transient local publishers may be delivered before this returns.
 
         Raises:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -316,7 +316,7 @@ class BareNode:
     def create_server(
         self, srv_type: Any, service: str, profile: QoSProfile, serve: Serve
     ) -> BareEndpoint:
-        """Return a server whose requests go to `serve`, which answers each `Request` once.
+        """Create a server that passes requests to `serve`, which answers each `Request` once.
 
         Raises:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -328,7 +328,7 @@ class BareNode:
         return self._add(BareEndpoint(self, endpoint, registrations), srv_type)
 
     def create_client(self, srv_type: Any, service: str, profile: QoSProfile) -> BareClient:
-        """Return a client.
+        """Create a client.
 
         Raises:
             EntityDestroyedError: the node was destroyed (a RuntimeError).
@@ -360,7 +360,7 @@ class BareNode:
             self.create_server(GetTypeDescription, name, qos.qos_profile_services_default, serve)
 
     def destroy_node(self) -> None:
-        """Destroy the endpoints, newest first, and leave the graph; again has no effect."""
+        """Destroy the endpoints, newest first, and leave the graph; repeating it has no effect."""
         if self._destroyed:
             return
         self._destroyed = True
@@ -372,7 +372,7 @@ class BareNode:
         self.context._remove_node(self)
 
     def _abandon(self) -> None:
-        """Mark the node destroyed without closing anything; in a forked child."""
+        """Mark the node as destroyed without closing anything; for a forked child."""
         self._destroyed = True
         self._endpoints.clear()
 
@@ -398,7 +398,7 @@ class BareNode:
         return endpoint
 
     def _forget(self, endpoint: BareEndpoint) -> bool:
-        """Forget an endpoint; return whether it was there."""
+        """Forget an endpoint; return whether it was known."""
         known = endpoint in self._endpoints
         self._endpoints.pop(endpoint, None)
         return known

@@ -1,8 +1,8 @@
-"""The context that nodes share: one participant in the ROS graph, with its transports.
+"""The context shared by nodes: one participant in the ROS graph, with its transports.
 
-A peer that ends leaves the graph in `engine/transport/zenoh/discovery/graph_watcher.py`, and its
-links in `engine/transport/link/_manager.py`, which dials again as well. How often Zenoh dials, and
-when it gives a silent peer up: `engine/transport/zenoh/session/settings.py`.
+A peer that ends is removed from the graph in `engine/transport/zenoh/discovery/graph_watcher.py`,
+and its links in `engine/transport/link/_manager.py`, which also reconnects. How often Zenoh
+reconnects, and when it gives up on a silent peer: `engine/transport/zenoh/session/settings.py`.
 """
 
 from __future__ import annotations
@@ -60,10 +60,10 @@ LINK_SETTINGS = {"on": True, "off": False, "": True}
 
 
 def transport_of(environ: Mapping[str, str]) -> str:
-    """Return which transport the environment asks for; zenoh if it does not.
+    """Return the transport selected by the environment; zenoh by default.
 
     Raises:
-        ConfigurationError: it is none of those that there are.
+        ConfigurationError: the value is not a known transport.
     """
     word = environ.get(TRANSPORT_VARIABLE, "") or "zenoh"
     if word not in {"zenoh", "rcl", "local"}:
@@ -72,7 +72,7 @@ def transport_of(environ: Mapping[str, str]) -> str:
 
 
 def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
-    """Return whether to reach processes of this host over the link transport.
+    """Return whether to use the link transport for processes on this host.
 
     Raises:
         ConfigurationError: the environment variable is neither on nor off.
@@ -90,75 +90,76 @@ def wants_link(asked: bool | None, environ: Mapping[str, str]) -> bool:
 
 
 class ContextNode(Protocol):
-    """The method of a node that its context calls. A protocol, as `Node` imports the context."""
+    """The part of a node that its context uses; a protocol, as `Node` imports the context."""
 
     def destroy_node(self) -> None:
         """End the node."""
 
 
 class Context:
-    """The transports, graph, domain and time that the nodes of one participant share.
+    """The transports, graph, domain and time shared by the nodes of one participant.
 
     Nodes created without a context share `Context.default()`. A context opens with its first
-    running node and closes after the last; ``async with Context() as context`` keeps it open for
-    the whole block, and destroys all its nodes at the end.
+    running node and closes after the last one; ``async with Context() as context`` keeps it open
+    for the whole block, and destroys all its nodes at the end.
 
     Args:
-        domain_id: The ROS domain, 0 or more; by default ``ROS_DOMAIN_ID``, or 0.
-        transport: ``"zenoh"`` reaches other processes, and ROS 2 on rmw_zenoh; ``"rcl"`` reaches
-            ROS 2 over the middleware of the ROS 2 that is installed here, such as DDS; ``"local"``
-            reaches only the nodes of this context. One or several `Transport` objects are used as
-            they are. By default ``AIONODE_TRANSPORT``, or ``"zenoh"``.
-        clock: Where the time comes from: the machine, or an `aionode.testing.ManualClock`.
+        domain_id: The ROS domain, 0 or more; defaults to ``ROS_DOMAIN_ID``, or 0.
+        transport: ``"zenoh"`` reaches other processes, including ROS 2 on rmw_zenoh; ``"rcl"``
+            reaches ROS 2 over the middleware of the installed ROS 2, such as DDS; ``"local"``
+            reaches only the nodes of this context. `Transport` objects, one or several, are used as
+            they are. Defaults to ``AIONODE_TRANSPORT``, or ``"zenoh"``.
+        clock: The source of time: the machine, or an `aionode.testing.ManualClock`.
         discovery_range: Where to look for other processes: ``"LOCALHOST"``, ``"SUBNET"`` or
-            ``"OFF"``; by default ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
-        static_peers: Hosts to connect to; by default ``ROS_STATIC_PEERS``.
-        config: Path of a Zenoh configuration file, in place of ``ZENOH_SESSION_CONFIG_URI``, or
-            individual settings by their key path.
+        ``"OFF"``; defaults to ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
+        static_peers: Hosts to connect to; defaults to ``ROS_STATIC_PEERS``.
+        config: Path of a Zenoh configuration file, overriding ``ZENOH_SESSION_CONFIG_URI``, or
+            individual settings by key path.
         link: Whether to reach other processes of this user on this host over a Unix socket served
-            by the event loop, where the platform supports it; by default ``AIONODE_LINK`` (``on``
-            or ``off``), or on.
-        spin_us: For how many microseconds the event loop asks for events again and again before it
-            lets its thread sleep. That saves waking up, and takes a whole core while messages come
-            in shorter intervals. Only for asyncio's own event loop, and one context of each loop.
-        ros_distro: The distribution of the ROS 2 nodes that it talks to, such as ``"humble"``; by
-            default ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions never
-            hear each other, so a context talks to one or the other.
-        queue_bytes: How many bytes of messages may wait in each queue from and to other processes:
-            of a subscription whose loop or callback is busy, of a service, and of a publisher whose
-            readers are slow. What is more is dropped and counted, or refused by KEEP_ALL and
-            services. By default ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too
+            by the event loop, where the platform supports it; defaults to ``AIONODE_LINK`` (``on``
+            or
+        ``off``), or on.
+        spin_us: How long the event loop polls for events before it lets its thread sleep, in
+            microseconds. That avoids wake-up latency, but takes a whole core while messages arrive
+            at shorter intervals. Only for asyncio's own event loop, and one context per loop.
+        ros_distro: The distribution of the ROS 2 nodes to communicate with, such as ``"humble"``;
+            defaults to ``ROS_DISTRO``, or ``"jazzy"``. Nodes of Humble and of newer distributions
+            cannot communicate, so a context supports one or the other.
+        queue_bytes: How many bytes of messages may wait in each queue to and from other processes:
+            of a subscription whose loop or callback is busy, of a service, and of a publisher with
+            slow readers. Beyond that, messages are dropped and counted, or refused by KEEP_ALL and
+            services. Defaults to ``AIONODE_QUEUE_BYTES``, or 32 MiB; a single message is never too
             large.
-        graph_bytes: How many bytes of what other processes announce are kept, nodes and endpoints
-            above all, which count about 2.2 kB each. One process may have an eighth of that. What
-            is more is left out, and a warning says so. By default ``AIONODE_GRAPH_BYTES``, or 64
-            MiB, about 30,000 endpoints.
-        seed: For tests without network: the ids of the context, of its endpoints and of its goals
-            are drawn with this seed, and so are the same in every run. Callbacks that block the
-            loop are not reported, as this depends on the machine. By default ids are unique.
+        graph_bytes: How many bytes of other processes' announcements to keep, mainly of nodes and
+            endpoints, which count about 2.2 kB each. A single process may use an eighth of that.
+            Beyond that, announcements are ignored with a warning. Defaults to
+            ``AIONODE_GRAPH_BYTES``, or 64 MiB, about 30,000 endpoints.
+        seed: For tests without a network: a seed for the ids of the context, its endpoints and its
+            goals, which makes them the same in every run. Callbacks that block the loop are not
+            reported then, as this depends on the machine. By default ids are unique.
 
     Attributes:
         ros_distro: The distribution of ROS 2 that it belongs to.
         network: Domain, discovery and peers, from the arguments and the environment.
-        graph: The nodes and endpoints known now.
-        drops: What programs of rclpy's API drop of what others send; `dropped` has it all.
-        time_base: Where the time comes from.
-        participant: Id of this context in the graph, in hexadecimal.
+        graph: The currently known nodes and endpoints.
+        drops: What rclpy programs drop of what others send; `dropped` includes everything.
+        time_base: The source of time.
+        participant: The id of this context in the graph, in hexadecimal.
         seed: The seed of its ids; None if they are unique.
 
     Raises:
         ConfigurationError: an argument, or the environment variable used instead, is invalid (a
             ValueError).
         TypeError: `spin_us` is not a number.
-        ValueError: `transport` is an unknown name, `spin_us` negative, or `seed` given with
-            a network.
+        ValueError: `transport` is unknown, `spin_us` is negative, or `seed` is combined with a
+            network.
     """
 
     _openings: ClassVar[int] = 0
     _default: ClassVar[Context | None] = None
     _command_line: ClassVar[Usage] = Usage(Arguments())
-    # For forked children: every context of this process, and whether one of them, or of the
-    # parent, has ever opened a connection, which a fork breaks.
+    # For forked children: all contexts of this process, and whether one of them, or one of the
+    # parent's, has ever opened a connection, which a fork breaks.
     _all: ClassVar[weakref.WeakSet[Context]] = weakref.WeakSet()
     _has_connected: ClassVar[bool] = False
     _parent_has_connected: ClassVar[bool] = False
@@ -215,16 +216,16 @@ class Context:
                 f"Context: seed={seed} gives it ids that other contexts may have, which a network "
                 'does not allow; use transport="local", or leave out the seed'
             )
-        self._usage: Usage | None = None  # of arguments that were set for this context alone
-        # From construction until destroyed, with what is called in a forked child.
+        self._usage: Usage | None = None  # of arguments set for this context only
+        # From construction to destruction, each with what to call in a forked child.
         self._nodes: dict[ContextNode, Callable[[], None]] = {}
-        self._next_id = 0  # of a node or endpoint
+        self._next_id = 0  # of the next node or endpoint
         self._users = 0  # running nodes and `async with` blocks; the transports close at 0
         self._shut_down = False  # set by `shutdown`, and never reset
         self._reporters: dict[object, Callable[[], NodeReport]] = {}
         self._open = False  # whether the transports are open
-        self._loop: asyncio.AbstractEventLoop | None = None  # in which it was opened last
-        self._affinity = LoopAffinity()  # the same while it is in use, for calls of other threads
+        self._loop: asyncio.AbstractEventLoop | None = None  # the loop in which it was last opened
+        self._affinity = LoopAffinity()  # the same while in use, for calls from other threads
         self._loop_guard = threading.Lock()  # held to check and set `_loop` and `_users`
         self._transition = asyncio.Lock()  # held while the transports open or close
         self._closed = asyncio.Event()  # set when the last user has released the context
@@ -280,7 +281,7 @@ class Context:
 
     @classmethod
     def default(cls) -> Context:
-        """Return the context of nodes created without one; it is created on first use.
+        """Return the context of nodes created without one, creating it on first use.
 
         A forked process gets its own.
         """
@@ -301,7 +302,7 @@ class Context:
     @classmethod
     @contextlib.contextmanager
     def _obeying(cls, arguments: Arguments) -> Iterator[None]:
-        """Apply `arguments` to the nodes of every context for the ``with`` block."""
+        """Apply `arguments` to the nodes of every context within the ``with`` block."""
         before, cls._command_line = cls._command_line, Usage(arguments)
         try:
             yield
@@ -318,17 +319,17 @@ class Context:
         self._usage = Usage(arguments)
 
     def new_uuid(self) -> bytes:
-        """Return the 16 bytes of a random UUID, drawn with the seed if there is one."""
+        """Return the 16 bytes of a random UUID, drawn from the seed if there is one."""
         if self._random is None:
             return uuid.uuid4().bytes
         return uuid.UUID(int=self._random.getrandbits(128), version=4).bytes
 
     def ok(self) -> bool:
-        """Whether the context can be used, that is `shutdown` was not called."""
+        """Whether the context is usable, i.e. `shutdown` was not called."""
         return not self._shut_down
 
     async def __aenter__(self) -> Self:
-        """Open the context: connect its transports, and wait for the first discovery.
+        """Open the context: connect its transports, and wait for initial discovery.
 
         Raises:
             EntityDestroyedError: the context was shut down (a RuntimeError).
@@ -353,9 +354,9 @@ class Context:
             await self._closed.wait()
 
     def shutdown(self) -> None:
-        """Destroy all nodes, and refuse new ones. Calling it again has no effect.
+        """Destroy all nodes, and refuse new ones. Repeating it has no effect.
 
-        Running nodes end soon after; the transports close when the last of them has ended.
+        Running nodes end soon after; the transports close once the last of them has ended.
         """
         self._shut_down = True
         for node in list(self._nodes):
@@ -388,7 +389,7 @@ class Context:
             raise
 
     def _bind_to_loop(self) -> None:
-        """Use the running loop from now on; a context works in one loop at a time."""
+        """Bind the context to the running loop; a context works in one loop at a time."""
         loop = asyncio.get_running_loop()
         if self._loop is loop:
             return
@@ -426,7 +427,7 @@ class Context:
             raise
 
     def _hint_at_rcl(self) -> None:
-        """Log what reaches the other ROS 2 nodes of this environment, if no node is heard."""
+        """Log how to reach the other ROS 2 nodes of this environment, if none is heard."""
         if not self._is_on_zenoh:
             return
         hint = unheard_middleware(os.environ)
@@ -447,7 +448,7 @@ class Context:
             return
         self._users -= 1
         async with self._transition:
-            if self._users == 0 and self._open:  # unless it was acquired again meanwhile
+            if self._users == 0 and self._open:  # unless it was acquired again in the meantime
                 self._open = False
                 await self._close_transports()
         if self._users == 0:
@@ -465,9 +466,9 @@ class Context:
 
     @classmethod
     def _send_rest(cls, ends_ns: int) -> bool:
-        """Hand what was published to the operating system, until `ends_ns` at most.
+        """Pass published messages to the operating system, until `ends_ns` at the latest.
 
-        Event loops of other threads go on meanwhile, and do so themselves.
+        The event loops of other threads keep running, and send their own.
 
         Returns:
             Whether there is a network, whose threads need a moment more.
@@ -493,9 +494,9 @@ class Context:
             raise ForkedProcessError(repr(self))
 
     def _abandon(self) -> None:
-        """Leave this context to the parent process, from which this one was forked.
+        """Leave this context to the parent process from which this one was forked.
 
-        Nothing in it may be closed or garbage-collected, as both would affect what the parent uses.
+        Nothing in it may be closed or garbage-collected, as both would affect the parent.
         """
         self._inherited = True
         self._affinity.detach()
@@ -507,7 +508,7 @@ class Context:
 
     @classmethod
     def _after_fork(cls) -> None:
-        """Leave all contexts to the parent. Called in a forked child before anything else runs."""
+        """Leave all contexts to the parent; called in a forked child before anything else runs."""
         for context in list(cls._all):
             context._abandon()
         cls._parent_has_connected = cls._has_connected
@@ -557,16 +558,16 @@ class Context:
 
     @property
     def _current_usage(self) -> Usage:
-        """Tells which of the current arguments the nodes have used."""
+        """Records which of the current arguments the nodes have used."""
         return self._command_line if self._usage is None else self._usage
 
     @property
     def dropped(self) -> Mapping[str, int]:
-        """How many things of other processes were dropped or refused, by the reason.
+        """The number of things from other processes that were dropped or refused, by reason.
 
-        Such as ``malformed``; the log has said what they were. What the QoS of a subscription lets
-        go is in its `stats`. ``replaced_texts`` counts messages of the whole process that were
-        not dropped: a text in them is no Unicode, and was read with U+FFFD instead.
+        For example ``malformed``; the log describes them. Messages dropped by the QoS of a
+        subscription are in its `stats`. ``replaced_texts`` counts messages of the whole process
+        that were not dropped: they contain invalid Unicode, which was decoded with U+FFFD.
         """
         drops = {
             id(drops): drops for drops in (self.drops, *(each.drops for each in self._transports))
@@ -576,11 +577,11 @@ class Context:
 
     @property
     def transports(self) -> tuple[Transport, ...]:
-        """The transports, in the order in which they open; the local one is first."""
+        """The transports in the order in which they open; the local one is first."""
         return self._transports
 
     def _new_id(self) -> int:
-        """Return a number that no other node or endpoint of this context has."""
+        """Return an id that no other node or endpoint of this context has."""
         self._next_id += 1
         return self._next_id - 1
 
@@ -618,7 +619,7 @@ class Context:
 
 
 def openings() -> int:
-    """Return how often a context of this process has opened: for nodes that run, or have run."""
+    """Return how often contexts of this process have opened, for running or past nodes."""
     return Context._openings
 
 

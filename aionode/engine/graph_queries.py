@@ -1,4 +1,4 @@
-"""Questions about the graph that nodes of both faces answer: rclpy's methods."""
+"""Graph queries shared by both kinds of nodes: rclpy's methods."""
 
 from __future__ import annotations
 
@@ -68,29 +68,29 @@ class TopicEndpointInfo:
 
 
 class GraphAnswers(Protocol):
-    """The questions of `GraphQueries`: names are those that a program has given."""
+    """The queries behind `GraphQueries`; names are as given by the program."""
 
     def nodes(self) -> Iterable[NodeInfo]:
         """Return all nodes."""
 
     def names_and_types(self, kinds: Iterable[EndpointKind]) -> NamesAndTypes:
-        """Return the names that endpoints of these kinds have, with their types."""
+        """Return the names of endpoints of these kinds, with their types."""
 
     def names_and_types_of(
         self, kind: EndpointKind, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        """Return the names that the endpoints of a kind have in a node, with their types."""
+        """Return the names of a node's endpoints of one kind, with their types."""
 
     def count(self, kind: EndpointKind, name: str) -> int:
-        """Return how many endpoints of a kind have a name."""
+        """Count the endpoints of a kind that have a name."""
 
 
 class GraphQueries:
-    """The questions about the graph that nodes of both faces answer alike.
+    """The graph queries that nodes of both APIs answer in the same way.
 
     Args:
-        answers: Where the answers come from. It is no base class: a program's subclass may have
-            methods of any other name.
+        answers: Provides the answers. It is not a base class: a program's subclass may have methods
+            of any other name.
     """
 
     def __init__(self, answers: GraphAnswers) -> None:
@@ -124,8 +124,8 @@ class GraphQueries:
     ) -> NamesAndTypes:
         """Return every topic with its types; `no_demangle` is ignored.
 
-        Hidden topics, which have a name with a part that begins with ``_``, are those of actions
-        and of tools; without `include_hidden` they are left out, as ``ros2 topic list`` does.
+        Hidden topics, whose names have a part that starts with ``_``, belong to actions and tools;
+        without `include_hidden` they are left out, as in ``ros2 topic list``.
         """
         return shown(self.__answers.names_and_types(TOPIC_KINDS), include_hidden)
 
@@ -137,19 +137,19 @@ class GraphQueries:
         return shown(self.__answers.names_and_types(SERVICE_KINDS), include_hidden)
 
     def count_publishers(self, topic_name: str) -> int:
-        """Return how many publishers `topic_name` has; a relative name is this node's."""
+        """Count the publishers of `topic_name`; a relative name is resolved for this node."""
         return self.__answers.count(EndpointKind.PUBLISHER, topic_name)
 
     def count_subscribers(self, topic_name: str) -> int:
-        """Return how many subscriptions `topic_name` has; a relative name is this node's."""
+        """Count the subscriptions of `topic_name`; a relative name is resolved for this node."""
         return self.__answers.count(EndpointKind.SUBSCRIPTION, topic_name)
 
     def count_services(self, service_name: str) -> int:
-        """Return how many servers `service_name` has; a relative name is this node's."""
+        """Count the servers of `service_name`; a relative name is resolved for this node."""
         return self.__answers.count(EndpointKind.SERVER, service_name)
 
     def count_clients(self, service_name: str) -> int:
-        """Return how many clients `service_name` has; a relative name is this node's."""
+        """Count the clients of `service_name`; a relative name is resolved for this node."""
         return self.__answers.count(EndpointKind.CLIENT, service_name)
 
     # By node
@@ -160,10 +160,10 @@ class GraphQueries:
         node_namespace: str,
         no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> NamesAndTypes:
-        """Return what a node publishes.
+        """Return the topics that a node publishes, with their types.
 
         Raises:
-            NodeNameNonExistentError: there is no node of this name.
+            NodeNameNonExistentError: there is no such node.
         """
         return self.__answers.names_and_types_of(EndpointKind.PUBLISHER, node_name, node_namespace)
 
@@ -173,10 +173,10 @@ class GraphQueries:
         node_namespace: str,
         no_demangle: bool = False,  # noqa: ARG002  # rclpy's signature
     ) -> NamesAndTypes:
-        """Return what a node subscribes to.
+        """Return the topics that a node subscribes to, with their types.
 
         Raises:
-            NodeNameNonExistentError: there is no node of this name.
+            NodeNameNonExistentError: there is no such node.
         """
         return self.__answers.names_and_types_of(
             EndpointKind.SUBSCRIPTION, node_name, node_namespace
@@ -185,29 +185,29 @@ class GraphQueries:
     def get_service_names_and_types_by_node(
         self, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        """Return the services that a node serves.
+        """Return the services that a node serves, with their types.
 
         Raises:
-            NodeNameNonExistentError: there is no node of this name.
+            NodeNameNonExistentError: there is no such node.
         """
         return self.__answers.names_and_types_of(EndpointKind.SERVER, node_name, node_namespace)
 
     def get_client_names_and_types_by_node(
         self, node_name: str, node_namespace: str
     ) -> NamesAndTypes:
-        """Return the services that a node calls.
+        """Return the services that a node calls, with their types.
 
         Raises:
-            NodeNameNonExistentError: there is no node of this name.
+            NodeNameNonExistentError: there is no such node.
         """
         return self.__answers.names_and_types_of(EndpointKind.CLIENT, node_name, node_namespace)
 
 
 def names_and_types_of(graph: Graph, kind: EndpointKind, full_name: str) -> NamesAndTypes:
-    """Return the names that endpoints of a kind have in a node, with their types.
+    """Return the names of a node's endpoints of one kind, with their types.
 
     Raises:
-        NodeNameNonExistentError: there is no node of this name.
+        NodeNameNonExistentError: there is no such node.
     """
     node = next(graph.find_nodes(full_name), None)
     if node is None:
@@ -229,7 +229,7 @@ def topic_endpoint_info(endpoint: EndpointInfo) -> TopicEndpointInfo:
 
 
 def shown(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
-    """Return names and types, with or without those of hidden names."""
+    """Return names and types, with or without hidden names."""
     return found if include_hidden else [entry for entry in found if not names.is_hidden(entry[0])]
 
 

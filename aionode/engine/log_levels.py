@@ -1,4 +1,4 @@
-"""The log of nodes of both APIs: its messages on a topic, and its levels, set by others."""
+"""Logging for nodes of both APIs: log messages as a topic, and levels set by others."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ MOST_LEVELS: Final = 1_000
 class LevelAnswers:
     """The callbacks of the services that read and set the log levels of this process.
 
-    Each of them raises `RequestRefusedError` for a request about more loggers than any tool names.
+    Each raises `RequestRefusedError` for a request about more loggers than any tool would name.
 
     Args:
         level_class: The class of LoggerLevel.
@@ -65,15 +65,15 @@ class LevelAnswers:
 
 
 def refuse_many(loggers: Sequence[object]) -> None:
-    """Refuse a request about more loggers than any tool names.
+    """Reject a request about more loggers than any tool would name.
 
     Raises:
         RequestRefusedError: there are more than `MOST_LEVELS`.
     """
     if len(loggers) > MOST_LEVELS:
         raise RequestRefusedError(
-            f"the request has {len(loggers)} loggers, at most {MOST_LEVELS} fit; ask in several "
-            "requests"
+            f"the request has {len(loggers)} loggers, but at most {MOST_LEVELS} are allowed; "
+            "split it into several requests"
         )
 
 

@@ -16,7 +16,7 @@ __all__ = ["LoopAffinity"]
 ResultT = TypeVar("ResultT")
 
 PATIENCE_S = 1.0
-"""Time between two checks by a waiting thread whether the event loop has been closed."""
+"""How often a waiting thread checks whether the event loop has been closed, in seconds."""
 
 
 class LoopAffinity:
@@ -38,22 +38,22 @@ class LoopAffinity:
         self.thread = get_ident()
 
     def detach(self) -> None:
-        """Forget them: the context is closed."""
+        """Forget them when the context is closed."""
         self._loop = None
         self.thread = 0
 
     def is_other_thread(self) -> bool:
         """Return whether the context works in a thread other than this one.
 
-        Not while its loop stands still, between two calls of `run_until_complete`: nothing else
-        runs then, and a thread that waited for the loop might wait for ever.
+        False while its loop is not running, between two calls of `run_until_complete`: nothing else
+        runs then, and a thread waiting for the loop might wait forever.
         """
         if self.thread in (0, get_ident()):
             return False
         return self._loop is not None and self._loop.is_running()
 
     def call(self, action: Callable[[], object]) -> None:
-        """Run `action` in the loop's thread: at once if this is it, else soon."""
+        """Run `action` in the loop's thread: now if this is it, otherwise soon."""
         loop = self._loop
         if loop is None or self.thread == get_ident():
             action()
@@ -62,10 +62,10 @@ class LoopAffinity:
             loop.call_soon_threadsafe(action)
 
     def wait_for(self, action: Callable[..., ResultT], *args: Any) -> ResultT:
-        """Run `action` in the loop's thread, and return its result. From other threads only.
+        """Run `action` in the loop's thread, and return its result. Only from other threads.
 
         Raises:
-            Exception: what `action` raised.
+            Exception: whatever `action` raised.
             RuntimeError: the loop was closed.
         """
         loop = self._loop
@@ -87,6 +87,6 @@ class LoopAffinity:
                 return done.result(PATIENCE_S)
             except TimeoutError:
                 if done.done():
-                    raise  # it is what `action` raised
+                    raise  # raised by `action` itself
                 if loop.is_closed():
                     raise RuntimeError("the event loop of the node was closed") from None

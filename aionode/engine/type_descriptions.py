@@ -1,4 +1,4 @@
-"""Answers to those who ask a node for the definition of a type that it uses."""
+"""Answers requests for the definition of a type that a node uses."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def describe_type(
         used: The types of a node's entities.
         request: The request.
         response: The response, to be filled in.
-        own_message: Returns a message in the class that the response has for it.
+        own_message: Converts a message to the class that the response uses.
     """
     classes = {
         type_hash(kind): kind for kind in with_nested(used) if type_name(kind) == request.type_name
@@ -54,14 +54,14 @@ def type_of(entity: Any) -> Any:
 
 
 def with_nested(used: Iterable[Any]) -> Iterator[Any]:
-    """Yield types, and those nested in them."""
+    """Yield the types, and those nested in them."""
     for kind in dict.fromkeys(used):
         yield kind
         yield from referenced_types(kind)
 
 
 def source_of(kind: Any) -> Any:
-    """Return the definition of a type, as text."""
+    """Return the definition of a type as text."""
     # Imported on demand: rarely requested, and slow to import.
     from aionode.idl import definition_text
     from aionode.interfaces.type_description_interfaces.msg import TypeSource

@@ -219,7 +219,7 @@ async def test_invalid_arguments_are_refused(bench: Bench) -> None:
     """With what fits."""
     with pytest.raises(ValueError, match="7 is not a valid ServiceIntrospectionState"):
         bench.server.configure_introspection(bench.node.get_clock(), 10, 7)  # type: ignore[arg-type]
-    with pytest.raises(TypeError, match="clock is None; give a clock"):
+    with pytest.raises(TypeError, match="clock is None; expected a clock"):
         bench.client.configure_introspection(None, 10, METADATA)  # type: ignore[arg-type]
 
 

@@ -438,7 +438,7 @@ async def test_different_types_on_one_topic_are_reported(
     node.create_publisher(Int32, "words", 10).publish(Int32())
     error = capfd.readouterr().err
     assert "has type std_msgs/msg/Int32, this subscription std_msgs/msg/String" in error
-    assert "use one type, or another name" in error
+    assert "use the same type, or another name" in error
 
 
 async def test_wait_for_subscribers_is_woken_by_the_subscription(node: Node) -> None:

@@ -1,1 +1,1 @@
-"""Reports about the graph: nodes of one name, and endpoints that do not match."""
+"""Warnings about the graph: duplicate node names, and endpoints that do not match."""

@@ -1,4 +1,4 @@
-"""Warning once, and with the reason, of names that should be unique: of nodes and of servers."""
+"""Warns once about node names and servers that should be unique, and says why."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ SEND_GOAL = "/_action/send_goal"
 
 
 class DuplicateReport:
-    """Compares each node and server that appears with those of its name.
+    """Compares each node and server that appears with others of the same name.
 
-    ROS 2 accepts both without a word: a request to a node's services then reaches either node, and
-    a call that two servers answer returns the response that comes first.
+    ROS 2 silently accepts duplicates: a request to a node's services then reaches both nodes, and a
+    call that two servers answer returns whichever response arrives first.
     """
 
     def __init__(self, graph: Graph, participant: str) -> None:
@@ -31,7 +31,7 @@ class DuplicateReport:
         graph.on_endpoint(self.examine)
 
     def examine_node(self, new: NodeInfo) -> None:
-        """Log that two nodes have one name, if one of them is of this context."""
+        """Warn if two nodes have the same name, and one of them belongs to this context."""
         name = new.fully_qualified_name
         own = new
         others = [info for info in self._graph.nodes_named(name) if info != new]
@@ -55,7 +55,7 @@ class DuplicateReport:
             )
 
     def examine(self, new: EndpointInfo) -> None:
-        """Log that a service has two servers, if this context has one of them, or a client."""
+        """Warn if a service has two servers, and this context has one of them or a client."""
         if new.kind is EndpointKind.SERVER:
             self._examine_server(new)
         elif new.kind is EndpointKind.CLIENT and new.node.participant == self._participant:
@@ -76,9 +76,9 @@ class DuplicateReport:
                     self._report(known, new, client.node)
 
     def _report(self, server: EndpointInfo, other: EndpointInfo, reader: NodeInfo) -> None:
-        """Log to the node `reader` that two servers have one name."""
+        """Log with the node `reader` that there are two servers of one name."""
         name, kind = server.name, "service"
-        if name.endswith(SEND_GOAL):  # of the three services of an action, one is enough
+        if name.endswith(SEND_GOAL):  # one of an action's three services is enough
             name, kind = name.removesuffix(SEND_GOAL), "action"
         elif is_hidden(name):
             return
@@ -87,7 +87,7 @@ class DuplicateReport:
         self._warnings.warn(
             reader,
             name,
-            f"{kind} {name} has two servers, of {server.node.fully_qualified_name} and of "
+            f"{kind} {name} has two servers, in {server.node.fully_qualified_name} and "
             f"{other.node.fully_qualified_name}: each request goes to both, and the first response "
             f"is taken. Stop one of them, or rename it: --ros-args -r {name}:=…",
         )
@@ -100,7 +100,7 @@ class DuplicateReport:
 
 
 def are_twins(server: EndpointInfo, other: EndpointInfo) -> bool:
-    """Whether two servers are of nodes of one name, which has a warning of its own."""
+    """Return whether the nodes of two servers share a name, for which there is another warning."""
     return (
         server.node != other.node
         and server.node.fully_qualified_name == other.node.fully_qualified_name

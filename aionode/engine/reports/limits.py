@@ -1,4 +1,4 @@
-"""What the log says where more comes than an endpoint takes."""
+"""Log messages about limits: what happens when more arrives than an endpoint accepts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 __all__ = ["heavy_text", "tell_full", "tell_rejected"]
 
 REJECTED_SEC = 1.0
-"""The shortest time between two reports of rejected goals, in seconds."""
+"""Minimum interval between reports of rejected goals, in seconds."""
 
 
 def heavy_text(name: str, limit_bytes: int, what: str) -> str:
@@ -30,7 +30,7 @@ def heavy_text(name: str, limit_bytes: int, what: str) -> str:
 
 
 def tell_full(logger: RcutilsLogger, subject: str, why: str) -> None:
-    """Log that a server rejected a goal, as it has as many as it takes; once a second at most."""
+    """Log that a server rejected a goal because of a limit; at most once a second."""
     logger.warning(
         f"{subject}: rejected a goal, as {why}",
         throttle_duration_sec=REJECTED_SEC,
@@ -38,7 +38,7 @@ def tell_full(logger: RcutilsLogger, subject: str, why: str) -> None:
 
 
 def tell_rejected(logger: RcutilsLogger, subject: str, reason: str = "") -> None:
-    """Log that a server rejected a goal; once a second at most, whatever clients send."""
+    """Log that a server rejected a goal; at most once a second, whatever clients send."""
     why = f": {escaped(reason)}" if reason else ""
     text = f"{subject}: goal_callback rejected a goal{why}"
     logger.info(text, throttle_duration_sec=REJECTED_SEC)

@@ -1,4 +1,4 @@
-"""Warning once, and with the reason, that two endpoints of one name cannot communicate."""
+"""Warns once if two endpoints with the same name cannot communicate, and says why."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["MismatchReport"]
 class MismatchReport:
     """Compares each endpoint that appears with its counterparts in this context.
 
-    A pair within this context is reported when the second of the two appears, so only once.
+    A pair within this context is reported when the second one appears, and so only once.
     """
 
     def __init__(self, graph: Graph, participant: str) -> None:
@@ -27,7 +27,7 @@ class MismatchReport:
         graph.on_endpoint(self.examine)
 
     def examine(self, new: EndpointInfo) -> None:
-        """Log every mismatch between `new` and the endpoints of its name."""
+        """Log every mismatch between `new` and the endpoints with the same name."""
         graph = self._graph
         for opposite in graph.opposites(new) if self._is_own(new) else graph.own_opposites(new):
             own, other = (opposite, new) if self._is_own(opposite) else (new, opposite)
@@ -46,11 +46,11 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo, mismatch: Mismatch) ->
     if mismatch.aspect == "type":
         return (
             f"{where}: the {peer} has type {other.type_name}, this {own.kind.value} "
-            f"{own.type_name}. They will not hear each other; use one type, or another name"
+            f"{own.type_name}. They will not hear each other; use the same type, or another name"
         )
     if mismatch.aspect == "distribution":
         return (
-            f"{where}: the {peer} is of another distribution of ROS 2, and they will not hear each "
+            f"{where}: the {peer} uses another ROS 2 distribution, so they will not hear each "
             f"other; {mismatch.reason}"
         )
     if mismatch.aspect == "definition":
@@ -61,13 +61,14 @@ def mismatch_text(own: EndpointInfo, other: EndpointInfo, mismatch: Mismatch) ->
         )
     if other.node.bridged:
         return (
-            f"{where}: QoS of the {peer} is incompatible ({mismatch.reason}). A bridge that knew "
-            "this publisher first passes nothing on to it; publish with durability TRANSIENT_LOCAL"
+            f"{where}: QoS of the {peer} is incompatible ({mismatch.reason}). A bridge that "
+            "discovered this publisher first forwards nothing to it; publish with durability "
+            "TRANSIENT_LOCAL"
         )
     if not own.needs_qos(other):
         return (
-            f"{where}: QoS of the {peer} is incompatible ({mismatch.reason}). Messages pass all "
-            "the same over rmw_zenoh, but would not over DDS"
+            f"{where}: QoS of the {peer} is incompatible ({mismatch.reason}). Messages are "
+            "delivered over rmw_zenoh nevertheless, but would not be over DDS"
         )
     text = incompatible_qos_text(
         own.name, mismatch.policy, publisher=other.kind is EndpointKind.PUBLISHER

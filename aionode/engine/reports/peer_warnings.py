@@ -1,4 +1,4 @@
-"""Warnings about what other processes announce: a few in full, and the rest as a number."""
+"""Warnings about other processes' announcements: a few in full, the rest as a count."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 __all__ = ["PeerWarnings"]
 
 EACH: Final = 10
-"""Most warnings about one subject that are logged in full."""
+"""Maximum number of warnings about one subject to log in full."""
 
 ALL: Final = 100
-"""Most warnings that are logged in full in all."""
+"""Maximum total number of warnings to log in full."""
 
 
 class PeerWarnings:
-    """Logs warnings of one kind, which other processes can cause in any number.
+    """Logs warnings of one kind, of which other processes can cause any number.
 
-    Those beyond the limits are counted; the log tells the number when it reaches 1, 10, 100 and so
+    Warnings beyond the limits are counted; the count is logged when it reaches 1, 10, 100 and so
     on.
 
     Args:
@@ -36,7 +36,7 @@ class PeerWarnings:
         self._left_out = 0
 
     def warn(self, node: NodeInfo, subject: str, text: str) -> None:
-        """Log a warning as `node`, unless there were many of its kind."""
+        """Log a warning as `node`, unless there were too many of its kind."""
         logger = get_logger(logger_name(node.namespace, node.name))
         if self._logged[subject] < EACH and self._logged.total() < ALL:
             self._logged[subject] += 1

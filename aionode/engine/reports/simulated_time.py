@@ -1,4 +1,4 @@
-"""What the log says of simulated time that does not come, or is none."""
+"""Warnings about simulated time that is missing or invalid."""
 
 from __future__ import annotations
 
@@ -18,18 +18,17 @@ if TYPE_CHECKING:
 __all__ = ["ClockWatch", "why_no_time"]
 
 WAIT_S: Final = 5.0
-"""Time for which nothing is said while no simulated time comes, in seconds: simulators start
-slowly."""
+"""How long to wait for simulated time before warning, in seconds: simulators start slowly."""
 
 
 class ClockWatch:
-    """Logs once that simulated time has not begun: timers that stand still say nothing.
+    """Warns once if simulated time has not started, since stopped timers are otherwise silent.
 
     Args:
-        subscription: The subscription to ``/clock`` as the graph knows it.
+        subscription: The graph entry of the subscription to ``/clock``.
         graph: The graph.
-        time_base: The time of the context.
-        heard: Whether a time has come.
+        time_base: The time base of the context.
+        heard: Whether a time has arrived.
     """
 
     def __init__(
@@ -46,7 +45,7 @@ class ClockWatch:
         self._alarm: Alarm | None = None
 
     def start(self) -> None:
-        """Begin to wait, on the event loop."""
+        """Start waiting, on the event loop."""
         time_base = self._time_base
         ends_ns = time_base.steady_ns() + round(WAIT_S * S_TO_NS)
         self._alarm = time_base.call_at(ends_ns, self._look)
@@ -66,16 +65,16 @@ class ClockWatch:
         )
 
     def stop(self) -> None:
-        """Wait no longer."""
+        """Stop waiting."""
         if self._alarm is not None:
             self._alarm.cancel()
 
 
 def why_no_time(clock: Any) -> str:
-    """Return why the `clock` of a message on ``/clock`` is no time; empty if it is one.
+    """Return why the `clock` of a ``/clock`` message is not a valid time; empty if it is.
 
-    Any node can publish there, so a message that holds no time ends no node: it is left out, and
-    the log says so once.
+    Any node can publish there, so an invalid message must not end a node: it is ignored, and logged
+    once.
     """
     if clock.sec >= 0 and clock.nanosec < S_TO_NS:
         return ""

@@ -1,1 +1,1 @@
-"""Rules of ROS 2, as values and state machines: no input or output, and no tasks."""
+"""ROS 2's rules as values and state machines: no I/O and no tasks."""

@@ -1,4 +1,4 @@
-"""The goals that a cancel request selects, by their ids and the times of their acceptance."""
+"""Which goals a cancel request selects, by goal id and time of acceptance."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ class CancelCode(IntEnum):
 
 
 class GoalKey(NamedTuple):
-    """The properties of a goal by which a cancel request selects it.
+    """The properties of a goal by which cancel requests select it.
 
     Attributes:
         goal_id: The 16 bytes of the id; all zero in a request that does not name a goal.
-        stamp_ns: When the goal was accepted; 0 in a request that gives no time.
+        stamp_ns: When the goal was accepted; 0 in a request without a time.
         status: The state of the goal.
     """
 
@@ -40,7 +40,7 @@ class GoalKey(NamedTuple):
 
 
 def goals_to_cancel(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCode, list[bytes]]:
-    """Return the ids of the goals that a cancel request selects, and the code if none is refused.
+    """Return the ids of the goals that a cancel request selects, and a code.
 
     ======== ========= ===============================================
     id       time      meaning
@@ -51,15 +51,15 @@ def goals_to_cancel(goals: Iterable[GoalKey], asked: GoalKey) -> tuple[CancelCod
     given    given     that goal, and all accepted then or before
     ======== ========= ===============================================
 
-    Only goals that can still be cancelled are selected. For a request for one goal that cannot be,
-    the code tells why.
+    Only goals that can still be canceled are selected. If a request names one goal that cannot be
+    canceled, the code says why.
     """
     if asked.goal_id != ALL_GOALS and asked.stamp_ns == 0:
         for goal in goals:
             if goal.goal_id == asked.goal_id:
                 if is_cancelable(goal.status):
                     return CancelCode.NONE, [goal.goal_id]
-                return CancelCode.GOAL_TERMINATED, []  # as rcl answers while CANCELING too
+                return CancelCode.GOAL_TERMINATED, []  # rcl answers this even while CANCELING
         return CancelCode.UNKNOWN_GOAL_ID, []
     everything = asked.goal_id == ALL_GOALS and asked.stamp_ns == 0
     meant = [

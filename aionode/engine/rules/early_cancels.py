@@ -14,12 +14,12 @@ MAX_KEPT = 1000
 
 
 class EarlyCancels:
-    """The ids of goals that were cancelled while they were queued, or being decided on.
+    """The ids of goals that were canceled while they were queued, or being decided on.
 
-    They are kept for 10 s, and the newest 1000 of them.
+    The newest 1000 are kept for 10 s.
 
     Args:
-        time_base: Whose steady clock counts.
+        time_base: Provides the steady clock.
     """
 
     def __init__(self, time_base: TimeBase) -> None:
@@ -30,7 +30,7 @@ class EarlyCancels:
         return goal_id in self._since_ns
 
     def note(self, goal_id: bytes) -> None:
-        """Keep for a while that a goal was cancelled that the server does not know."""
+        """Remember for a while that a goal unknown to the server was canceled."""
         now_ns = self._time_base.steady_ns()
         for known, since_ns in list(self._since_ns.items()):
             if now_ns - since_ns > KEPT_NS or len(self._since_ns) >= MAX_KEPT:

@@ -1,7 +1,7 @@
-"""Events of publishers and subscriptions, as values: the names and fields of `rclpy.event_handler`.
+"""Events of publishers and subscriptions as values, with the names of `rclpy.event_handler`.
 
-An event tells what has changed since the one before it (``…_change``), and the total since the
-endpoint was created.
+An event contains the change since the previous one (``…_change``), and the total since the endpoint
+was created.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ __all__ = [
 
 @dataclass(frozen=True, slots=True)
 class QoSOfferedDeadlineMissedInfo:
-    """A publisher published nothing for as long as its deadline.
+    """A publisher did not publish within its deadline.
 
     Attributes:
-        total_count: How many such periods there were.
-        total_count_change: How many of them are new.
+        total_count: Number of such periods.
+        total_count_change: Number of new ones.
     """
 
     total_count: int
@@ -48,11 +48,11 @@ class QoSOfferedDeadlineMissedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSRequestedDeadlineMissedInfo:
-    """A subscription received nothing for as long as its deadline.
+    """A subscription did not receive anything within its deadline.
 
     Attributes:
-        total_count: How many such periods there were.
-        total_count_change: How many of them are new.
+        total_count: Number of such periods.
+        total_count_change: Number of new ones.
     """
 
     total_count: int
@@ -61,10 +61,10 @@ class QoSRequestedDeadlineMissedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSLivelinessLostInfo:
-    """A publisher with liveliness MANUAL_BY_TOPIC gave no sign of life within its lease.
+    """A publisher with liveliness MANUAL_BY_TOPIC did not assert it within its lease.
 
     Attributes:
-        total_count: How often that happened.
+        total_count: How often that has happened.
         total_count_change: How often it happened since the last event.
     """
 
@@ -74,13 +74,13 @@ class QoSLivelinessLostInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSLivelinessChangedInfo:
-    """A publisher of the topic came to life, lost its liveliness, or has gone.
+    """A publisher of the topic became alive, lost its liveliness, or left.
 
     Attributes:
-        alive_count: How many matched publishers are alive.
-        not_alive_count: How many gave no sign of life within the lease of the subscription.
-        alive_count_change: By how much `alive_count` has changed; negative if it fell.
-        not_alive_count_change: By how much `not_alive_count` has changed.
+        alive_count: Number of matched publishers that are alive.
+        not_alive_count: Number of those that were silent for longer than the subscription's lease.
+        alive_count_change: Change of `alive_count`; negative if it fell.
+        not_alive_count_change: Change of `not_alive_count`.
     """
 
     alive_count: int
@@ -91,11 +91,11 @@ class QoSLivelinessChangedInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSMessageLostInfo:
-    """Messages are missing in the sequence numbers of a publisher.
+    """Gaps in the sequence numbers of a publisher show lost messages.
 
     Attributes:
-        total_count: How many are missing in all.
-        total_count_change: How many of them are new.
+        total_count: Total number of lost messages.
+        total_count_change: Number of new ones.
     """
 
     total_count: int
@@ -104,12 +104,12 @@ class QoSMessageLostInfo:
 
 @dataclass(frozen=True, slots=True)
 class QoSRequestedIncompatibleQoSInfo:
-    """An endpoint appeared whose QoS does not fit.
+    """An endpoint with incompatible QoS appeared.
 
     Attributes:
-        total_count: How many there were.
-        total_count_change: How many of them are new.
-        last_policy_kind: A policy that does not fit; the last one, if there are several.
+        total_count: Number of such endpoints.
+        total_count_change: Number of new ones.
+        last_policy_kind: An incompatible policy; the last one, if there are several.
     """
 
     total_count: int
@@ -122,11 +122,11 @@ QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo
 
 @dataclass(frozen=True, slots=True)
 class IncompatibleTypeInfo:
-    """An endpoint appeared whose type is another, or another definition of the same name.
+    """An endpoint appeared with another type, or another definition of the same type.
 
     Attributes:
-        total_count: How many there were.
-        total_count_change: How many of them are new.
+        total_count: Number of such endpoints.
+        total_count_change: Number of new ones.
     """
 
     total_count: int
@@ -135,13 +135,13 @@ class IncompatibleTypeInfo:
 
 @dataclass(frozen=True, slots=True)
 class MatchedInfo:
-    """A counterpart was matched, or has gone.
+    """A counterpart was matched, or left.
 
     Attributes:
-        total_count: How many have been matched in all.
-        total_count_change: How many of them are new.
-        current_count: How many are matched now.
-        current_count_change: By how much `current_count` has changed; negative if it fell.
+        total_count: Number of counterparts ever matched.
+        total_count_change: Number of new ones.
+        current_count: Number of counterparts matched now.
+        current_count_change: Change of `current_count`; negative if it fell.
     """
 
     total_count: int
@@ -173,22 +173,22 @@ SubscriptionEvent = (
 """The events that `Subscription.events` yields."""
 
 
-# Callbacks, which a face calls
+# Callbacks, to be called by either API
 
 
 class PublisherEventCallbacks:
-    """Functions that a publisher calls with its events, sync or async, each of one argument.
+    """Callbacks for the events of a publisher, sync or async, each with one argument.
 
-    An exception in one ends the node, as in the callback of a subscription.
+    An exception in one of them ends the node, as in a subscription's callback.
 
     Args:
-        deadline: Called when nothing was published for as long as the deadline.
-        liveliness: Called when the publisher gave no sign of life within its lease.
+        deadline: Called when nothing was published within the deadline.
+        liveliness: Called when the publisher did not assert its liveliness within its lease.
         incompatible_qos: Called when a subscription requests more than the publisher offers.
         incompatible_type: Called when a subscription of the topic has another type.
-        matched: Called when a subscription is matched, or has gone.
-        use_default_callbacks: Whether the log gets a warning for each incompatible subscription
-            that no callback is given for.
+        matched: Called when a subscription is matched, or leaves.
+        use_default_callbacks: Whether to log a warning for incompatible subscriptions for which no
+            callback is given.
     """
 
     def __init__(
@@ -210,19 +210,19 @@ class PublisherEventCallbacks:
 
 
 class SubscriptionEventCallbacks:
-    """Functions that a subscription calls with its events, sync or async, each of one argument.
+    """Callbacks for the events of a subscription, sync or async, each with one argument.
 
-    An exception in one ends the node, as in the callback of the subscription itself.
+    An exception in one of them ends the node, as in the subscription's own callback.
 
     Args:
-        deadline: Called when nothing was received for as long as the deadline.
+        deadline: Called when nothing was received within the deadline.
         incompatible_qos: Called when a publisher offers less than the subscription requests.
-        liveliness: Called when a publisher comes to life, loses its liveliness, or goes.
-        message_lost: Called when messages are missing in the numbers of a publisher.
+        liveliness: Called when a publisher becomes alive, loses its liveliness, or leaves.
+        message_lost: Called when a gap in a publisher's sequence numbers shows lost messages.
         incompatible_type: Called when a publisher of the topic has another type.
-        matched: Called when a publisher is matched, or has gone.
-        use_default_callbacks: Whether the log gets a warning for each incompatible publisher that
-            no callback is given for.
+        matched: Called when a publisher is matched, or leaves.
+        use_default_callbacks: Whether to log a warning for incompatible publishers for which no
+            callback is given.
     """
 
     def __init__(

@@ -1,7 +1,7 @@
-"""The life of a goal: its states, their transitions, and the goals that cancel requests select.
+"""The life cycle of a goal: states, transitions, and which goals cancel requests select.
 
-`TRANSITIONS` holds every transition. The server looks each change up there first, so no goal can
-end twice, or be cancelled after its end::
+`TRANSITIONS` holds every transition. The server looks up each change there first, so no goal can
+end twice, or be canceled after its end::
 
     ACCEPTED --EXECUTE--> EXECUTING --SUCCEED--> SUCCEEDED
         |                  |     |
@@ -12,13 +12,13 @@ end twice, or be cancelled after its end::
                   +------CANCELED-> CANCELED
 
 A rejected goal has no state, since it is not kept. ``UNKNOWN`` is what a server reports for a goal
-that it does not know, or no longer knows.
+that it does not know (any more).
 
-`ALL_GOALS` is the goal id of cancel requests that do not name a goal. An aionode client calls
-``get_result`` with the ids of `reason_id`, `alive_id` and `left_id` for more than the result, and
-``cancel_goal`` with that of `lost_id`.
+`ALL_GOALS` is the goal id of cancel requests that do not name a goal. aionode clients call
+``get_result`` with the ids of `reason_id`, `alive_id` and `left_id` for purposes other than the
+result, and ``cancel_goal`` with that of `lost_id`.
 
-The states are in `_goal_states.py`, and the goals of a cancel request in `_cancel_selection.py`.
+The states are in `goal_states.py`, and the selection by cancel requests in `cancel_selection.py`.
 """
 
 from __future__ import annotations
@@ -100,18 +100,18 @@ def reason_id(goal_id: bytes) -> bytes:
 
 
 def alive_id(goal_id: bytes) -> bytes:
-    """Return the id with which a client calls ``get_result`` as a sign that it is alive.
+    """Return the id with which a client calls ``get_result`` as a sign of life.
 
-    As for `reason_id`, this needs no endpoint that ROS does not have. So every rule of access
-    control that lets a client use the action lets its signs pass. Twice it is the id of the goal.
+    Like `reason_id`, this needs no endpoint beyond ROS's own, so any access control rule that lets
+    a client use the action also permits it. Applying it twice gives the id of the goal.
     """
     return bytes(byte ^ 0x55 for byte in goal_id)
 
 
 def left_id(goal_id: bytes) -> bytes:
-    """Return the id with which a client calls ``get_result`` before it ends without the goal.
+    """Return the id with which a client calls ``get_result`` before it leaves without the goal.
 
-    Twice it is the id of the goal.
+    Applying it twice gives the id of the goal.
     """
     return bytes(byte ^ 0xAA for byte in goal_id)
 
@@ -119,13 +119,13 @@ def left_id(goal_id: bytes) -> bytes:
 def lost_id(goal_id: bytes) -> bytes:
     """Return the id with which a client cancels a goal whose owner is lost.
 
-    It has sent the goal for somebody else, as a gateway does, and the server has rejected to cancel
-    it by its own id. Servers that are not aionode's answer that they do not know the goal. Twice it
-    is the id of the goal.
+    It is used for goals sent on behalf of someone else, as by a gateway, if the server refused to
+    cancel by the goal's own id. Servers other than aionode's answer that they do not know the goal.
+    Applying it twice gives the id of the goal.
     """
     return bytes(byte ^ 0x33 for byte in goal_id)
 
 
 def is_sign(asked_id: bytes, goals: Container[bytes]) -> bool:
-    """Return whether a call of ``get_result`` with this id only tells that a client is alive."""
+    """Return whether a call of ``get_result`` with this id is only a sign of life."""
     return alive_id(asked_id) in goals or left_id(asked_id) in goals

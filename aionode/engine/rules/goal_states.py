@@ -32,7 +32,7 @@ class GoalStatus(IntEnum):
 
     @classmethod
     def _missing_(cls, value: object) -> GoalStatus | None:
-        """Take numbers that a later version of ROS may send for UNKNOWN."""
+        """Map numbers that a later version of ROS may send to UNKNOWN."""
         return cls.UNKNOWN if isinstance(value, int) else None
 
     @property
@@ -78,5 +78,5 @@ def next_status(status: GoalStatus, event: GoalEvent, goal_id: str = "") -> Goal
 
 
 def is_cancelable(status: GoalStatus) -> bool:
-    """Return whether a goal in this state can be cancelled."""
+    """Return whether a goal in this state can be canceled."""
     return (status, GoalEvent.CANCEL_GOAL) in TRANSITIONS

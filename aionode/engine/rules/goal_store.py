@@ -1,4 +1,4 @@
-"""The goals of one action server: those that are active, and those whose results are kept."""
+"""The goals of one action server: active goals, and those whose results are kept."""
 
 from __future__ import annotations
 
@@ -20,38 +20,38 @@ __all__ = [
 ]
 
 MAX_GOALS = 1000
-"""Most goals that may be active at once, unless a program says otherwise."""
+"""Default limit of active goals."""
 
 
 def checked_max_goals(max_goals: int, subject: str) -> int:
-    """Return how many goals may be active at once.
+    """Validate and return the maximum number of active goals.
 
     Raises:
         TypeError: it is not an int.
         ValueError: it is less than 1.
     """
-    if type(max_goals) is not int:  # True is no number
-        raise TypeError(f"{subject}: max_goals={brief(max_goals)}; an int is needed")
+    if type(max_goals) is not int:  # bool does not count
+        raise TypeError(f"{subject}: max_goals={brief(max_goals)}; expected an int")
     if max_goals < 1:
         raise ValueError(f"{subject}: max_goals={max_goals}; it must be at least 1")
     return max_goals
 
 
 class GoalStore(dict[bytes, Any]):
-    """By goal id: the goals that have not ended, and for a while those that have.
+    """Goals by id: those that have not ended, and for a while those that have.
 
-    An ended goal is forgotten after a time, or when there are too many, the oldest first.
+    An ended goal is forgotten after a while, or when there are too many, oldest first.
 
     Args:
-        now_ns: Shows the time that counts.
-        limit: How many goals may be active at once, and how many that have ended are kept.
-        kept_ns: How long goals are kept after their end; negative for ever.
-        limit_bytes: How much the messages of active goals take at most, and as much those of kept
-            ones; 0 for any. A single one always fits.
-        goal_class: The class of aionode whose fields the messages have; their own by default.
+        now_ns: Returns the current time.
+        limit: Maximum number of active goals, and of ended goals that are kept.
+        kept_ns: How long to keep goals after their end; negative for forever.
+        limit_bytes: Maximum size of the messages of active goals, and also of those of kept goals;
+            0 for no limit. A single one always fits.
+        goal_class: The aionode class with the messages' fields; by default their own class.
 
     Attributes:
-        kept_ns: The same.
+        kept_ns: As given.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class GoalStore(dict[bytes, Any]):
         self._limit_bytes = limit_bytes
         self._goal_class = goal_class
         self.kept_ns = kept_ns
-        # When each kept goal is forgotten. All are kept equally long, so the first is due first.
+        # When each kept goal expires. All are kept for the same time, so they are in order.
         self._kept: dict[bytes, int] = {}
 
     @property
@@ -77,10 +77,10 @@ class GoalStore(dict[bytes, Any]):
         return len(self) - len(self._kept)
 
     def refusal(self, goal: Any = None) -> str:
-        """Return why no other goal may become active; empty if one may.
+        """Return why no further goal may become active; empty if one may.
 
         Args:
-            goal: Its message, where messages are weighed.
+            goal: Its message, if its size matters.
         """
         if self.active >= self._limit:
             return f"{self.active} are active: max_goals={self._limit}"
@@ -95,18 +95,18 @@ class GoalStore(dict[bytes, Any]):
         )
 
     def _fit(self, goals: list[Any]) -> bool:
-        """Return whether messages of goals take no more than the limit."""
+        """Return whether messages of goals are within the size limit."""
         kind: Any = self._goal_class or type(goals[0])
         size_of = memory_size(kind) if self._limit_bytes else None
         return size_of is None or sum(map(size_of, goals)) <= self._limit_bytes
 
     @property
     def due_ns(self) -> int | None:
-        """When the next goal is to be forgotten; None if none waits for its time."""
+        """The time at which the next goal expires; None if none does."""
         return None if self.kept_ns < 0 else next(iter(self._kept.values()), None)
 
     def keep(self, goal_id: bytes) -> list[Any]:
-        """Keep a goal that has ended; return the goals that are forgotten for it."""
+        """Keep a goal that has ended; return the goals that are forgotten to make room."""
         forgotten = []
         if len(self._kept) >= self._limit:
             forgotten.append(self._forget(next(iter(self._kept))))
@@ -117,7 +117,7 @@ class GoalStore(dict[bytes, Any]):
         return forgotten
 
     def expire(self) -> list[Any]:
-        """Forget the goals whose time is over, and return them."""
+        """Forget expired goals, and return them."""
         now_ns = self._now_ns()
         forgotten = []
         while (due_ns := self.due_ns) is not None and due_ns <= now_ns:
@@ -130,22 +130,22 @@ class GoalStore(dict[bytes, Any]):
 
 
 class AlarmedGoalStore(GoalStore):
-    """A goal store that forgets by itself, when an alarm rings.
+    """A goal store that forgets expired goals by itself, using an alarm.
 
-    With no time to keep goals, it keeps them until `forget_ended`.
+    If goals are kept for no time, they are kept until `forget_ended`.
 
     Args:
-        time_base: Whose steady clock counts.
+        time_base: Provides the steady clock.
         limit, kept_ns, limit_bytes: As for `GoalStore`.
     """
 
     def __init__(self, time_base: TimeBase, limit: int, kept_ns: int, limit_bytes: int = 0) -> None:
         super().__init__(time_base.steady_ns, limit, kept_ns, limit_bytes)
         self._time_base = time_base
-        self._alarm: Alarm | None = None  # for the first, if it waits for its time
+        self._alarm: Alarm | None = None  # for the first goal to expire
 
     def keep(self, goal_id: bytes) -> list[Any]:
-        """Keep a goal that has ended; return the goals that are forgotten for it."""
+        """Keep a goal that has ended; return the goals that are forgotten to make room."""
         forgotten = super().keep(goal_id)
         if self._alarm is None and self.kept_ns:
             self._set_alarm()

@@ -1,4 +1,4 @@
-"""States and transitions as messages, and the answers to those who ask a managed node for them."""
+"""States and transitions as messages, and the answers to queries about a managed node."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["StateAnswers", "fill_event", "fill_state"]
 
 
 class StateAnswers:
-    """The callbacks of the four services that change nothing.
+    """The callbacks of the four read-only services.
 
     Args:
-        machine: The state.
+        machine: The state machine.
         state_class: The class of lifecycle_msgs/msg/State.
         description_class: The class of lifecycle_msgs/msg/TransitionDescription.
     """
@@ -32,19 +32,19 @@ class StateAnswers:
         return response
 
     def get_available_states(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # as above
-        """Answer ``~/get_available_states``: all that there are."""
+        """Answer ``~/get_available_states`` with all states."""
         response.available_states = [fill_state(self._state_class(), state) for state in STATES]
         return response
 
     def get_available_transitions(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # as above
-        """Answer ``~/get_available_transitions``: those that are possible now."""
+        """Answer ``~/get_available_transitions`` with those possible now."""
         response.available_transitions = [
             self._described(transition) for transition in self._machine.available()
         ]
         return response
 
     def get_transition_graph(self, request: Any, response: Any) -> Any:  # noqa: ARG002  # as above
-        """Answer ``~/get_transition_graph``: all that there are."""
+        """Answer ``~/get_transition_graph`` with all transitions."""
         response.available_transitions = [self._described(transition) for transition in TRANSITIONS]
         return response
 

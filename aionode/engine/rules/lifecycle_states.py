@@ -1,8 +1,8 @@
-"""The states and transitions of a managed node: a table, and a state machine over it.
+"""The states and transitions of a managed node: a table, and a state machine using it.
 
 Numbers, names and order are those of `rcl_lifecycle`. A requested transition, such as `configure`,
 leads to a transition state (`configuring`) in which the node's callback runs. The callback's result
-is a transition too, such as `transition_success`, and leads to the next primary state.
+is itself a transition, such as `transition_success`, and leads to the next primary state.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Transition(NamedTuple):
 
 
 class TransitionCallbackReturn(Enum):
-    """The result of a callback of a transition, with rclpy's values."""
+    """The result of a transition callback, with rclpy's values."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -116,7 +116,7 @@ TRANSITIONS: Final = (
 
 
 class StateMachine:
-    """The current state, and the rules of the table; no callbacks, messages or time.
+    """The current state and its transitions; no callbacks, messages or time.
 
     Attributes:
         state: The current state.
@@ -127,7 +127,7 @@ class StateMachine:
 
     @property
     def in_transition(self) -> bool:
-        """Whether a transition is in progress, and its callback has not returned."""
+        """Whether a transition is in progress, i.e. its callback has not returned."""
         return self.state.state_id >= CONFIGURING.state_id
 
     def available(self) -> list[Transition]:
@@ -135,9 +135,9 @@ class StateMachine:
         return [transition for transition in TRANSITIONS if transition.start == self.state]
 
     def find(self, label: str = "", transition_id: int = 0) -> Transition | None:
-        """Return an available transition, by its label or, if that is empty, by its number.
+        """Return an available transition by its label or, if that is empty, by its id.
 
-        That is how `rcl_lifecycle` reads a `ChangeState` request.
+        This is how `rcl_lifecycle` interprets a `ChangeState` request.
         """
         for transition in self.available():
             if label == transition.label if label else transition_id == transition.transition_id:

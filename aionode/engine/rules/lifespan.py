@@ -1,4 +1,4 @@
-"""Messages that are dropped from a queue when they are older than their lifespan."""
+"""Drops messages from a queue once they exceed their lifespan."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ if TYPE_CHECKING:
 __all__ = ["NEVER_NS", "ExpiringItems", "expires_ns"]
 
 NEVER_NS: Final = 1 << 63
-"""When a message without a lifespan expires."""
+"""The expiry time of a message without a lifespan."""
 
 
 def expires_ns(source_ns: int, arrived_ns: int, limit_ns: int) -> int:
     """Return when a message expires, in nanoseconds since 1970.
 
     Args:
-        source_ns: When it was published, by the clock of its publisher; 0 if nothing says so.
+        source_ns: When it was published, by its publisher's clock; 0 if unknown.
         arrived_ns: When it arrived.
         limit_ns: Its lifespan.
     """
-    # A stamp of the future is from a clock that is not synchronized with this one. DDS says to take
-    # the time of arrival then, and there is no other without a stamp.
+    # A stamp in the future means that the clocks are not synchronized. DDS then uses the arrival
+    # time, as one must without a stamp.
     return (source_ns if 0 < source_ns <= arrived_ns else arrived_ns) + limit_ns
 
 
 class ExpiringItems(deque[tuple[int, Any]]):
-    """The items of a message queue, each with the time at which it expires.
+    """The items of a message queue, each with its expiry time.
 
-    Expired items are dropped before anything asks whether, or how many, items there are; a queue
-    does that before it takes or adds one.
+    Expired items are dropped before anything asks for the items or their number; a queue does so
+    before it takes or adds one.
 
     Args:
-        items: What is queued already, and does not expire.
+        items: Items that are already queued, and do not expire.
         now_ns: Returns nanoseconds since 1970.
         on_expired: Called with the number of items that were dropped, if any.
 
     Attributes:
-        next_expires_ns: When the item that is appended next expires.
+        next_expires_ns: The expiry time of the item to be appended next.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class ExpiringItems(deque[tuple[int, Any]]):
 
     @property
     def earliest_ns(self) -> int:
-        """When the first of the items expires, or sooner."""
+        """When the first item expires, or earlier."""
         return self._earliest_ns
 
     def __bool__(self) -> bool:
@@ -75,7 +75,7 @@ class ExpiringItems(deque[tuple[int, Any]]):
         self._earliest_ns = min(self._earliest_ns, self.next_expires_ns)
 
     def popleft(self) -> tuple[int, Any]:
-        """Take the oldest item."""
+        """Remove and return the oldest item."""
         self._expires_ns.popleft()
         return super().popleft()
 

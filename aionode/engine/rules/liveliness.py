@@ -20,12 +20,12 @@ __all__ = ["PublisherLiveliness"]
 
 
 class Lease:
-    """One publisher, as a subscription sees it.
+    """One publisher, as seen by a subscription.
 
     Attributes:
-        alarm: Rings when its lease is over; None without a limit.
-        manual: Whether its messages and assertions are the only signs of its life.
-        asserts: Whether assertions have come from it, so that their absence means something.
+        alarm: Rings when its lease expires; None without a limit.
+        manual: Whether messages and assertions are the only signs of its life.
+        asserts: Whether it has sent assertions before, so that their absence means something.
         alive: Whether it is alive; None before its first sign of life.
     """
 
@@ -39,17 +39,18 @@ class Lease:
 
 
 class PublisherLiveliness:
-    """Keeps the lease that a subscription requests, for each of its publishers.
+    """Tracks the lease that a subscription requests, for each of its publishers.
 
-    A publisher with liveliness AUTOMATIC is alive as long as the graph has it. If it is one of
-    aionode's, with a lease of its own, its process asserts it as well, and it is not alive when
-    that stops. One with MANUAL_BY_TOPIC comes to life with its first message or assertion, and
-    has to give another within the lease. Without a limit each is alive while it is in the graph.
+    A publisher with liveliness AUTOMATIC is alive while it is in the graph. An aionode publisher
+    with a lease of its own is also asserted by its process, and is no longer alive when that stops.
+    A publisher with MANUAL_BY_TOPIC becomes alive with its first message or assertion, and must
+    send another within the lease. Without a limit, publishers are alive while they are in the
+    graph.
 
     Args:
-        time_base: The time.
+        time_base: The time base.
         qos: The profile of the subscription.
-        emit: Takes the events.
+        emit: Called with each event.
     """
 
     def __init__(
@@ -68,21 +69,21 @@ class PublisherLiveliness:
         self._runs = False
 
     def start(self) -> None:
-        """Begin to enforce the leases: an event loop runs now."""
+        """Start to enforce the leases, as an event loop is running now."""
         self._runs = True
         for lease in self._leases.values():
             if lease.alarm is not None:
                 lease.alarm.start()
 
     def stop(self) -> None:
-        """Enforce nothing more."""
+        """Stop enforcing the leases."""
         for lease in self._leases.values():
             if lease.alarm is not None:
                 lease.alarm.stop()
         self._leases.clear()
 
     def add(self, publisher: EndpointInfo) -> None:
-        """Watch a publisher that was matched."""
+        """Watch a matched publisher."""
         if publisher.gid in self._leases:
             return
         alarm = None
@@ -97,7 +98,7 @@ class PublisherLiveliness:
             self._set_alive(lease)
 
     def remove(self, publisher: EndpointInfo) -> None:
-        """Forget a publisher that has gone."""
+        """Forget a publisher that has left."""
         lease = self._leases.pop(publisher.gid, None)
         if lease is None:
             return
@@ -107,13 +108,13 @@ class PublisherLiveliness:
             self._change(-lease.alive, lease.alive - 1)
 
     def note_message(self, gid: bytes) -> None:
-        """Take a message as a sign of life."""
+        """Count a message as a sign of life."""
         lease = self._leases.get(gid)
         if lease is not None and (lease.manual or lease.asserts):
             self._renew(lease)
 
     def note_assertion(self, gid: bytes) -> None:
-        """Take an assertion."""
+        """Count an assertion as a sign of life."""
         lease = self._leases.get(gid)
         if lease is not None:
             lease.asserts = True

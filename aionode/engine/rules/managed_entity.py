@@ -18,8 +18,8 @@ __all__ = ["ManagedEntity", "SimpleManagedEntity"]
 class ManagedEntity:
     """Takes part in the transitions of a node; see `LifecycleNode.add_managed_entity`.
 
-    Each method gets the state in which the transition started, and returns its result. They are
-    not coroutines, and are called in the order in which the entities were added.
+    Each method gets the state in which the transition started, and returns its result. The methods
+    are not coroutines, and are called in the order in which the entities were added.
     """
 
     def on_configure(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # for subclasses
@@ -43,7 +43,7 @@ class ManagedEntity:
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: State) -> TransitionCallbackReturn:  # noqa: ARG002  # the same
-        """Take part in the processing of an error."""
+        """Take part in error processing."""
         return TransitionCallbackReturn.SUCCESS
 
 
@@ -74,7 +74,7 @@ class SimpleManagedEntity(ManagedEntity):
         *,
         when_not_enabled: Callable[..., Any] | None = None,
     ) -> Callable[..., Any]:
-        """Decorate a method to run only while its entity is enabled.
+        """Decorate a method so that it runs only while its entity is enabled.
 
         Args:
             wrapped: The method.

@@ -1,4 +1,4 @@
-"""The counterparts of one endpoint: which are matched, and which do not fit."""
+"""The counterparts of one endpoint: which are matched, and which are incompatible."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ __all__ = ["Matching"]
 
 
 class Matching:
-    """Counts matched and incompatible counterparts, and tells of each change.
+    """Counts matched and incompatible counterparts, and reports each change.
 
     Args:
         endpoint: The endpoint.
-        emit: Takes the name of an event and the event.
+        emit: Called with the name of an event and the event.
     """
 
     def __init__(self, endpoint: EndpointInfo, emit: Callable[[str, Any], None]) -> None:
@@ -35,7 +35,7 @@ class Matching:
         self._incompatible_types = 0
 
     def note(self, other: EndpointInfo, present: bool) -> None:
-        """Take a counterpart that has appeared or gone."""
+        """Record a counterpart that has appeared or left."""
         if present:
             self._add(other)
         elif other in self._matched:
@@ -53,7 +53,7 @@ class Matching:
         elif mismatch is not None:
             self._incompatible_types += 1
             self._emit("incompatible_type", IncompatibleTypeInfo(self._incompatible_types, 1))
-        # Over rmw_zenoh messages pass whatever the QoS is, so that is a match, too.
+        # rmw_zenoh delivers messages whatever the QoS is, so that is a match, too.
         if self._endpoint.matches(other) and other not in self._matched:
             self._matched.add(other)
             self._total += 1

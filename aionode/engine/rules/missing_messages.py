@@ -1,4 +1,4 @@
-"""How many messages of a publisher are missing, by their sequence numbers."""
+"""Detects missing messages of a publisher from gaps in its sequence numbers."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ REMEMBERED_PUBLISHERS = 1024
 
 
 def missing_before(last_sequences: Recent[bytes, int], gid: bytes, sequence: int) -> int:
-    """Take the number of a message; return how many before it are missing from its publisher.
+    """Record the number of a message; return how many before it are missing.
 
     Args:
-        last_sequences: The last number of each publisher, by gid; messages may carry any number of
-            invented gids.
+        last_sequences: The last number of each publisher, by gid; messages may carry arbitrarily
+            many invented gids.
         gid: The publisher.
-        sequence: The number. One that is not newer than the last counts for nothing.
+        sequence: The number. If it is not newer than the last one, it is ignored.
     """
     last = last_sequences.get(gid)
     if last is None:

@@ -1,4 +1,4 @@
-"""When messages were published, by the steady clock of this host."""
+"""When messages were published, on this host's steady clock."""
 
 from __future__ import annotations
 
@@ -8,48 +8,50 @@ from aionode.engine.rules.missing_messages import REMEMBERED_PUBLISHERS
 __all__ = ["PublicationTimes"]
 
 SHORTEST_NS = 500_000
-"""Messages that were published in a shorter time say nothing about the pace at which they came."""
+"""Messages published closer together than this say nothing about the pace of arrivals."""
 
 SYNCHRONIZED_NS = 50_000_000
-"""Clocks that seem to be less far apart count as the same: hosts that use NTP are closer."""
+"""Clocks that seem to be closer than this count as equal: hosts with NTP are closer."""
 
 DRIFT = 10_000
-"""Clocks of two hosts drift apart by less than one part in so many."""
+"""The clocks of two hosts drift apart by less than one part in this many."""
 
 
 class PublicationTimes:
-    """Tells messages that were held back on their way from those that were just published.
+    """Distinguishes messages that were delayed on the way from freshly published ones.
 
-    A message has the time of its publication by the clock of its publisher's host, and that clock
-    may be any time apart from the one here. The difference is not known, but no message arrives
-    before it is published: the smallest difference between an arrival and the stamp is the best
-    estimate, and it is too late by the shortest time on the way, below a millisecond mostly.
+    A message is stamped with its publication time by the clock of the publisher's host, which may
+    differ from the clock here by any amount. The offset is unknown, but no message arrives before
+    it is published: the smallest difference between an arrival and the stamp is the best estimate.
+    It is too late by the shortest transit time, mostly less than a millisecond.
 
-    A publisher that has shown only messages that were held back would seem to have a slow clock. So
-    the clocks of a new publisher are taken for synchronized, as on one host they are, until two
-    messages have come at the pace at which they were published: what was held back comes at once.
+    A publisher all of whose messages were delayed would seem to have a slow clock. So a new
+    publisher's clock is assumed to be synchronized, as it is on the same host, until two messages
+    have arrived at the pace of their publication: delayed messages arrive all at once.
     """
 
     def __init__(self) -> None:
-        # By gid; the one known for longest is first.
+        # By gid, longest known first.
         self._clocks: Recent[bytes, PublisherClock] = Recent(REMEMBERED_PUBLISHERS)
 
     def published_ns(
         self, gid: bytes, source_ns: int, arrived_ns: int, system_began_ns: int
     ) -> int:
-        """Return when a message was published, at most when it arrived.
+        """Return when a message was published, but not later than its arrival.
 
         Args:
-            gid: Its publisher, whose messages are shown in the order of their arrival.
-            source_ns: Its stamp, in nanoseconds since 1970; 0 if it has none: then it counts as
-                published when it arrived.
+            gid: Its publisher, whose messages must be passed in the order of arrival.
+            source_ns: Its stamp, in nanoseconds since 1970; 0 if it has none and so counts as
+                published on arrival.
             arrived_ns: When it arrived, by the steady clock.
-            system_began_ns: What the steady clock showed when the system clock here showed 0.
+            system_began_ns: The steady time at which the local system clock showed 0.
         """
         if not source_ns:
             return arrived_ns
         clock = self._clocks.get(gid)
-        if clock is None or source_ns < clock.source_ns:  # a new one, or its clock was set back
+        if (
+            clock is None or source_ns < clock.source_ns
+        ):  # a new publisher, or its clock was set back
             clock = PublisherClock(system_began_ns)
             self._clocks.put(gid, clock)
         clock.note(source_ns, arrived_ns)
@@ -59,10 +61,10 @@ class PublicationTimes:
 
 
 class PublisherClock:
-    """The clock of one publisher's host, as far as it is known.
+    """What is known about the clock of one publisher's host.
 
     Attributes:
-        began_ns: What the steady clock here showed when that clock showed 0, as an estimate.
+        began_ns: An estimate of the local steady time at which that clock showed 0.
         source_ns: The stamp of the newest message.
     """
 
@@ -72,10 +74,10 @@ class PublisherClock:
         self.began_ns = began_ns
         self.source_ns = 0
         self._arrived_ns = 0
-        self._is_proven = False  # whether messages have come at the pace of their publication
+        self._is_proven = False  # whether messages have arrived at the pace of their publication
 
     def note(self, source_ns: int, arrived_ns: int) -> None:
-        """Learn from a message."""
+        """Update the estimate from a message."""
         latest_ns = arrived_ns - source_ns
         if self.source_ns:
             before_ns = self._arrived_ns - self.source_ns

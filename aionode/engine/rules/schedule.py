@@ -1,7 +1,7 @@
-"""The times at which a timer is due, on a grid (`Schedule`), and the wait for them (`Ticker`).
+"""The due times of a timer (`Schedule`), and waiting for them (`Ticker`).
 
 The rules are rcl's (rcl/src/rcl/timer.c). The first call is due one period after the start, and
-each later one a period after the time *planned* for the one before, so delays do not add up. A
+each later one a period after the *planned* time of the previous one, so delays do not accumulate. A
 timer that is late by whole periods is called once, and continues at the next point of its grid.
 """
 
@@ -24,18 +24,18 @@ JUMPS = JumpThreshold(min_forward=None, min_backward=Duration(nanoseconds=-1))
 
 
 class Schedule:
-    """The grid of one timer. All times are nanoseconds of one clock, which the caller reads.
+    """The due times of one timer, in nanoseconds of a clock that the caller reads.
 
     Attributes:
-        period_ns: From one call to the next. Changing it does not move the call already planned.
+        period_ns: The period. Changing it does not move the call that is already planned.
         next_ns: When the next call is planned.
-        last_ns: When the last call was made; before the first, when the schedule started.
-        calls: How many calls were made.
-        skipped: How many were skipped because they would have been too late.
+        last_ns: When the last call was made; initially, when the schedule started.
+        calls: Number of calls made.
+        skipped: Number of calls skipped because they were too late.
         canceled: Whether nothing is due until `reset`.
 
     Raises:
-        ValueError: The period is negative.
+        ValueError: the period is negative.
     """
 
     __slots__ = ("calls", "canceled", "last_ns", "next_ns", "period_ns", "skipped")
@@ -56,10 +56,10 @@ class Schedule:
         """Record that the call is made now, and plan the next; return when this one was planned.
 
         Raises:
-            RuntimeError: The timer is canceled.
+            RuntimeError: the timer is canceled.
         """
         if self.canceled:
-            raise RuntimeError("timer: it is canceled and cannot be called; call reset() first")
+            raise RuntimeError("timer: canceled timers cannot be called; call reset() first")
         expected_ns = self.next_ns
         period_ns = self.period_ns
         next_ns = expected_ns + period_ns
@@ -85,46 +85,46 @@ class Schedule:
         self.canceled = False
 
     def change_period(self, period_ns: int) -> None:
-        """Use another period after the call that is planned already.
+        """Use another period after the call that is already planned.
 
         Raises:
-            ValueError: The period is negative.
+            ValueError: the period is negative.
         """
         self.period_ns = checked_period(period_ns)
 
     def until_next_ns(self, now_ns: int) -> int | None:
-        """Return how long it is to the next call, negative when it is late; None if canceled."""
+        """Return the time until the next call, negative if it is late; None if canceled."""
         return None if self.canceled else self.next_ns - now_ns
 
     def since_last_ns(self, now_ns: int) -> int:
-        """Return how long ago the last call was, or the start if there was none."""
+        """Return the time since the last call, or since the start if there was none."""
         return now_ns - self.last_ns
 
     def look_back(self, now_ns: int) -> None:
-        """Start over if the clock was set back to before the last call; else change nothing."""
+        """Start over if the clock was set back to before the last call; otherwise do nothing."""
         if now_ns < self.last_ns:
             self.next_ns = now_ns + self.period_ns
             self.last_ns = now_ns
 
     def carry_over(self, old_now_ns: int, new_now_ns: int) -> None:
-        """Keep the rest of the period when the clock switches to another source of time."""
+        """Keep the rest of the period when the clock switches to another time source."""
         left_ns = self.next_ns - old_now_ns
         self.next_ns = new_now_ns + max(left_ns, 0)
-        self.last_ns = new_now_ns + left_ns - self.period_ns  # as rcl, also after a reset
+        self.last_ns = new_now_ns + left_ns - self.period_ns  # as in rcl, even after a reset
 
 
 class ClockedSchedule:
-    """A schedule that goes by a clock, through jumps of ROS time and changes of its source.
+    """A schedule that follows a clock through jumps of ROS time and changes of its source.
 
     Args:
         clock: The clock.
-        period_ns: From one call to the next.
-        autostart: Whether it starts now.
+        period_ns: The period.
+        autostart: Whether to start now.
         jumps: The jumps of ROS time after which `wake` is called.
 
     Attributes:
         clock: The clock.
-        schedule: What is due when, in the time of the clock.
+        schedule: The due times, in the time of the clock.
     """
 
     __slots__ = ("_before_jump_ns", "_jumps", "clock", "schedule")
@@ -169,12 +169,12 @@ class ClockedSchedule:
         self.wake()
 
     def _switch(self, old_now_ns: int, new_now_ns: int) -> None:
-        """Go on by another source of time."""
+        """Continue with another time source."""
         self.schedule.carry_over(old_now_ns, new_now_ns)
 
 
 class Ticker(ClockedSchedule):
-    """A schedule by a clock that tasks wait for."""
+    """A clocked schedule that tasks can wait for."""
 
     __slots__ = ("_waiters",)
 
@@ -193,13 +193,13 @@ class Ticker(ClockedSchedule):
         lost between two waits, because the schedule records what is due.
 
         Args:
-            on_ring: Called when the alarm rings, on a clock that follows the machine's. If it
-                returns True, it has made the call, and the wait continues until the next is due.
+            on_ring: Called when the alarm rings, if the clock follows the machine's. If it returns
+                True, it has made the call, and the wait continues until the next one is due.
         """
         waiter = asyncio.get_running_loop().create_future()
         schedule = self.schedule
         alarm: Alarm | None = None
-        period_ns = 0  # of the alarm, if it goes on by itself
+        period_ns = 0  # of a periodic alarm
 
         def ring() -> None:
             nonlocal alarm, period_ns
@@ -227,9 +227,9 @@ class Ticker(ClockedSchedule):
         schedule.look_back(self.clock.now_ns())  # the machine's clock may have been set back
 
     def _set_alarm(self, ring: Callable[[], None], *, repeat: bool) -> tuple[Alarm, int]:
-        """Call `ring` when the next call is due; return its period after that, 0 for none.
+        """Call `ring` when the next call is due; return the alarm's period, or 0 if it has none.
 
-        With `repeat` it may go on by itself, which the kernel does for less than setting it again.
+        With `repeat`, the kernel may repeat the alarm, which is cheaper than setting it again.
         """
         schedule = self.schedule
         if repeat and schedule.period_ns:
@@ -246,7 +246,9 @@ class Ticker(ClockedSchedule):
 
 
 def checked_period(period_ns: int) -> int:
-    """Return `period_ns` if it is not negative."""
+    """Validate that `period_ns` is not negative, and return it."""
     if period_ns < 0:
-        raise ValueError(f"timer: its period is {period_ns} ns; use 0 or more (0 is always ready)")
+        raise ValueError(
+            f"timer: the period is {period_ns} ns; it must be 0 or more (0 is always ready)"
+        )
     return period_ns

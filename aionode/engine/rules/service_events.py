@@ -1,6 +1,6 @@
-"""The events of a service's calls, as messages on a topic.
+"""Service introspection: the events of a service's calls, published on a topic.
 
-Both faces publish them: see `aionode.endpoints.service_introspection`.
+Both APIs use it: see `aionode.endpoints.service_introspection`.
 """
 
 from __future__ import annotations
@@ -36,14 +36,14 @@ RESPONSE_RECEIVED: Final = 3
 
 
 class ServiceIntrospectionState(IntEnum):
-    """The detail in which a client or server publishes each request and response."""
+    """How much a client or server publishes about each request and response."""
 
     OFF = 0
-    """Nothing; it has no publisher for it."""
+    """Nothing, without even a publisher."""
     METADATA = 1
-    """The client, the number of the request, and the time."""
+    """The client, the sequence number of the request, and the time."""
     CONTENTS = 2
-    """Client, number and time, and the request or response itself."""
+    """The metadata, and the request or response itself."""
 
 
 class Introspection:
@@ -73,13 +73,13 @@ class Introspection:
 
         Raises:
             ValueError: `state` is unknown.
-            TypeError: `clock` is no clock, or `qos_profile` has the wrong type.
+            TypeError: `clock` is not a clock, or `qos_profile` has the wrong type.
         """
         state = ServiceIntrospectionState(state)
         if not hasattr(clock, "now"):
             raise TypeError(
-                f"configure_introspection of {self._topic}: clock is {brief(clock)}; give a clock "
-                "such as node.get_clock()"
+                f"configure_introspection of {self._topic}: clock is {brief(clock)}; expected a "
+                "clock such as node.get_clock()"
             )
         if state is ServiceIntrospectionState.OFF or qos_profile != self._qos:
             self.close()
@@ -101,7 +101,7 @@ class Introspection:
 
         Args:
             event_type: One of the constants of `ServiceEventInfo`.
-            sample_info: The client, and its number of the request.
+            sample_info: The client, and its sequence number for the request.
             content: The request or response.
         """
         publisher = self._publisher
@@ -110,7 +110,7 @@ class Introspection:
         event = self._srv_type.Event()
         info = event.info
         info.event_type = event_type
-        stamp = self._clock.now().to_msg()  # its class may be of another message family
+        stamp = self._clock.now().to_msg()  # its class may belong to another message family
         info.stamp.sec, info.stamp.nanosec = stamp.sec, stamp.nanosec
         info.client_gid = list(sample_info.gid)
         info.sequence_number = sample_info.sequence
@@ -119,6 +119,6 @@ class Introspection:
                 event.request = [content]
             else:
                 event.response = [content]
-        # A reader that keeps all and does not read is no reason to fail the call.
+        # A KEEP_ALL reader that does not read is no reason to fail the call.
         with contextlib.suppress(QueueFullError):
             publisher.publish(event)

@@ -1,4 +1,4 @@
-"""The pace at which an action server publishes the states of its goals: slower for many goals."""
+"""Paces the status messages of an action server: fewer when there are many goals."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ if TYPE_CHECKING:
 __all__ = ["StatusPace", "StatusSpacing"]
 
 SPACING_S = 0.0001
-"""The shortest time between two status messages, in seconds for each goal that they list."""
+"""The minimum interval between two status messages, in seconds per goal listed."""
 
 UNSPACED = 10
-"""Up to how many listed goals every change is sent in the next iteration of the loop."""
+"""Up to this many goals, every change is sent in the next iteration of the loop."""
 
 
 class StatusSpacing:
-    """The shortest time between two status messages, which grows with the goals that they list.
+    """The minimum interval between status messages, which grows with the number of goals.
 
-    A status message lists every goal that is active or kept, so sending a long list for each change
-    would cost more than the goals themselves. It counts real time, as the list takes that to send,
-    whatever clock the node has.
+    A status message lists every goal that is active or kept, so sending a long list after each
+    change would cost more than the goals themselves. The interval counts real time, since sending
+    the list takes real time whatever clock the node has.
     """
 
     def __init__(self) -> None:
@@ -33,21 +33,21 @@ class StatusSpacing:
         return max(0.0, self._next_s - now_s)
 
     def note_sent(self, listed: int, now_s: float) -> None:
-        """Note a message with so many goals."""
+        """Record that a message listing this many goals was sent."""
         if listed > UNSPACED:
             self._next_s = now_s + listed * SPACING_S
 
 
 class StatusPace:
-    """Decides when the states of all goals are published, after one of them has changed.
+    """Decides when the goal states are published after one of them has changed.
 
-    All changes of one iteration of the loop go into one message. With many goals there is a
-    shortest time between two messages as well, see `StatusSpacing`; the first change after a rest
-    is sent at once, and the last one always.
+    All changes within one loop iteration go into one message. With many goals, there is also a
+    minimum interval between messages, see `StatusSpacing`; the first change after a pause is sent
+    immediately, and the last one is always sent.
 
     Args:
         send: Publishes the states.
-        goals: What is listed.
+        goals: The goals to list.
     """
 
     def __init__(self, send: Callable[[], None], goals: Collection[bytes]) -> None:
@@ -67,7 +67,7 @@ class StatusPace:
                 self._due = loop.call_soon(self.flush)
 
     def flush(self) -> None:
-        """Send the states now, if any has changed since they were sent."""
+        """Send the states now, if any has changed since the last message."""
         if self._due is None:
             return
         self._due.cancel()

@@ -1,4 +1,4 @@
-"""Ways for messages to travel: `base` is the contract, each other module one implementation."""
+"""Ways to transport messages: `base` is the contract, the other modules implement it."""
 
 from aionode._process.sudden_end import mark_sending
 

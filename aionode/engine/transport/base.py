@@ -1,13 +1,13 @@
-"""The contract between endpoints and the ways that messages travel.
+"""The contract between endpoints and transports.
 
-Above this line there are only typed messages, below it bytes, keys and foreign threads. A context
-uses one or more transports at once. Each endpoint of a node has a counterpart in each of them, and
-each matched reader is reached through exactly one: a transport never delivers to endpoints that
-another transport of the same context serves (`local` serves the context itself, the others serve
-everyone else).
+Above it, there are only typed messages; below it, bytes, keys and foreign threads. A context uses
+one or more transports at once. Each endpoint of a node has a counterpart in each of them, and each
+matched reader is reached through exactly one: a transport never delivers to endpoints that another
+transport of the same context serves (`local` serves the context itself, the others serve everyone
+else).
 
-Everything here is called on the thread of the event loop, except that endpoints may be made before
-a loop runs; they are reached by other processes once `Transport.open` has returned.
+Everything here is called on the event loop's thread, except that endpoints may be created before a
+loop runs; other processes can reach them once `Transport.open` has returned.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ __all__ = [
 ]
 
 Raw = bool | Literal["parts"]
-"""Whether a reader wants CDR bytes; ``"parts"``: a large message of this context may come as a list
-of its parts, of which some are views of the message, so that nothing is copied.
+"""Whether a reader wants CDR bytes. With ``"parts"``, a large message of this context may be
+delivered as a list of its parts, some of which are views of the message, so that nothing is copied.
 """
 
 NOT_INLINE_NS: Final = 1
-"""A `perf_ns` time in the past: the message is of another process, and no callback runs at once."""
+"""A `perf_ns` time in the past: the message is from another process; run no callback inline."""
 
 
 class SampleInfo(msgspec.Struct, frozen=True, gc=False):
@@ -58,9 +58,10 @@ class SampleInfo(msgspec.Struct, frozen=True, gc=False):
 
     Attributes:
         gid: The 16 bytes that identify the sending endpoint; for a request, its client.
-        sequence: The sender's number of the message, from 1 and rising by 1.
+        sequence: The sender's sequence number, counting from 1.
         source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock; 0 if unknown.
-        arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else 0.
+        arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; otherwise
+            0.
     """
 
     gid: bytes
@@ -70,24 +71,24 @@ class SampleInfo(msgspec.Struct, frozen=True, gc=False):
 
 
 class Registration(ABC):
-    """Something that was announced to a transport, until it is closed."""
+    """Something announced to a transport, until it is closed."""
 
     @abstractmethod
     def close(self) -> None:
-        """Withdraw it; twice is the same as once."""
+        """Withdraw it; repeating it has no effect."""
 
 
 # Topics
 
 
 class Reader(Protocol):
-    """The receiving end of a subscription, as a transport sees it."""
+    """The receiving end of a subscription, as seen by a transport."""
 
     endpoint: EndpointInfo
 
     @property
     def raw(self) -> Raw:
-        """Whether `deliver` wants the message as CDR bytes; ``"parts"`` if in parts as well."""
+        """Whether `deliver` wants messages as CDR bytes; ``"parts"`` if parts are accepted too."""
 
     def deliver(
         self,
@@ -98,43 +99,43 @@ class Reader(Protocol):
         inline_deadline_ns: int = 0,
         arrived_ns: int = 0,
     ) -> None:
-        """Take one message, which must not be changed from now on. Never raises, never waits.
+        """Accept one message, which must not be modified from now on. Never raises, never waits.
 
-        What is known of it comes as plain arguments, and not as a `SampleInfo`, which most
-        subscriptions have no use for.
+        Its metadata are passed as plain arguments and not as a `SampleInfo`, which most
+        subscriptions do not need.
 
         Args:
             msg: The message.
             gid: The 16 bytes that identify its publisher.
-            sequence: The publisher's number of it, from 1 and rising by 1.
+            sequence: The publisher's sequence number, counting from 1.
             source_ns: When it was published, in nanoseconds since 1970 by the publisher's clock; 0
                 if unknown.
-            inline_deadline_ns: Until which `perf_ns` a callback may run at once, within this call.
-                A transport sets it once for each event of the loop, so that the loop has its turn.
-                0 means that none may, as the message is one of this process: the caller is itself
-                in a callback or in `publish`. For one of another process that is `NOT_INLINE_NS`.
-            arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since; else
-                0.
+            inline_deadline_ns: The `perf_ns` time until which callbacks may run inline, within this
+                call. Transports set it once per event of the loop, so that the loop gets its turn.
+                0 forbids it for a message from this process, as the caller is itself in a callback
+                or in `publish`; `NOT_INLINE_NS` forbids it for a message from another process.
+            arrived_ns: When it arrived, in nanoseconds since 1970, if it was held back since;
+                otherwise 0.
         """
 
     def note_alive(self, gid: bytes) -> None:
-        """Take the assertion of a publisher that it is alive. Never raises."""
+        """Accept a publisher's assertion that it is alive. Never raises."""
 
     def reject(self, error: DecodeError) -> None:
-        """Count a sample that is no message of this type. Never raises."""
+        """Count a sample that is not a message of this type. Never raises."""
 
     def has_room(self) -> bool:
-        """Whether a message can be taken without losing one that should be kept (KEEP_ALL)."""
+        """Whether a message can be accepted without losing one that must be kept (KEEP_ALL)."""
 
     @property
     def waiting(self) -> int:
-        """The number of messages that wait here for a callback or a reader."""
+        """The number of messages waiting here for a callback or a reader."""
 
     async def wait_for_room(self) -> None:
         """Wait until `has_room`, or until the reader is destroyed."""
 
     def when_room(self, callback: Callable[[], None]) -> None:
-        """Call `callback` soon after the next message was taken, or the reader destroyed."""
+        """Call `callback` soon after the next message is consumed, or the reader destroyed."""
 
 
 class ReaderRegistration(Registration):
@@ -142,13 +143,13 @@ class ReaderRegistration(Registration):
 
     @abstractmethod
     def is_linked(self, publisher: bytes) -> bool | None:
-        """Return whether messages of a publisher come by a link that only its process can end.
+        """Return whether a publisher's messages arrive over a link that only its process can end.
 
         Args:
             publisher: The gid of the publisher.
 
         Returns:
-            False if there was such a link, and it has ended; None if there was none.
+            False if there was such a link, but it has ended; None if there was none.
         """
 
 
@@ -157,10 +158,10 @@ class Writer(Registration):
 
     Attributes:
         active: Whether a message written now would be used: a reader is matched, or it is kept for
-            late ones. Encoding and copying are left out where this is false.
+            late ones. If not, encoding and copying are skipped.
         bounded: Whether `has_room` may be false.
-        is_placeholder: Whether it only stands for a writer that does not exist yet, so that
-            publishers leave it out.
+        is_placeholder: Whether it only stands in for a writer that does not exist yet, so that
+            publishers skip it.
     """
 
     active: bool = False
@@ -174,11 +175,11 @@ class Writer(Registration):
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg` to every reader matched through this transport; never blocks.
 
-        The caller may change `msg` afterwards.
+        The caller may modify `msg` afterwards.
 
         Args:
             msg: The message.
-            sequence: The publisher's number of it, from 1 and rising by 1.
+            sequence: The publisher's sequence number, counting from 1.
             source_ns: When it was published, in nanoseconds since 1970.
 
         Raises:
@@ -186,10 +187,10 @@ class Writer(Registration):
         """
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # it is not repeated
-        """Return what sends the stop of a lease, encoded now, through this writer.
+        """Encode the stop of a lease now, and return an object that sends it through this writer.
 
         Args:
-            stop: The message, a snapshot, which nobody changes.
+            stop: The message, a snapshot that nobody modifies.
             is_last: Whether the publisher has sent nothing since; any thread may ask.
 
         Raises:
@@ -202,12 +203,12 @@ class Writer(Registration):
         return True
 
     async def drain(self) -> None:
-        """Wait until `has_room`, and what was written has been handed on."""
+        """Wait until `has_room`, and what was written has been passed on."""
 
     def assert_liveliness(self) -> None:
         """Tell the readers that the publisher is alive, without a message."""
 
-    # For statistics; not asked for each message.
+    # For statistics; not called for each message.
 
     @property
     def dropped(self) -> int:
@@ -215,25 +216,25 @@ class Writer(Registration):
         return 0
 
     def route_of(self, reader: EndpointInfo) -> str | None:  # noqa: ARG002  # knows of none
-        """Return in a word how messages reach a matched reader, or None if not through this."""
+        """Return the route to a matched reader as a word; None if it bypasses this writer."""
         return None
 
 
 class StopSender(ABC):
     """Sends the stop of one lease through one writer, as the last message of that lease.
 
-    No full queue drops, delays or overtakes it: what waits there before it may be dropped, and is
-    counted. It takes the route and the priority of the messages before it, so that none of them
+    Full queues never drop, delay or overtake it: what waits there before it may be dropped, and is
+    counted. It takes the same route and priority as the messages before it, so that none of them
     arrives after it, and goes to all readers.
     """
 
     @abstractmethod
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it, on the thread of the event loop; called once.
+        """Send it, on the event loop's thread; called once.
 
-        After `send_past_loop` it is called too, with the same numbers, as soon as the loop goes on:
-        for the readers that only the loop reaches, and so that what was lost is sent again. Readers
-        that number their messages take it once.
+        It is also called after `send_past_loop`, with the same numbers, as soon as the loop runs
+        again: for the readers that only the loop reaches, and to resend what was lost. Readers that
+        track sequence numbers accept it once.
         """
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:  # noqa: B027  # as in `local`
@@ -243,15 +244,15 @@ class StopSender(ABC):
         """
 
     def repeat(self) -> None:  # noqa: B027  # most lose nothing
-        """Put it once more, with the same number, where it may be dropped; from any thread.
+        """Send it once more, with the same number, where it may be dropped; from any thread.
 
-        The caller does so for a moment after `send_past_loop`. After `send` alone, the writer sees
-        to that itself, and does not end before.
+        The caller does so for a moment after `send_past_loop`. After `send` alone, the writer takes
+        care of that itself, and does not end before.
         """
 
 
 class MessageStop(StopSender):
-    """Sends the stop as any other message: enough for a writer without queues.
+    """Sends the stop like any other message, which is enough for a writer without queues.
 
     Args:
         writer: The writer.
@@ -272,23 +273,23 @@ class MessageStop(StopSender):
 
 
 class ReplyTo(Protocol):
-    """The outcomes of one request, as the client's end sees them. Late calls do nothing."""
+    """The possible outcomes of a request, as seen by the client's end. Late calls do nothing."""
 
     def reply(self, response: Any, sample_info: SampleInfo) -> None:
-        """Take a response."""
+        """Handle a response."""
 
     def fail(self, error: ServiceError) -> None:
-        """Take a server's error."""
+        """Handle a server's error."""
 
     def end(self) -> None:
-        """Handle the end of the answers of this transport."""
+        """Handle that this transport has no more answers."""
 
 
 class Call(Protocol):
-    """One request under way in one transport."""
+    """A pending request in one transport."""
 
     def cancel(self) -> None:
-        """Forget it: a server that has not begun need not serve it, and a reply is dropped."""
+        """Forget it: a server that has not started need not serve it, and a reply is dropped."""
 
 
 class Requester(Registration):
@@ -297,11 +298,11 @@ class Requester(Registration):
     @property
     @abstractmethod
     def servers(self) -> int:
-        """The number of servers that are matched through this transport now."""
+        """The number of servers currently matched through this transport."""
 
     @property
     def caveat(self) -> str:
-        """A known reason why the matched servers cannot answer, and the way out; or empty."""
+        """A known reason why the matched servers cannot answer, and the workaround; or empty."""
         return ""
 
     @abstractmethod
@@ -317,11 +318,11 @@ class Requester(Registration):
 
 
 class Request(ABC):
-    """One request at the server's end. It is answered once; what comes later is dropped.
+    """A request at the server's end. It is answered once; later answers are dropped.
 
     Attributes:
         message: The request itself.
-        sample_info: The client and its number of the request.
+        sample_info: The client and its sequence number for the request.
         cancelled: Whether the client is known to have given up.
     """
 
@@ -339,29 +340,29 @@ class Request(ABC):
 
     @abstractmethod
     def fail(self, error_type: str, error_text: str) -> None:
-        """Send an error in place of a response, to clients that can be told."""
+        """Send an error instead of a response, to clients that support it."""
 
     @abstractmethod
     def drop(self) -> None:
-        """Give the request up without an answer: the server goes away."""
+        """Give up the request without an answer, because the server goes away."""
 
 
 class Serve(Protocol):
-    """The receiving end of a service, as a transport sees it."""
+    """The receiving end of a service, as seen by a transport."""
 
     def __call__(self, request: Request, inline_deadline_ns: int = 0) -> None:
-        """Take one request; never raises or waits. `inline_deadline_ns` is as in `deliver`."""
+        """Accept one request; never raises or waits. `inline_deadline_ns` is as in `deliver`."""
 
 
-# The whole
+# Transports as a whole
 
 
 class LinkStatus(NamedTuple):
-    """The links between contexts of the domain, as the contexts report them.
+    """The links between contexts of the domain, as reported by the contexts.
 
     Attributes:
         advertisements: The announcement of each context by which others can link to it.
-        pairs: The ids of each two contexts that are linked.
+        pairs: The ids of each pair of linked contexts.
     """
 
     advertisements: AbstractSet[str]
@@ -369,17 +370,17 @@ class LinkStatus(NamedTuple):
 
 
 class Transport(ABC):
-    """One way for messages to travel."""
+    """One way to transport messages."""
 
     @abstractmethod
     async def open(self, graph: Graph) -> None:
-        """Connect, and report the nodes and endpoints of others to `graph` from now on.
+        """Connect, and report other contexts' nodes and endpoints to `graph` from now on.
 
-        Returns when what exists already is known and reachable, as far as can be told. What was
-        created before is announced now.
+        Returns once what already exists is known and reachable, as far as can be determined.
+        Endpoints that were created before are announced now.
 
         Raises:
-            TransportError: there is no way to connect; the text says what to change.
+            TransportError: it cannot connect; the message says what to change.
         """
 
     @abstractmethod
@@ -387,28 +388,28 @@ class Transport(ABC):
         """Withdraw everything and disconnect, within a second; it can be opened again."""
 
     def send_rest(self, ends_ns: int) -> None:  # noqa: B027  # most leave nothing for later
-        """Hand to the operating system what was published and waits for the event loop.
+        """Pass published messages that wait for the event loop to the operating system.
 
-        Called in the loop's thread, within a signal handler that has interrupted neither this nor
-        an endpoint: the process is about to end, or to be suspended. It may take until `ends_ns`,
-        by `perf_ns`.
+        Called in the loop's thread, within a signal handler that interrupted neither this nor an
+        endpoint: the process is about to end, or to be suspended. It may take until `ends_ns`, a
+        `perf_ns` time.
         """
 
     @property
     def drops(self) -> Drops:
-        """What was dropped of what others send."""
+        """Counts what was dropped of what others send."""
         return Drops()
 
     async def all_known(self, quiet_s: float) -> bool:  # noqa: ARG002  # no other process
         """Wait until the graph of all reachable peers is known.
 
-        `open` waits for that as well, but not for long. False when a peer has not answered, and
-        nothing has come for `quiet_s` seconds. For tools, whose answer is to be complete.
+        `open` waits for that as well, but not for long. Returns False if a peer has not answered,
+        and nothing has arrived for `quiet_s` seconds. For tools whose answer should be complete.
         """
         return True
 
     def silent_processes(self) -> list[str]:
-        """Return in words which processes have not answered `all_known`, as far as can be told."""
+        """Describe the processes that have not answered `all_known`, as far as they are known."""
         return []
 
     async def other_domains(self) -> frozenset[int]:
@@ -448,14 +449,14 @@ class Transport(ABC):
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Announce a subscription of `msg_type`, whose messages go to `reader`.
+        """Announce a subscription of `msg_type` that passes messages to `reader`.
 
-        What it returns may be a `ReaderRegistration`, if the transport has links.
+        It may return a `ReaderRegistration` if the transport has links.
         """
 
     @abstractmethod
     def create_server(self, endpoint: EndpointInfo, srv_type: Any, serve: Serve) -> Registration:
-        """Announce a server of `srv_type`, whose requests go to `serve`.
+        """Announce a server of `srv_type` that passes requests to `serve`.
 
         Closing it ends the calls of requests that it has not answered.
         """

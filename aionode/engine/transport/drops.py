@@ -1,6 +1,6 @@
-"""What a context drops or refuses of what others send: each kind has a number and a log line.
+"""What a context drops or refuses of what others send: each kind has a count and a log message.
 
-Limits of queues that a QoS asks for are none of these: subscriptions count them in their `stats`.
+Drops due to a QoS queue depth are not included: subscriptions count them in their `stats`.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ __all__ = ["Drop", "Drops"]
 logger = logging.getLogger("aionode.transport")
 
 SUBJECTS: Final = 1_000
-"""Of so many topics, services and keys each kind is counted by itself: others may invent any."""
+"""Number of topics, services and keys counted individually: others may invent any."""
 
 LIMIT: Final = "AIONODE_QUEUE_BYTES, or Context(queue_bytes=…), sets the limit"
 
 
 class Drop(enum.Enum):
-    """Why something was dropped or refused; the value is the sentence of the log."""
+    """Why something was dropped or refused; the value is the log message."""
 
     MALFORMED = (
-        "something in an unknown form came from another process: {}; it was left out. Does the "
-        "sender have another definition of the type?"
+        "another process sent data in an unknown format: {}; it was dropped. Does the "
+        "sender use another definition of the type?"
     )
     FALSE_NAME = (
-        "someone speaks in the name of another: {}. Rules of a router say who may speak for what: "
+        "a process impersonates another one: {}. Router access rules can prevent this: "
         "docs/howto/security.md"
     )
     BUSY_LOOP = (
@@ -41,26 +41,25 @@ class Drop(enum.Enum):
         f"{{}} of them came; stats.lost counts them, too. {LIMIT}"
     )
     KEEP_ALL = (
-        "messages are lost although the subscription keeps all: {} wait already, and their "
-        f"publisher cannot be held back. {LIMIT}"
+        "messages are lost although the subscription is KEEP_ALL: {} are already waiting, and "
+        f"their publisher cannot be held back. {LIMIT}"
     )
     REQUESTS = (
-        "requests are refused, as more than {} of them wait in this process for its event loop, or "
-        f"until their answers are sent. {LIMIT}"
+        "requests are refused, as more than {} of them are waiting in this process for its event "
+        f"loop, or until their answers are sent. {LIMIT}"
     )
     GRAPH = (
-        "nodes or endpoints that other processes announce are left out, as the graph is full: {}. "
+        "nodes or endpoints announced by other processes are ignored, as the graph is full: {}. "
         "AIONODE_GRAPH_BYTES, or Context(graph_bytes=…), sets the limit"
     )
-    BRIDGES = "there are more than {} namespaces of bridges; the bridges of others are left out"
+    BRIDGES = "there are more than {} namespaces of bridges; further bridges are ignored"
     NOT_SENT = "a message was not sent: {}"
 
 
 class Drops:
     """Counts what is dropped by its kind and subject, and logs it as `RatedLines` says.
 
-    Any thread may note something: of two at the same moment one may not be counted, which does no
-    harm.
+    Any thread may call `note`: of two simultaneous calls one may not be counted, which is harmless.
 
     Args:
         log: Where it is said.
@@ -78,8 +77,8 @@ class Drops:
         Args:
             drop: Why it was dropped.
             subject: The topic, service or key.
-            detail: What the sentence lacks.
-            count: How many there were.
+            detail: Fills in the log message.
+            count: Number of items dropped.
         """
         counts = self._counts[drop]
         if subject not in counts and len(counts) >= SUBJECTS:
@@ -91,11 +90,11 @@ class Drops:
             self._log.warning("%s: %s%s", escaped(subject), text, more)
 
     def of(self, drop: Drop) -> Counter[str]:
-        """Return how many were dropped for a reason, by subject."""
+        """Return the number of drops for a reason, by subject."""
         return self._counts[drop]
 
     def totals(self) -> Counter[str]:
-        """Return how many were dropped, by the reason in lower case; none that is 0."""
+        """Return the number of drops by reason in lower case, omitting zeros."""
         return Counter(
             {drop.name.lower(): total for drop in Drop if (total := self.of(drop).total())}
         )

@@ -1,7 +1,7 @@
-"""Within one context: messages travel as objects, and no bytes are made.
+"""Transport within one context: messages are passed as objects, without encoding.
 
 Readers share one snapshot of each message, taken when it is published. The matching rules are those
-of DDS; endpoints that do not match do not hear each other.
+of DDS; endpoints that do not match do not communicate.
 """
 
 from __future__ import annotations
@@ -41,19 +41,19 @@ class LocalTransport(Transport):
     """The transport of a context to itself."""
 
     def __init__(self) -> None:
-        # By name, in the order in which they were created.
+        # By name, in order of creation.
         self._writers: dict[str, dict[LocalWriter, None]] = {}
         self._readers: dict[str, dict[LocalReader, None]] = {}
         self._servers: dict[str, list[LocalServer]] = {}
 
     async def open(self, graph: Graph) -> None:
-        """There is nothing to connect."""
+        """Do nothing: there is nothing to connect."""
 
     async def close(self) -> None:
-        """There is nothing to disconnect."""
+        """Do nothing: there is nothing to disconnect."""
 
     def create_node(self, node: NodeInfo) -> Registration:  # noqa: ARG002  # no other process
-        """Nodes of this context are known to its graph already."""
+        """Do nothing: the graph already knows the nodes of this context."""
         return _Nothing()
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
@@ -67,7 +67,7 @@ class LocalTransport(Transport):
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Connect a subscription with the publishers of its topic; late ones get the history."""
+        """Connect a subscription with the publishers of its topic; give it their history."""
         local_reader = LocalReader(endpoint, msg_type, reader, self._readers, self._writers)
         self._readers.setdefault(endpoint.name, {})[local_reader] = None
         for writer in self._writers.get(endpoint.name, ()):
@@ -88,7 +88,7 @@ class LocalTransport(Transport):
 def _in_class(msg: Any, msg_type: type[Any]) -> Any:
     """Return `msg` as an instance of `msg_type`.
 
-    There may be two classes for one definition, such as a generated one and one written by hand.
+    There may be two classes for one definition, such as a generated and a hand-written one.
     """
     if type(msg) is msg_type:
         return msg
@@ -106,7 +106,7 @@ class _Nothing(Registration):
 
 
 def _leave(side: dict[str, dict[MemberT, None]], member: MemberT) -> None:
-    """Remove an endpoint from those of its name; twice is the same as once."""
+    """Remove an endpoint from those with its name; repeating it has no effect."""
     members = side.get(member.endpoint.name)
     if members is not None:
         members.pop(member, None)
@@ -115,9 +115,9 @@ def _leave(side: dict[str, dict[MemberT, None]], member: MemberT) -> None:
 
 
 class LocalReader(Registration):
-    """A subscription as its publishers in the same context see it.
+    """A subscription as seen by the publishers in the same context.
 
-    Its content filter is applied where a message is delivered, which is still within `publish`.
+    Its content filter is applied on delivery, which is still within `publish`.
     """
 
     def __init__(
@@ -136,7 +136,7 @@ class LocalReader(Registration):
         self.bounded = keeps_all(endpoint.qos)
 
     def delivery_from(self, msg_type: type[Any]) -> Deliver:
-        """Return what takes messages of `msg_type` to the reader, in the form that it wants."""
+        """Return a function that delivers messages of `msg_type` in the form the reader wants."""
         deliver = self.reader.deliver
         if self.reader.raw:
             from aionode.engine.wire import cdr  # nodes without raw readers need no codec
@@ -150,14 +150,14 @@ class LocalReader(Registration):
         return deliver
 
     def close(self) -> None:
-        """Leave every publisher."""
+        """Disconnect from every publisher."""
         _leave(self._readers, self)
         for writer in self._writers.get(self.endpoint.name, ()):
             writer.part(self)
 
 
 class LocalWriter(Writer):
-    """A publisher as its subscriptions in the same context see it."""
+    """A publisher as seen by the subscriptions in the same context."""
 
     def __init__(
         self,
@@ -172,7 +172,7 @@ class LocalWriter(Writer):
         self._gid = endpoint.gid
         self._matched: dict[LocalReader, Deliver] = {}
         self._deliveries: tuple[Deliver, ...] = ()
-        # The history for late readers: each message, its number, and its time.
+        # The history for late readers: messages, sequence numbers and times.
         self._history: deque[tuple[Any, int, int]] | None = None
         qos = endpoint.qos
         if qos.durability is DurabilityPolicy.TRANSIENT_LOCAL:
@@ -182,7 +182,7 @@ class LocalWriter(Writer):
         self.bounded = False
 
     def meet(self, reader: LocalReader) -> None:
-        """Match with `reader` if both fit, and give it what it missed."""
+        """Connect with `reader` if they match, and give it what it missed."""
         if not self.endpoint.matches(reader.endpoint):
             return
         deliver = reader.delivery_from(self._msg_type)
@@ -191,7 +191,7 @@ class LocalWriter(Writer):
             for msg, sequence, source_ns in list(self._history)[-depth_of(wanted) :]:
                 deliver(msg, self._gid, sequence, source_ns)
         self._matched[reader] = deliver
-        # Not `_update`, which looks at all: many may meet many.
+        # Not `_update`, which visits all readers: there may be many.
         self._deliveries += (deliver,)
         self.active = True
         self.bounded = self.bounded or reader.bounded
@@ -207,7 +207,7 @@ class LocalWriter(Writer):
         self.bounded = self.bounded and any(reader.bounded for reader in self._matched)
 
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:
-        """Give one snapshot of `msg` to all."""
+        """Deliver one snapshot of `msg` to all readers."""
         snapshot = self._snapshot(msg)
         if self._history is not None:
             self._keep(self._history, snapshot, sequence, source_ns)
@@ -223,13 +223,13 @@ class LocalWriter(Writer):
         history.append((msg, sequence, source_ns))
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # it reaches all
-        """Return what sends the stop of a lease."""
+        """Return an object that sends the stop of a lease."""
         return LocalStop(self, stop)
 
     def write_stop(self, stop: Any, sequence: int, source_ns: int) -> None:
-        """Give the stop of a lease to all; a full KEEP_ALL reader gets it as soon as it has room.
+        """Deliver the stop of a lease; a full KEEP_ALL reader gets it as soon as it has room.
 
-        To others it is the newest message, which no full queue drops.
+        For other readers it is the newest message, which full queues never drop.
         """
         if self._history is not None:
             self._keep(self._history, stop, sequence, source_ns)
@@ -244,7 +244,7 @@ class LocalWriter(Writer):
         return all(reader.reader.has_room() for reader in self._matched if reader.bounded)
 
     def assert_liveliness(self) -> None:
-        """Tell every reader."""
+        """Tell every reader that the publisher is alive."""
         for reader in self._matched:
             reader.reader.note_alive(self.endpoint.gid)
 
@@ -260,7 +260,7 @@ class LocalWriter(Writer):
         return "local" if any(matched.endpoint == reader for matched in self._matched) else None
 
     def close(self) -> None:
-        """Leave every subscription."""
+        """Disconnect from every subscription."""
         _leave(self._writers, self)
         self._matched.clear()
         self._history = None
@@ -268,7 +268,7 @@ class LocalWriter(Writer):
 
 
 class LocalStop(StopSender):
-    """Sends the stop of a lease to the subscriptions of this context, which only the loop can."""
+    """Sends the stop of a lease to the subscriptions of this context, which needs the loop."""
 
     def __init__(self, writer: LocalWriter, stop: Any) -> None:
         self._writer = writer
@@ -283,7 +283,7 @@ class LocalStop(StopSender):
 
 
 class LocalServer(Registration):
-    """A server as its clients in the same context see it."""
+    """A server as seen by the clients in the same context."""
 
     def __init__(
         self,
@@ -296,10 +296,12 @@ class LocalServer(Registration):
         self.srv_type = srv_type
         self.serve = serve
         self._servers = servers
-        self.unanswered: dict[LocalRequest, None] = {}  # in order, to give them up in order
+        self.unanswered: dict[
+            LocalRequest, None
+        ] = {}  # in order, so that they are given up in order
 
     def close(self) -> None:
-        """Leave every client, and give up what was not answered."""
+        """Disconnect from every client, and give up unanswered requests."""
         beside = self._servers.get(self.endpoint.name, [])
         if self in beside:
             beside.remove(self)
@@ -323,14 +325,14 @@ class LocalRequest(Request):
         server.unanswered[self] = None
 
     def _finish(self) -> bool:
-        """Mark the request as answered; return whether this is the first time."""
+        """Mark the request as answered; return whether it was not answered before."""
         if self not in self._server.unanswered:
             return False
         del self._server.unanswered[self]
         return True
 
     def reply(self, response: Any) -> None:
-        """Give a snapshot of the response to the client."""
+        """Pass a snapshot of the response to the client."""
         snapshot = self._snapshot(response)
         if self._finish():
             snapshot = _in_class(snapshot, self._call.srv_type.Response)
@@ -339,7 +341,7 @@ class LocalRequest(Request):
             )
 
     def fail(self, error_type: str, error_text: str) -> None:
-        """Give an error to the client."""
+        """Pass an error to the client."""
         if self._finish():
             self._call.fail(ServiceError(self._server.endpoint.name, error_text, error_type))
 
@@ -350,7 +352,7 @@ class LocalRequest(Request):
 
 
 class LocalCall:
-    """One call under way, to one or more servers."""
+    """A pending call to one or more servers."""
 
     def __init__(self, reply_to: ReplyTo, srv_type: Any) -> None:
         self._reply_to: ReplyTo | None = reply_to
@@ -369,7 +371,7 @@ class LocalCall:
             self._reply_to.fail(error)
 
     def end(self) -> None:
-        """Handle a server that will not answer; the last one ends the call."""
+        """Handle that a server will not answer; the last one ends the call."""
         self.open -= 1
         if self.open == 0 and self._reply_to is not None:
             self._reply_to.end()
@@ -382,7 +384,7 @@ class LocalCall:
 
 
 class LocalRequester(Requester):
-    """A client as its servers in the same context see it."""
+    """A client as seen by the servers in the same context."""
 
     def __init__(
         self, endpoint: EndpointInfo, srv_type: Any, servers: dict[str, list[LocalServer]]
@@ -400,11 +402,11 @@ class LocalRequester(Requester):
 
     @property
     def servers(self) -> int:
-        """The number of servers of this context that are matched."""
+        """The number of matched servers in this context."""
         return len(self._matched())
 
     def send(self, request: Any, sample_info: SampleInfo, reply_to: ReplyTo) -> Call:
-        """Give a snapshot of `request` to every server."""
+        """Pass a snapshot of `request` to every server."""
         snapshot = self._snapshot(request)
         call = LocalCall(reply_to, self._srv_type)
         servers = self._matched()
@@ -417,4 +419,4 @@ class LocalRequester(Requester):
         return call
 
     def close(self) -> None:
-        """Clients leave nothing behind."""
+        """Do nothing: clients leave nothing behind."""

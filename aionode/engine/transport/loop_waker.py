@@ -1,13 +1,13 @@
-"""Queues from other threads to the event loop, with one wake-up for each burst.
+"""Queues from other threads to the event loop, with one wake-up per burst.
 
-A thread appends to a `ThreadsafeQueue` and, unless that was done already, wakes the loop. The loop
+A thread appends to a `ThreadsafeQueue` and wakes the loop, unless that was already done. The loop
 then empties all queues in turn, a slice at a time, so that timers and other callbacks run in
-between. This handles a burst several times as fast as `call_soon_threadsafe` for each item, because
-a wake-up is a system call and most items need none.
+between. This handles bursts several times as fast as one `call_soon_threadsafe` per item, because a
+wake-up is a system call and most items need none.
 
-Zenoh's threads are not started by Python, which makes a thread state for each of their calls and
-frees it at the end. Its memory is mapped and unmapped, which costs several times as much as the
-item does. So the state of such a thread is kept from its first item on.
+Zenoh's threads are not started by Python, which creates a thread state for each of their calls and
+frees it at the end. Mapping and unmapping its memory costs several times as much as handling the
+item. So the state of such a thread is kept from its first item on.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ T = TypeVar("T")
 
 
 SLICE_ITEMS = 32
-"""Number of items of one queue that are handled before it is the next queue's turn."""
+"""Number of items handled from one queue before it is the next queue's turn."""
 
 UNMEASURED: Final = 8
 """Number of messages that may wait whatever their size."""
 
 KEPT_LIMIT: Final = 64
-"""In how many of Zenoh's threads the thread state is kept. Those that receive are few, and last as
+"""Number of Zenoh threads whose thread state is kept. The receiving threads are few, and live as
 long as the process; others might come and go."""
 
 
@@ -45,19 +45,20 @@ class ThreadState(threading.local):
     """Python's state of the calling thread.
 
     Attributes:
-        is_known: Whether `keep` was called. A new state begins without.
+        is_known: Whether `keep` was called; false for a new state.
     """
 
     kept: ClassVar[int] = 0  # in all threads
     is_known = False
 
     def keep(self) -> None:
-        """Keep the state until the process ends, unless the thread was started by Python."""
+        """Keep the state until the process ends, unless Python started the thread."""
         self.is_known = True
         ident = threading.get_ident()
         if ThreadState.kept < KEPT_LIMIT and all(t.ident != ident for t in threading.enumerate()):
             ThreadState.kept += 1
-            # One call more than there will be of PyGILState_Release, which frees it after the last.
+            # One call more than there will be of PyGILState_Release, which would free it after the
+            # last.
             ctypes.pythonapi.PyGILState_Ensure()
 
 
@@ -68,15 +69,15 @@ class LoopWaker:
     """Wakes one event loop when a queue has an item.
 
     Attributes:
-        inline_deadline_ns: Until which `perf_ns` a handler may call callbacks; 0 while no queue is
-            emptied. See `Reader.deliver`.
+        inline_deadline_ns: The `perf_ns` time until which handlers may run callbacks; 0 while no
+            queue is being emptied. See `Reader.deliver`.
     """
 
     def __init__(self) -> None:
         self.inline_deadline_ns = 0
         self._ready: deque[ThreadsafeQueue[object]] = deque()
-        # Whether the loop will look by itself. Set by the thread that wakes it, cleared by the loop
-        # before its last look: a later item wakes it again, so none is missed.
+        # Whether the loop will check the queues by itself. Set by the thread that wakes it, cleared
+        # by the loop before its last check: a later item wakes it again, so none is missed.
         self._armed = True
         self._lock = threading.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
@@ -94,7 +95,7 @@ class LoopWaker:
 
     def close(self) -> None:
         """Stop waking the loop. Items that arrive meanwhile wait for the next `open`."""
-        with self._lock:  # a thread may be about to write: never to a descriptor reused since
+        with self._lock:  # a thread may be about to write: never to a reused descriptor
             self._armed = True
             loop, self._loop = self._loop, None
             fd, self._event_fd = self._event_fd, None
@@ -104,7 +105,7 @@ class LoopWaker:
             os.close(fd)
 
     def ready(self, queue: ThreadsafeQueue[object]) -> None:
-        """Schedule `queue`, which has an item. May be called from any thread."""
+        """Schedule `queue`, which has an item. Any thread may call it."""
         self._ready.append(queue)
         if not thread_state.is_known:
             thread_state.keep()
@@ -113,7 +114,7 @@ class LoopWaker:
             self._wake()
 
     def again(self, queue: ThreadsafeQueue[object]) -> None:
-        """Schedule `queue` again, which has more items. Called by `take` only, on the loop."""
+        """Reschedule `queue`, which has more items. Only called by `take`, on the loop."""
         self._ready.append(queue)
 
     def _wake(self) -> None:
@@ -127,7 +128,7 @@ class LoopWaker:
     def _on_event(self, fd: int) -> None:
         try:
             os.eventfd_read(fd)
-        except BlockingIOError:  # the event was taken by an earlier turn
+        except BlockingIOError:  # an earlier iteration consumed the event
             return
         self._empty()
 
@@ -156,8 +157,8 @@ class ThreadsafeQueue(Generic[T]):
     Args:
         waker: Wakes the loop.
         handle: Called on the loop with each item, in order. Must not raise.
-        limit: How many items wait at most; one more pushes out the oldest. None is without limit,
-            for sources that limit themselves.
+        limit: Maximum number of items that wait; further ones push out the oldest. None means no
+            limit, for sources that limit themselves.
     """
 
     __slots__ = ("_handle", "_items", "_queued", "_waker")
@@ -174,15 +175,15 @@ class ThreadsafeQueue(Generic[T]):
         return len(self._items)
 
     def put(self, item: T) -> None:
-        """Add `item`. May be called from any thread; never waits."""
+        """Add `item`. Any thread may call it; never waits."""
         self._items.append(item)
         if not self._queued:
             self._queued = True
             self._waker.ready(self)  # type: ignore[arg-type]  # it only calls take()
 
     def take(self) -> None:
-        """Handle some of the items; on the loop."""
-        self._queued = False  # before looking, so that a later item schedules it again
+        """Handle some of the items, on the loop."""
+        self._queued = False  # before the check, so that a later item schedules it again
         items = self._items
         left = min(len(items), SLICE_ITEMS)
         try:
@@ -195,14 +196,14 @@ class ThreadsafeQueue(Generic[T]):
                 self._waker.again(self)  # type: ignore[arg-type]  # as above
 
     def take_all(self) -> None:
-        """Handle all items that wait now; on the loop."""
+        """Handle all items that are waiting now, on the loop."""
         items = self._items
         for _ in range(len(items)):
             if items:  # the handler may clear the queue
                 self._handle(items.popleft())
 
     def take_out(self) -> Iterator[T]:
-        """Yield all items, which are not handled."""
+        """Yield all items without handling them."""
         while self._items:
             yield self._items.popleft()
 
@@ -212,22 +213,22 @@ class ThreadsafeQueue(Generic[T]):
 
 
 ARRIVALS: Final = threading.Lock()
-"""Held for moments by threads that add to the measured part of any `MessageArrivals`, and by the
-loop that takes from it. One for all: it is used only where messages wait."""
+"""Held briefly by threads that add to the measured part of any `MessageArrivals`, and by the loop
+taking from it. One lock is enough: it is only used where messages wait."""
 
 
 class MessageArrivals(ThreadsafeQueue[T]):
-    """Such a queue of messages, bounded in bytes as well: a message may have any size.
+    """A queue of messages that is also bounded in bytes, as a message may have any size.
 
-    Asking Zenoh for the size of a message costs as much as handing it over. So the first few are
-    not measured, and as long as the loop keeps up no others wait.
+    Asking Zenoh for the size of a message costs as much as passing it on. So the first few are not
+    measured, and as long as the loop keeps up, no others wait.
 
     Args:
         waker: Wakes the loop.
         handle: Called on the loop with each item, in order. Must not raise.
-        limit: How many items wait at most; one more pushes out the oldest.
-        limit_bytes: How many bytes those that are measured have at most; the newest stays even if
-            it has more.
+        limit: Maximum number of items that wait; further ones push out the oldest.
+        limit_bytes: Maximum size of the measured items in bytes; the newest one stays even if it is
+            larger.
         size_of: Returns the size of an item in bytes; called in any thread.
         on_dropped: Called on the loop with the number of items that were pushed out for their size.
     """
@@ -256,9 +257,10 @@ class MessageArrivals(ThreadsafeQueue[T]):
         self._limit_bytes = limit_bytes
         self._size_of = size_of
         self._on_dropped = on_dropped
-        # Items after the first few, with their sizes. The threads of senders add to it and the loop
-        # takes from it, both with the lock. While it holds something, no sender passes it by, so
-        # the items of one sender, which all come in one thread, stay in order. Most never need it.
+        # Items after the first few, with their sizes. Senders' threads add to it and the loop takes
+        # from it, both holding the lock. While it holds something, no sender bypasses it, so the
+        # items of one sender, which all come from one thread, stay in order. Most queues never need
+        # it.
         self._late: deque[tuple[int, T]] | tuple[()] = ()
         self._bytes = 0
         self._dropped = 0
@@ -267,7 +269,7 @@ class MessageArrivals(ThreadsafeQueue[T]):
         return len(self._items) + len(self._late)
 
     def put(self, item: T) -> None:
-        """Add `item`. May be called from any thread; never waits."""
+        """Add `item`. Any thread may call it; never waits."""
         if len(self._items) < UNMEASURED and not self._late:
             self._items.append(item)
         else:
@@ -287,7 +289,7 @@ class MessageArrivals(ThreadsafeQueue[T]):
                 self._bytes -= late.popleft()[0]
 
     def take(self) -> None:
-        """Handle some of the items; on the loop."""
+        """Handle some of the items, on the loop."""
         if self._late and not self._items:
             self._measure_no_more()
         super().take()
@@ -300,7 +302,7 @@ class MessageArrivals(ThreadsafeQueue[T]):
             self._on_dropped(dropped)
 
     def _measure_no_more(self) -> None:
-        """Move some items to where they are handled."""
+        """Move some items to the queue from which they are handled."""
         with ARRIVALS:
             late = self._late
             for _ in range(min(len(late), SLICE_ITEMS)):
@@ -309,7 +311,7 @@ class MessageArrivals(ThreadsafeQueue[T]):
                 self._items.append(item)
 
     def take_all(self) -> None:
-        """Handle all items that wait now; on the loop."""
+        """Handle all items that are waiting now, on the loop."""
         for _ in range(1 + len(self._late) // SLICE_ITEMS):
             super().take_all()
             self._measure_no_more()

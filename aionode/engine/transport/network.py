@@ -1,7 +1,7 @@
 """The network settings of a context: from arguments and environment variables to a `Network`.
 
-Pure functions; nothing is connected here. Every transport between processes reads these settings;
-`aionode.transport.zenoh` makes Zenoh's configuration of them.
+Pure functions; nothing is connected here. Every transport between processes uses these settings;
+`aionode.engine.transport.zenoh` turns them into Zenoh's configuration.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ ROUTER_PORT: Final = 7447
 """The port of `rmw_zenohd` and `aionode router`."""
 
 LOCALHOST_ONLY_VARIABLE: Final = "ROS_LOCALHOST_ONLY"
-"""Set to 1 by users of ROS 2 Humble; later distributions call it deprecated and honour it."""
+"""Set to 1 by users of ROS 2 Humble; later distributions deprecate it but honour it."""
 
 MEETING_PORTS_VARIABLE: Final = "AIONODE_MEETING_PORTS"
 ROUTER_PORT_VARIABLE: Final = "AIONODE_ROUTER_PORT"
@@ -67,36 +67,36 @@ LATER: Final = "f"
 """The first digit of the id of a session that looks others up: it dials all others."""
 
 SOUGHT: Final = "1"
-"""The first digit of the id of a session that looks nobody up: all dial it once introduced."""
+"""The first digit of the id of a session that looks nobody up: others dial it once introduced."""
 
 
 class DiscoveryRange(enum.Enum):
-    """The range in which a context looks for others by itself."""
+    """The range in which a context discovers others by itself."""
 
     OFF = "OFF"
-    """It finds no other context, and none finds it."""
+    """It discovers no other context, and is not discovered."""
     LOCALHOST = "LOCALHOST"
-    """It finds the processes of its machine; nothing listens beyond loopback."""
+    """It discovers the processes on its machine; nothing listens beyond loopback."""
     SUBNET = "SUBNET"
-    """It finds machines of its network too, by multicast, and listens on every interface."""
+    """It also discovers machines on its network by multicast, and listens on every interface."""
     SYSTEM_DEFAULT = "SYSTEM_DEFAULT"
-    """As a ROS 2 node on rmw_zenoh does: only through a router on this machine."""
+    """It discovers others only through a router on this machine, like ROS 2 on rmw_zenoh."""
 
 
 QUEUE_BYTES: Final = 32 << 20
-"""Bytes of messages that wait in one queue, unless the context says otherwise."""
+"""Default limit of the messages that wait in one queue, in bytes."""
 
 QUEUE_BYTES_VARIABLE: Final = "AIONODE_QUEUE_BYTES"
-"""The environment variable that says otherwise."""
+"""The environment variable that changes the limit."""
 
 GRAPH_BYTES: Final = 64 << 20
-"""Bytes of other processes' announcements that are kept, unless the context says otherwise."""
+"""Default limit of other processes' announcements to keep, in bytes."""
 
 GRAPH_BYTES_VARIABLE: Final = "AIONODE_GRAPH_BYTES"
-"""The environment variable that says otherwise."""
+"""The environment variable that changes the limit."""
 
 LEAST_BYTES: Final = 65_536
-"""Less than this would be less than a message that is sent at once."""
+"""The minimum of either limit: messages up to this size are sent at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,20 +133,20 @@ class Network:
 
     @property
     def may_reach_far(self) -> bool:
-        """Whether a session may be connected to other machines itself."""
+        """Whether a session may itself be connected to other machines."""
         subnet = self.discovery_range is DiscoveryRange.SUBNET
         return subnet or self.config_file is not None or bool(self.overrides)
 
     @property
     def far_peers(self) -> tuple[str, ...]:
-        """The static peers that a router on this machine dials: those on other machines."""
+        """The static peers that a router on this machine connects to: those on other machines."""
         if self.discovery_range is DiscoveryRange.OFF:
             return ()
         return tuple(endpoint for endpoint in self.static_peers if not is_near(endpoint))
 
     @property
     def near_peers(self) -> tuple[str, ...]:
-        """The static peers that a session dials itself: those on this machine."""
+        """The static peers that a session connects to itself: those on this machine."""
         if self.discovery_range is DiscoveryRange.OFF:
             return ()
         return tuple(endpoint for endpoint in self.static_peers if is_near(endpoint))
@@ -162,22 +162,22 @@ def network_from(
     queue_bytes: int | None = None,
     graph_bytes: int | None = None,
 ) -> Network:
-    """Return what the arguments say and, where they are None, the environment.
+    """Return the settings from the arguments or, where they are None, from the environment.
 
     Args:
         environ: Usually `os.environ`: ``ROS_DOMAIN_ID``, ``ROS_AUTOMATIC_DISCOVERY_RANGE``,
             ``ROS_STATIC_PEERS``, ``ROS_LOCALHOST_ONLY``, ``ZENOH_SESSION_CONFIG_URI``,
             ``ZENOH_CONFIG_OVERRIDE``.
-        domain_id: Instead of ``ROS_DOMAIN_ID``.
-        discovery_range: Instead of ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
-        static_peers: Instead of ``ROS_STATIC_PEERS``: hosts, ``host:port`` or Zenoh endpoints.
-        config: A path to a Zenoh configuration file, instead of ``ZENOH_SESSION_CONFIG_URI``, or
-            single settings by their key path, which win over ``ZENOH_CONFIG_OVERRIDE``.
-        queue_bytes: Instead of ``AIONODE_QUEUE_BYTES``.
-        graph_bytes: Instead of ``AIONODE_GRAPH_BYTES``.
+        domain_id: Overrides ``ROS_DOMAIN_ID``.
+        discovery_range: Overrides ``ROS_AUTOMATIC_DISCOVERY_RANGE``.
+        static_peers: Overrides ``ROS_STATIC_PEERS``: hosts, ``host:port`` or Zenoh endpoints.
+        config: A path to a Zenoh configuration file, overriding ``ZENOH_SESSION_CONFIG_URI``, or
+            single settings by key path, which override ``ZENOH_CONFIG_OVERRIDE``.
+        queue_bytes: Overrides ``AIONODE_QUEUE_BYTES``.
+        graph_bytes: Overrides ``AIONODE_GRAPH_BYTES``.
 
     Raises:
-        ConfigurationError: one of them does not fit; the text names it.
+        ConfigurationError: one of them is invalid; the message names it.
     """
     domain_id = choose_domain_id(environ, domain_id)
     ports, spare_ports = meeting_ports(environ, domain_id)
@@ -195,7 +195,7 @@ def network_from(
         config_file = str(config)
         config_source = "config"
     if environ.get(LOCALHOST_ONLY_VARIABLE, "").strip() == "1":
-        # As in ROS 2 since Iron: it overrules the two variables that came after it.
+        # As in ROS 2 since Iron: it overrides the two newer variables.
         hidden = {"ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_STATIC_PEERS"}
         environ = {name: text for name, text in environ.items() if name not in hidden}
     if static_peers is None:
@@ -203,7 +203,7 @@ def network_from(
         static_peers = environ.get(peers_source, "").split(";")
     else:
         peers_source = "static_peers"
-        if isinstance(static_peers, str):  # a string is iterable too, and never meant so
+        if isinstance(static_peers, str):  # iterable too, but never meant that way
             static_peers = static_peers.split(";")
     return Network(
         domain_id=domain_id,
@@ -233,8 +233,8 @@ def network_from(
 def choose_bytes(
     environ: Mapping[str, str], variable: str, argument: str, given: int | None, usual: int
 ) -> int:
-    """Return a limit in bytes, as the argument or the environment says."""
-    fits = f"a whole number of bytes from {LEAST_BYTES} on fits"
+    """Return a limit in bytes, from the argument or the environment."""
+    fits = f"use an integer number of bytes, at least {LEAST_BYTES}"
     if given is None:
         text = environ.get(variable, "").strip() or str(usual)
         source, known = variable, text.isascii() and text.isdigit() and len(text) <= 18
@@ -249,8 +249,8 @@ def choose_bytes(
 
 
 def choose_domain_id(environ: Mapping[str, str], domain_id: int | None) -> int:
-    """Return the domain id that the argument or the environment says."""
-    fits = f"a whole number from 0 to {MAX_DOMAIN_ID} fits"
+    """Return the domain id from the argument or the environment."""
+    fits = f"use an integer from 0 to {MAX_DOMAIN_ID}"
     if domain_id is not None:
         if isinstance(domain_id, bool) or not isinstance(domain_id, int):
             raise TypeError(f"domain_id: {brief(domain_id)} given; {fits}")
@@ -266,7 +266,7 @@ def choose_domain_id(environ: Mapping[str, str], domain_id: int | None) -> int:
 def choose_range(
     environ: Mapping[str, str], discovery_range: DiscoveryRange | str | None
 ) -> DiscoveryRange:
-    """Return the discovery range that the argument or the environment says."""
+    """Return the discovery range from the argument or the environment."""
     if isinstance(discovery_range, DiscoveryRange):
         return discovery_range
     source = "ROS_AUTOMATIC_DISCOVERY_RANGE" if discovery_range is None else "discovery_range"
@@ -280,21 +280,21 @@ def choose_range(
 
 
 def parse_overrides(text: str) -> tuple[tuple[str, str], ...]:
-    """Return the settings of ``ZENOH_CONFIG_OVERRIDE``: ``key/path=json5;…``."""
+    """Parse the settings in ``ZENOH_CONFIG_OVERRIDE``: ``key/path=json5;…``."""
     overrides = []
     for item in text.split(";"):
         if not item.strip():
             continue
         key, equals, value = item.partition("=")
         if not (equals and key.strip() and value.strip()):
-            fits = "settings such as scouting/multicast/enabled=true, separated by ;, fit"
+            fits = "use settings such as scouting/multicast/enabled=true, separated by ;"
             raise ConfigurationError("ZENOH_CONFIG_OVERRIDE", item.strip(), fits)
         overrides.append((key.strip(), value.strip()))
     return tuple(overrides)
 
 
 def peer_endpoints(peer: str, source: str, ports: tuple[int, ...]) -> list[str]:
-    """Return where to dial a static peer; without a port, wherever one could listen."""
+    """Return the endpoints of a static peer to dial; without a port, wherever one could listen."""
     if "/" in peer:
         protocol, _, address = peer.partition("/")
         if protocol and address:
@@ -304,20 +304,20 @@ def peer_endpoints(peer: str, source: str, ports: tuple[int, ...]) -> list[str]:
         if host and not any(c.isspace() for c in host):
             dialled = (port(given_port, source),) if colon else ports
             return [f"tcp/{host}:{p}" for p in dialled]
-    fits = "a host, host:port or a Zenoh endpoint such as tcp/10.0.0.7:7447 fits"
+    fits = "use a host, host:port or a Zenoh endpoint such as tcp/10.0.0.7:7447"
     raise ConfigurationError(source, peer, fits)
 
 
 def is_near(endpoint: str) -> bool:
-    """Return whether an endpoint is on this machine, as far as its text tells."""
+    """Return whether an endpoint is on this machine, judging by its text."""
     protocol, _, address = endpoint.partition("/")
     host = split_port(address.partition("?")[0].partition("#")[0])[0].strip("[]")
-    host = host.removeprefix("::ffff:")  # an IPv4 address as IPv6 has it
+    host = host.removeprefix("::ffff:")  # an IPv4-mapped IPv6 address
     return protocol.startswith("unix") or host in ("localhost", "::1") or host.startswith("127.")
 
 
 def split_port(peer: str) -> tuple[str, str, str]:
-    """Return host, colon and port; the last two are empty without a port."""
+    """Return host, colon and port; the last two are empty if there is no port."""
     if peer.startswith("["):  # an IPv6 address in brackets
         host, bracket, rest = peer.partition("]")
         return host + bracket, rest[:1], rest[1:]
@@ -327,9 +327,9 @@ def split_port(peer: str) -> tuple[str, str, str]:
 
 
 def port(text: str, source: str) -> int:
-    """Return a TCP port."""
+    """Parse a TCP port."""
     if not (text.isascii() and text.isdigit()) or len(text) > 5 or not 0 < int(text) < 2**16:
-        raise ConfigurationError(source, text, "a TCP port from 1 to 65535 fits")
+        raise ConfigurationError(source, text, "use a TCP port from 1 to 65535")
     return int(text)
 
 
@@ -356,19 +356,19 @@ def meeting_ports(
 
 
 def new_participant() -> str:
-    """Return an id for a context and its session; one that is made later is greater.
+    """Return an id for a context and its session; later ones are greater.
 
-    Zenoh has the session with the greater id dial if gossip introduces two. A later session dials
-    those that are listed as well, so no two ever dial each other. The time is that since the
-    machine was started, which is the same for all processes. Zenoh writes ids without leading
-    zeros, and all have to see the same text.
+    When gossip introduces two sessions, Zenoh makes the one with the greater id dial. A later
+    session also dials those that are listed, so no two ever dial each other. The time is the
+    machine's uptime, which is the same for all processes. Zenoh writes ids without leading zeros,
+    and everyone must see the same text.
     """
     first = SOUGHT if udp_sockets() is None else LATER
     return f"{first}{perf_ns() >> 16:012x}{secrets.token_hex(10)[:19]}"
 
 
 def udp_sockets() -> list[str] | None:
-    """Return a line for each UDP socket that is bound; None where nothing lists them."""
+    """Return a line for each bound UDP socket; None if they cannot be listed."""
     if not sys.platform.startswith("linux"):
         return None
     try:
@@ -378,11 +378,11 @@ def udp_sockets() -> list[str] | None:
 
 
 def unheard_middleware(environ: Mapping[str, str]) -> str | None:
-    """Return what to do if the ROS 2 nodes of this environment are not heard; None if they are."""
+    """Return what to do if this environment's ROS 2 nodes are not reachable; None if they are."""
     middleware = environ.get("RMW_IMPLEMENTATION", "")
     if middleware in {"", "rmw_zenoh_cpp"}:
         return None
     return (
-        f"RMW_IMPLEMENTATION={middleware}: nodes over DDS are not heard; AIONODE_TRANSPORT=rcl "
-        "reaches them"
+        f"RMW_IMPLEMENTATION={middleware}: nodes on DDS are not reachable; use "
+        "AIONODE_TRANSPORT=rcl to reach them"
     )

@@ -24,22 +24,22 @@ __all__ = ["SendQueue", "SendThread", "start_thread"]
 Job = Callable[[], None]
 
 EXIT_S: Final = 1.0
-"""Time for which the process waits at exit for threads that are sending, in seconds."""
+"""How long the process waits at exit for threads that are sending, in seconds."""
 
 INSIDE_S: Final = 2.0
-"""Time for which it waits for other threads, in seconds. Closing a session may take a second on a
-busy machine, and beside a frozen peer far longer than anybody would wait."""
+"""How long it waits for other threads, in seconds. Closing a session may take a second on a busy
+machine, and with a frozen peer far longer than anybody would wait."""
 
 started: weakref.WeakSet[threading.Thread] = weakref.WeakSet()
-"""The threads that `start_thread` has started, for `end_all`."""
+"""The threads started by `start_thread`, for `end_all`."""
 
 
 def start_thread(thread: threading.Thread) -> bool:
-    """Start a thread, for which the process waits at exit.
+    """Start a thread that the process waits for at exit.
 
     Returns:
-        False if the interpreter is shutting down: from Python 3.12 on none can be started then,
-        although the loop of a thread of its own still runs.
+        False if the interpreter is shutting down: since Python 3.12, threads cannot be started
+        then, although a loop in another thread may still be running.
     """
     try:
         thread.start()
@@ -60,7 +60,7 @@ class Worker:
     def __init__(self, name: str) -> None:
         self.stopped = False
         self._jobs: SimpleQueue[Job | None] = SimpleQueue()
-        # Written by the loop only and by the thread only; the loop compares them.
+        # One is written only by the loop and one only by the thread; the loop compares them.
         self._put = 0
         self._done = 0
         self.thread = threading.Thread(target=self._run, name=name, daemon=True)
@@ -69,11 +69,11 @@ class Worker:
 
     @property
     def busy(self) -> bool:
-        """Whether a job waits or runs."""
+        """Whether a job is waiting or running."""
         return self._put != self._done
 
     def submit(self, job: Job) -> None:
-        """Run `job` after those before it; in the calling thread if none could be started."""
+        """Run `job` after those before it; in the calling thread if no thread could be started."""
         if not self._started:
             job()
             return
@@ -81,11 +81,13 @@ class Worker:
         self._jobs.put(job)
 
     def submit_past_loop(self, job: Job) -> None:
-        """As `submit`, from any thread; `busy` does not tell of this job."""
+        """Like `submit`, but from any thread; `busy` does not include this job."""
 
         def run() -> None:
             job()
-            self._done -= 1  # only the loop counts what is put, and only this thread what is done
+            self._done -= (
+                1  # only the loop counts submitted jobs, and only this thread finished ones
+            )
 
         self._jobs.put(run)
 
@@ -112,18 +114,18 @@ def end_all() -> None:
         worker.end()
     for worker in running:
         worker.thread.join(EXIT_S / len(running))
-    # Python does not wait for those that a daemon has started, such as the thread of rclpy.
+    # Python does not wait for threads started by a daemon thread, such as rclpy's.
     ends_ns = perf_ns() + int(INSIDE_S * 1e9)
     for thread in list(started):
         thread.join(max(0, ends_ns - perf_ns()) / 1e9)
 
 
 class SendThread:
-    """One thread that runs jobs in order. It is started by the first job.
+    """One thread that runs jobs in order, started by the first job.
 
     Args:
         name: Name of the thread.
-        waker: Wakes the loop when a job is done that a coroutine waits for.
+        waker: Wakes the loop when a job is done that a coroutine is waiting for.
     """
 
     def __init__(self, name: str, waker: LoopWaker) -> None:
@@ -133,7 +135,7 @@ class SendThread:
 
     @property
     def busy(self) -> bool:
-        """Whether a job waits or runs."""
+        """Whether a job is waiting or running."""
         return self._worker is not None and self._worker.busy
 
     def submit(self, job: Job) -> None:
@@ -154,13 +156,13 @@ class SendThread:
         return SendQueue(self, self._waker, limit, limit_bytes, keep_all=keep_all, lost=lost)
 
     def submit_past_loop(self, job: Job) -> None:
-        """Run `job` after those before it, of which there has to be one; from any thread."""
+        """Run `job` after those before it, of which there must be one; from any thread."""
         worker = self._worker
         if worker is not None:
             worker.submit_past_loop(job)
 
     def close(self) -> None:
-        """End the thread after the jobs it has now; does not wait."""
+        """End the thread after its current jobs; does not wait."""
         worker, self._worker = self._worker, None
         if worker is not None:
             worker.end()
@@ -172,9 +174,9 @@ class SendThread:
         self.close()
 
     async def flush(self) -> None:
-        """Wait until the jobs so far are done and the thread has ended; the next starts another.
+        """Wait until all jobs so far are done and the thread has ended; the next starts another.
 
-        Cancelling stops the wait only: the thread still ends after its jobs.
+        Cancelling only stops the wait: the thread still ends after its jobs.
         """
         worker = self._worker
         if worker is None:
@@ -192,15 +194,15 @@ class SendQueue:
     Args:
         send_thread: The thread that sends.
         waker: Wakes the loop when everything was sent.
-        limit: How many sends wait at most.
-        limit_bytes: How many bytes those that wait have at most; the newest waits whatever it has.
-        keep_all: Whether a full queue has no room, or else drops its oldest.
-        lost: Called with how many were dropped.
+        limit: Maximum number of sends that wait.
+        limit_bytes: Maximum total size of those that wait; the newest waits whatever its size.
+        keep_all: Whether a full queue has no room, instead of dropping its oldest.
+        lost: Called with the number of sends that were dropped.
 
     Attributes:
-        dropped: How many sends were dropped.
-        limit: How many sends wait at most; it may be changed.
-        sent: How many have left the queue.
+        dropped: Number of sends that were dropped.
+        limit: Maximum number of sends that wait; it may be changed.
+        sent: Number of sends that have left the queue.
     """
 
     def __init__(
@@ -220,7 +222,7 @@ class SendQueue:
         self._lost = lost
         self._limit_bytes = limit_bytes
         self._waiting: deque[tuple[int, Callable[[], None]]] = deque()
-        # Written by the loop only and by the thread only; the loop compares them.
+        # One is written only by the loop and one only by the thread; the loop compares them.
         self._put = self._put_bytes = 0
         self.sent = self._sent_bytes = 0
         self._drained: list[asyncio.Future[None]] = []
@@ -234,7 +236,7 @@ class SendQueue:
         return self._put_bytes - self._sent_bytes
 
     def put(self, send: Callable[[], None], size_bytes: int = 0) -> None:
-        """Queue a call of `send`; a full queue drops its oldest unless it keeps all."""
+        """Queue a call of `send`; a full queue drops its oldest unless it is KEEP_ALL."""
         waiting = self._waiting
         dropped = 0
         while not self._keep_all and (
@@ -242,13 +244,13 @@ class SendQueue:
         ):
             try:
                 oldest_bytes, _ = waiting.popleft()
-            except IndexError:  # the thread was faster, or sends the only one
+            except IndexError:  # the thread was faster, or is sending the only one
                 break
             self._put_bytes -= oldest_bytes
             dropped += 1
         self._put_bytes += size_bytes
         waiting.append((size_bytes, send))
-        if dropped:  # it takes the job of one of those; the jobs of the others find less to do
+        if dropped:  # it takes over the job of a dropped one; the other jobs find less to do
             self._note_dropped(dropped)
         else:
             self._put += 1
@@ -260,7 +262,7 @@ class SendQueue:
             self._lost(count)
 
     def has_room(self) -> bool:
-        """Whether one more can be put without dropping any."""
+        """Whether another send can be added without dropping any."""
         return len(self) < self.limit and (
             not self._waiting or self._waiting_bytes < self._limit_bytes
         )
@@ -270,7 +272,7 @@ class SendQueue:
         while len(self):
             waiter = asyncio.get_running_loop().create_future()
             self._drained.append(waiter)
-            if len(self):  # the thread looks at the list after it counts, so one of both sees it
+            if len(self):  # the thread checks the list after counting, so one of both sees it
                 await waiter
             else:
                 self._wake(None)

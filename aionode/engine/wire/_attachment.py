@@ -1,8 +1,8 @@
 """The 33-byte attachment of every publication, request and reply.
 
 It is Zenoh's serialization of (int64 sequence number, int64 source time, sequence of 16 bytes),
-where the length of the sequence is one LEB128 byte. A ROS node drops samples without an attachment
-and may crash on a malformed one, so it is always written; parsing is lenient.
+with the length of the sequence as one LEB128 byte. ROS nodes drop samples without an attachment and
+may crash on a malformed one, so it is always written; parsing is lenient.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def pack(sequence: int, source_ns: int, gid: bytes) -> bytes:
 
 
 def unpack(data: bytes) -> Attachment | None:
-    """Return a parsed attachment, or None if its format is unknown.
+    """Parse an attachment; return None if its format is unknown.
 
     Additional bytes, which future releases may append, are ignored.
     """
@@ -55,7 +55,7 @@ def unpack(data: bytes) -> Attachment | None:
 
 
 def unpack_fields(data: bytes) -> tuple[int, int, bytes] | None:
-    """Return the same as `unpack` as a plain tuple, which takes half the time."""
+    """Return the same as `unpack`, but as a plain tuple, which takes half the time."""
     if len(data) == LAYOUT.size:
         sequence, source_ns, length, gid = LAYOUT.unpack(data)
         return (sequence, source_ns, gid) if length == GID_SIZE else None

@@ -1,19 +1,19 @@
-"""The announcements of `zenoh-bridge-ros2dds`: of the nodes behind it, and of ours to it.
+"""Announcements of `zenoh-bridge-ros2dds`: of the nodes behind it, and of ours to it.
 
 A bridge is a Zenoh router with a DDS participant. The key of a topic or service is its ROS name
-without the first slash, without domain, type and hash. It announces itself and what it has found::
+without the leading slash, domain, type and hash. It announces itself and what it has found::
 
     @/<zid>/@ros2_lv
     @/<zid>/@ros2_lv/<MP|MS>/<key>/<type>/<qos>
     @/<zid>/@ros2_lv/<SS|SC|AS|AC>/<key>/<type>
 
-Key and type are one chunk each, with ``§`` for each slash. There are no tokens of nodes, and an
-action has one for all of its services and topics.
+Key and type are one chunk each, with ``§`` for each slash. Nodes have no tokens, and an action has
+a single one for all of its services and topics.
 
-A bridge trusts these tokens: a kind of fewer than three bytes in the last place, or a name with an
-empty part, ends its main task, and with it the robot's connection. So `bridge_token` is the only
-function that makes one, and it refuses what a bridge does not survive. What only a bridge with a
-certain namespace does not survive, `takes_for_its_own` tells.
+Bridges trust these tokens: a last chunk with a kind of fewer than three bytes, or a name with an
+empty part, ends the bridge's main task, and with it the robot's connection. So `bridge_token` is
+the only function that creates one, and it rejects whatever a bridge would not survive. What only a
+bridge with a certain namespace would not survive is detected by `takes_for_its_own`.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ __all__ = [
 ]
 
 BRIDGES: Final = "@/*/@ros2_lv"
-"""The key expression of the tokens of bridges; those of what is behind them follow it."""
+"""The key expression of the tokens of bridges; what is behind a bridge is announced below it."""
 
 MARK: Final = "@ros2_lv"
 SLASH: Final = "§"
@@ -66,7 +66,7 @@ KIND_CHUNKS: Final = {kind: chunk for chunk, kind in KINDS.items()}
 ACTION_KINDS: Final = {"AS": EndpointKind.SERVER, "AC": EndpointKind.CLIENT}
 
 ZID: Final = re.compile(r"[0-9a-f]{1,32}\Z")
-# Names of ROS: what else Zenoh or a bridge would take in another way is not among it.
+# ROS names, which contain nothing that Zenoh or a bridge would interpret differently.
 NAME: Final = re.compile(r"[A-Za-z0-9_]+(/[A-Za-z0-9_]+)*\Z")
 TYPE: Final = re.compile(r"[A-Za-z0-9_]+/(msg|srv|action)/[A-Za-z0-9_]+\Z")
 HASH: Final = re.compile(r"RIHS01_[0-9a-f]{64}\Z")
@@ -82,13 +82,13 @@ class BridgeToken(NamedTuple):
     """A parsed token.
 
     Attributes:
-        zid: The Zenoh id of the session that has declared it.
+        zid: The Zenoh id of the session that declared it.
         kind: ``MP``, ``MS``, ``SS``, ``SC``, ``AS`` or ``AC``; empty for the bridge itself.
         key: The key of the topic, service or action.
         type_name: The ROS name of its type.
-        qos: Its QoS; of services and actions the default.
-        type_hash: The hash of the type; empty if it is not told.
-        has_history: Whether the QoS names a history; Fast DDS does not tell it.
+        qos: Its QoS; the default for services and actions.
+        type_hash: The hash of the type; empty if unknown.
+        has_history: Whether the QoS includes a history, which Fast DDS does not transmit.
     """
 
     zid: str
@@ -114,8 +114,8 @@ class BridgedNode(NamedTuple):
 
     Attributes:
         name: Its full name on the DDS side.
-        endpoints: The kinds and names of its topics and services, and of those of its actions.
-        uses_fast_dds: Whether its DDS is Fast DDS, which is in the id of its participant.
+        endpoints: Kinds and names of its topics and services, including those of its actions.
+        uses_fast_dds: Whether it uses Fast DDS, according to the id of its participant.
     """
 
     name: str
@@ -127,7 +127,7 @@ def bridge_key(name: str) -> str:
     """Return the key of a topic or service.
 
     Raises:
-        ValueError: it is not a full name of ROS.
+        ValueError: it is not a fully qualified ROS name.
     """
     key = name.strip("/")
     if not NAME.match(key):
@@ -136,16 +136,16 @@ def bridge_key(name: str) -> str:
 
 
 def namespace_prefix(namespace: str) -> str:
-    """Return what the keys of a bridge begin with, such as ``bot1/``; empty for the root."""
+    """Return the prefix of a bridge's keys, such as ``bot1/``; empty for the root namespace."""
     prefix = namespace.strip("/")
     return f"{prefix}/" if NAME.match(prefix) else ""
 
 
 def takes_for_its_own(prefix: str, key: str) -> bool:
-    """Return whether a bridge takes `key` for one of its namespace though it is none.
+    """Return whether a bridge mistakes `key` for one in its namespace.
 
-    It compares without the slash, and so takes ``bot10/chatter`` for a part of ``bot1``. It cuts
-    off that and one character more, and does not survive it if no name is left after that.
+    It compares without the slash, and so mistakes ``bot10/chatter`` for a part of ``bot1``. It then
+    cuts off the prefix and one more character, and crashes if no name is left.
     """
     return bool(prefix) and key.startswith(prefix[:-1]) and not key.startswith(prefix)
 
@@ -158,22 +158,22 @@ def bridge_token(
     qos: QoSProfile | None = None,
     type_hash: str = "",
 ) -> str:
-    """Return a token that a bridge can read; nothing else may declare anything below ``@/``.
+    """Create a token that a bridge can parse; nothing else may declare anything below ``@/``.
 
     Args:
         zid: The id of the session that declares it.
         kind: ``MP``, ``MS``, ``SS``, ``SC``, ``AS`` or ``AC``.
         name: The full name of the topic, service or action.
         type_name: The ROS name of its type.
-        qos: That of a topic.
-        type_hash: The hash of a topic's type, if it is known.
+        qos: The QoS of a topic.
+        type_hash: The hash of a topic's type, if known.
 
     Raises:
-        ValueError: a part is not what a bridge expects there.
+        ValueError: a part is not what a bridge expects.
     """
     key = bridge_key(name)
     if not ZID.match(zid):
-        raise ValueError(f"{zid!r} is not the id of a session")
+        raise ValueError(f"{zid!r} is not a session id")
     if kind not in KINDS and kind not in ACTION_KINDS:
         raise ValueError(f"{kind!r} is not a kind of token")
     if not TYPE.match(type_name):
@@ -187,7 +187,7 @@ def bridge_token(
 
 
 def qos_chunk(qos: QoSProfile, type_hash: str) -> str:
-    """Return the QoS of a topic in numbers of DDS; the first field would be K for a keyed topic."""
+    """Return the QoS as DDS numbers; the first field would be K for a keyed topic."""
     qos = qos.resolved()
     reliable = int(qos.reliability is ReliabilityPolicy.RELIABLE)
     transient = int(qos.durability is DurabilityPolicy.TRANSIENT_LOCAL)
@@ -196,9 +196,9 @@ def qos_chunk(qos: QoSProfile, type_hash: str) -> str:
 
 
 def token_of(zid: str, endpoint: EndpointInfo) -> str:
-    """Return the token of one of our endpoints; empty if another one stands for it.
+    """Return the token of one of our endpoints; empty if another endpoint's token stands for it.
 
-    Of the endpoints of an action, the one that sends goals has the token of the action.
+    Of an action's endpoints, the one that sends goals has the action's token.
     """
     action, part, which = endpoint.name.partition(ACTION_PART)
     if not part:
@@ -216,7 +216,7 @@ def token_of(zid: str, endpoint: EndpointInfo) -> str:
 
 
 def parse_bridge_token(key: str) -> BridgeToken | None:
-    """Return the parsed token, or None if its form is unknown."""
+    """Parse a token; return None if its format is unknown."""
     chunks = key.split("/")
     if len(chunks) < 3 or chunks[0] != "@" or chunks[2] != MARK:
         return None
@@ -237,9 +237,9 @@ def parse_bridge_token(key: str) -> BridgeToken | None:
 
 
 def parse_topic(token: BridgeToken, text: str) -> BridgeToken | None:
-    """Return the token of a topic with its QoS, or None if that cannot be read.
+    """Add the QoS to the token of a topic; return None if it cannot be parsed.
 
-    What is unset has DDS's default, by which publishers are reliable and subscriptions are not.
+    Unset policies have DDS's defaults, by which publishers are reliable and subscriptions are not.
     """
     fields = text.split(":", 4)
     if len(fields) < 4:
@@ -287,12 +287,12 @@ def bridged_endpoints(token: BridgeToken) -> list[BridgedEndpoint]:
 
 
 def config_key(zid: str) -> str:
-    """Return the key at which a bridge tells its settings."""
+    """Return the key under which a bridge publishes its settings."""
     return f"@/{zid}/ros2/config"
 
 
 def node_keys(zid: str) -> str:
-    """Return the key expression with which a bridge is asked for its nodes."""
+    """Return the key expression for querying the nodes of a bridge."""
     return f"@/{zid}/ros2/node/**"
 
 
@@ -306,11 +306,11 @@ LISTS: Final = (
 )
 
 FAST_DDS: Final = "010f"
-"""The first two bytes of the id of a participant: the vendor, by the RTPS specification."""
+"""The first two bytes of a participant's id: the vendor, according to the RTPS specification."""
 
 
 def parse_node(key: str, payload: bytes) -> BridgedNode | None:
-    """Return a node that a bridge has described, or None if that is in another form.
+    """Parse the description of a node by a bridge; return None if its format is unknown.
 
     Args:
         key: ``@/<zid>/ros2/node/<gid>/<namespace>/<name>``.
@@ -336,9 +336,9 @@ def parse_node(key: str, payload: bytes) -> BridgedNode | None:
 
 
 def parse_request_id(extra: bytes) -> tuple[bytes, int] | None:
-    """Return the client and its number of a request that comes through a bridge, else None.
+    """Return the client and sequence number of a request through a bridge; None for others.
 
-    The attachment is ``rqh``, the client's id in 8 bytes, the number in 8, and the byte order.
+    The attachment is ``rqh``, the client id (8 bytes), the sequence number (8), and the byte order.
     """
     if len(extra) != REQUEST_ID_SIZE or not extra.startswith(REQUEST_MARK):
         return None

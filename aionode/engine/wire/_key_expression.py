@@ -1,13 +1,14 @@
 """Zenoh key expressions of topics and services, as in `rmw_zenoh_cpp`.
 
-A key is ``<domain>/<name>/<DDS type>/<type hash>``, with the name's leading slash removed. The DDS
-type of ``std_msgs/msg/String`` is ``std_msgs::msg::dds_::String_``.
+A key is ``<domain>/<name>/<DDS type>/<type hash>``, without the name's leading slash. The DDS type
+of ``std_msgs/msg/String`` is ``std_msgs::msg::dds_::String_``.
 
-Unknown parts are wildcards of Zenoh: ``*`` for one chunk, ``**`` for any number of chunks.
+Unknown parts are Zenoh wildcards: ``*`` for one chunk, ``**`` for any number of chunks.
 
-What contexts of aionode tell each other about a topic lies below its key, so that a rule for the
-topic can bind it: ``<key>/@aionode/pub/…`` is said by publishers, ``<key>/@aionode/sub/…`` by
-subscriptions. No wildcard matches a chunk with an ``@``, so no subscriber of the topic gets it.
+What aionode contexts tell each other about a topic is sent below its key, so that an access rule
+for the topic can cover it: ``<key>/@aionode/pub/…`` is used by publishers, ``<key>/@aionode/sub/…``
+by subscriptions. No wildcard matches a chunk with an ``@``, so subscribers of the topic do not
+receive it.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class DataKey(NamedTuple):
 
 
 class Side(enum.Enum):
-    """The endpoints that a key speaks of: publishers or subscriptions."""
+    """The endpoints that a key concerns: publishers or subscriptions."""
 
     PUBLISHERS = "pub"
     SUBSCRIPTIONS = "sub"
@@ -88,12 +89,12 @@ def buffer_key(key: str) -> str:
 
 
 def side_key(key: str, side: Side, what: str) -> str:
-    """Return the key below that of a topic on which one side of it says something."""
+    """Return the key below a topic's key on which one side of it sends `what`."""
     return f"{key}/@aionode/{side.value}/{what}"
 
 
 def parse_data_key(key: str) -> DataKey | None:
-    """Return the parsed key, or None if it is not the key of a topic or service."""
+    """Parse a key; return None if it is not the key of a topic or service."""
     chunks = key.removesuffix(f"/{BUFFER_SUFFIX}").split("/")
     if len(chunks) < 4 or "" in chunks:
         return None
@@ -114,5 +115,5 @@ def mangle(name: str) -> str:
 
 
 def demangle(chunk: str) -> str:
-    """Return the name from which `mangle` made `chunk`."""
+    """Undo `mangle`."""
     return chunk.replace("%", "/")

@@ -5,11 +5,11 @@ Each node and each endpoint declares one token for as long as it exists::
     @ros2_lv/<domain>/<zid>/<nid>/<nid>/NN/<enclave>/<namespace>/<node>
     @ros2_lv/<domain>/<zid>/<nid>/<eid>/<kind>/<enclave>/<namespace>/<node>/<name>/<type>/<hash>/<qos>
 
-A name is one chunk, with each slash replaced by ``%``. The QoS chunk omits values that are equal to
-rmw_zenoh's defaults. Since ROS 2 Lyrical a 14th chunk ``backends:…`` may follow.
+A name is one chunk, with each slash replaced by ``%``. The QoS chunk omits values equal to
+rmw_zenoh's defaults. Since ROS 2 Lyrical, a 14th chunk ``backends:…`` may follow.
 
-Parsing is lenient: it returns None for a token of unknown format, or with a name that ROS does not
-allow, and never raises, as any program may declare any token with this prefix.
+Parsing is lenient: it never raises, and returns None for a token of unknown format or with a name
+that ROS does not allow, as any program may declare any token with this prefix.
 """
 
 from __future__ import annotations
@@ -65,13 +65,13 @@ NODE_CHUNKS: Final = 9
 ENDPOINT_CHUNKS: Final = 13
 
 LONGEST_TOKEN: Final = 4096
-"""Longest token in characters: names of ROS have 255 at most, and a token has five of them."""
+"""Maximum token length in characters: ROS names have at most 255, and a token has five."""
 
 QOS_CHUNKS: Final = 256
-"""Of how many different QoS chunks the profiles are remembered."""
+"""Number of different QoS chunks whose profiles are cached."""
 
 SHARED: Final = 1024
-"""So many nodes and names, and so many types, are one object in all endpoints that have them."""
+"""Number of nodes, names and types that are cached, so that endpoints share the objects."""
 
 FOREVER: Final = divmod(CONST_INFINITE_NS, S_TO_NS)
 
@@ -97,7 +97,7 @@ def is_node_token(token: str) -> bool:
 
 
 def endpoint_token(domain_id: int, endpoint: EndpointInfo, backends: str = "") -> str:
-    """Return the token of an endpoint; the `gid` is not part of it, but derived from it."""
+    """Return the token of an endpoint; its `gid` is not part of the token, but derived from it."""
     chunks = [
         *node_chunks(domain_id, endpoint.node, endpoint.endpoint_id, KIND_CHUNKS[endpoint.kind]),
         mangle(endpoint.name),
@@ -111,7 +111,7 @@ def endpoint_token(domain_id: int, endpoint: EndpointInfo, backends: str = "") -
 
 
 def node_chunks(domain_id: int, node: NodeInfo, entity_id: int, kind: str) -> list[str]:
-    """Return the chunks that nodes and endpoints have in common."""
+    """Return the chunks that the tokens of nodes and endpoints have in common."""
     return [
         PREFIX,
         str(domain_id),
@@ -164,7 +164,7 @@ def duration_text(duration: Duration) -> str:
 
 
 def parse_token(key: str) -> Token | None:
-    """Return the parsed token, or None if its format is unknown."""
+    """Parse a token; return None if its format is unknown."""
     chunks = key.split("/")
     if len(chunks) < NODE_CHUNKS or chunks[0] != PREFIX or "" in chunks:
         return None
@@ -212,33 +212,33 @@ def parse_endpoint(
 
 @lru_cache(SHARED)
 def shared_node(zid: str, node_id: int, name: str, namespace: str, enclave: str) -> NodeInfo | None:
-    """Return the node of some chunks, None if it cannot be one; the same object always."""
+    """Return the node for some chunks, or None if invalid; equal chunks share one object."""
     node = NodeInfo(zid, node_id, name, demangle(namespace), demangle(enclave))
     return node if is_full_node_name(name, node.namespace, node.enclave) else None
 
 
 @lru_cache(SHARED)
 def shared_name(chunk: str) -> str | None:
-    """Return the name of a topic or service, None if it cannot be one; the same object always."""
+    """Return the topic or service name in a chunk, or None if invalid; equal chunks share it."""
     name = demangle(chunk)
     return name if is_full_name(name) else None
 
 
 @lru_cache(SHARED)
 def shared_type(dds_name: str, type_hash: str) -> tuple[str | None, str]:
-    """Return the name of a type, None if it is not one, and its hash; the same objects always."""
+    """Return a type's name, or None if invalid, and its hash; equal ones share objects."""
     return ros_type(demangle(dds_name)), demangle(type_hash)
 
 
 def parse_qos(chunk: str) -> QoSProfile | None:
     """Return the profile described by a QoS chunk, or None if its format is unknown."""
     profile = cached_profile(chunk)
-    return None if profile is None else profile.replace()  # a copy, as it can be changed
+    return None if profile is None else profile.replace()  # a copy, as profiles are mutable
 
 
 @lru_cache(QOS_CHUNKS)
 def cached_profile(chunk: str) -> QoSProfile | None:
-    """Return the same profile for the same chunk: few differ, and each takes 20 µs."""
+    """Return a cached profile for a chunk: there are few different ones, and each takes 20 µs."""
     fields = [field.split(",") for field in chunk.split(":")]
     if len(fields) < 6 or any(
         len(parts) < needed for parts, needed in zip(fields, (1, 1, 2, 2, 2, 3), strict=False)
@@ -265,7 +265,7 @@ def parse_duration(parts: list[str]) -> Duration:
     """Return the duration given as seconds and nanoseconds.
 
     Raises:
-        ValueError: A part is not a number, or is too large.
+        ValueError: a part is not a number, or is too large.
     """
     seconds, nanoseconds = (value(*pair) for pair in zip(parts[:2], FOREVER, strict=True))
     return Duration(nanoseconds=min(seconds * S_TO_NS + nanoseconds, CONST_INFINITE_NS))

@@ -1,6 +1,6 @@
-"""Counts messages with a text that is no Unicode, such as Latin-1 from C++, and logs some of them.
+"""Counts messages with invalid Unicode, such as Latin-1 from C++, and logs some of them.
 
-Whatever decodes a message reads it with U+FFFD instead, so the count is that of the process.
+Any decoder replaces it by U+FFFD, so the count is for the whole process.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ __all__ = ["REPLACED_TEXTS", "ReplacedTexts"]
 logger = logging.getLogger("aionode.wire")
 
 TYPES: Final = 1_000
-"""Of so many types each is counted by itself: recordings and other nodes may define any."""
+"""Number of types that are counted individually: recordings and peers may define any."""
 
 SHOWN: Final = 40
-"""Bytes of a text that the log shows."""
+"""Number of bytes of a text that the log shows."""
 
 
 class ReplacedTexts:
     """Counts them by their type, and logs those of each type as `RatedLines` says.
 
-    Any thread may note one: of two at the same moment one may not be counted, which does no harm.
+    Any thread may call `note`: of two simultaneous calls one may not be counted, which is harmless.
     """
 
     def __init__(self) -> None:
@@ -34,7 +34,7 @@ class ReplacedTexts:
         self._lines: RatedLines[str] = RatedLines(perf_ns, TYPES + 1)
 
     def total(self) -> int:
-        """Return how many messages of all types there were."""
+        """Return the number of such messages of all types."""
         return self._counts.total()
 
     def note(self, type_name: str, path: str, data: bytes) -> None:
@@ -42,8 +42,8 @@ class ReplacedTexts:
 
         Args:
             type_name: Its type.
-            path: Where its first such text is, such as `.status[0].name`.
-            data: That text as it came.
+            path: Where the first such text is, such as `.status[0].name`.
+            data: The text as received.
         """
         if type_name not in self._counts and len(self._counts) >= TYPES:
             type_name = "other types"

@@ -1,7 +1,7 @@
 """Type descriptions, which ROS 2 nodes exchange and from which type hashes are computed.
 
-A description lists every field with its type, for a type and all types it uses, as in the messages
-of `type_description_interfaces`.
+A description lists every field with its type, for a type and all types that it uses, like the
+messages of `type_description_interfaces`.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ TYPE_IDS = {
     "byte": 16,
     "string": 17,
     "wstring": 18,
-    # In a .msg file, char is an alias of uint8; 13 is the char of IDL.
+    # In .msg files, char is an alias of uint8; 13 is IDL's char.
     "char": 3,
 }
 
 BOUNDED_TEXT = 4
-"""Added to the id of a string that has a bound."""
+"""Added to the id of a string that is bounded."""
 
 CONTAINERS = {"single": 0, "array": 48, "bounded": 96, "unbounded": 144}
 """Added to the id of the element type, by container."""
@@ -116,7 +116,7 @@ def description_message(cls: type[Any]) -> TypeDescription:
 
 
 def individual_message(cls: type[Any]) -> IndividualTypeDescription:
-    """Return the description of a single type as a message, default values included."""
+    """Return the description of a single type as a message, including default values."""
     from aionode.interfaces.type_description_interfaces import msg
 
     form = individual(cls)
@@ -136,7 +136,7 @@ def individual_message(cls: type[Any]) -> IndividualTypeDescription:
 
 
 def default_text(default: object) -> str:
-    """Return a default value as ROS writes it; empty if there is none."""
+    """Return a default value in ROS's notation; empty if there is none."""
     if default is None:
         return ""
     if isinstance(default, bytes):
@@ -157,13 +157,13 @@ def individual(cls: type[Any]) -> Individual:
 
 
 def ros_name(name: str) -> str:
-    """Return the name of a field in ROS: a keyword of Python has an underscore after it here."""
+    """Return a field's name in ROS: here, Python keywords have a trailing underscore."""
     plain = name.removesuffix("_")
     return plain if iskeyword(plain) else name
 
 
 def halves(cls: type[Any]) -> Iterator[tuple[str, type[Any]]]:
-    """Yield name and type of each part of a service or action."""
+    """Yield the name and type of each part of a service or action."""
     if issubclass(cls, ServiceType):
         yield "request_message", cls.Request
         yield "response_message", cls.Response

@@ -1,4 +1,4 @@
-"""Content filters over messages that stay bytes."""
+"""Content filters for messages that are delivered as bytes."""
 
 from __future__ import annotations
 
@@ -23,6 +23,6 @@ def decoding(msg_type: type[Message], accepts: Callable[[Any], bool]) -> Callabl
         try:
             return accepts(decode(data))
         except DecodeError:
-            return True  # a raw subscription gets malformed messages, too
+            return True  # raw subscriptions also get malformed messages
 
     return accepts_bytes

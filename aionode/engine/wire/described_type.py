@@ -1,7 +1,7 @@
-"""Classes from type descriptions: for types that a program has no definition of.
+"""Creates classes from type descriptions, for types whose definition is not available.
 
-A description arrives from another process, and may say anything. Names are checked where classes
-are made; what a class would cost is checked here, before the first message of it is made.
+Descriptions come from other processes and may contain anything. Names are validated where classes
+are created; the cost of a class is checked here, before its first message is created.
 """
 
 from __future__ import annotations
@@ -42,34 +42,34 @@ CONTAINERS: Final = ("single", "array", "bounded", "unbounded")
 PLACEHOLDER: Final = "structure_needs_at_least_one_member"
 
 MOST_TYPES: Final = 1_000
-"""Largest number of types in a description; the largest action of MoveIt uses 80."""
+"""Maximum number of types in a description; MoveIt's largest action uses 80."""
 
 MOST_FIELDS: Final = 10_000
-"""Largest number of fields in all types of a description."""
+"""Maximum total number of fields in a description."""
 
 DEEPEST: Final = 50
-"""Largest depth of types in types."""
+"""Maximum nesting depth of types."""
 
 LARGEST_BOUND: Final = 2**32 - 1
-"""Largest bound of a sequence or string, as its length is encoded in 32 bits."""
+"""Maximum bound of a sequence or string, whose length is encoded in 32 bits."""
 
 LARGEST_MESSAGE: Final = 2**26
-"""Largest size of a new message in bytes, estimated: all elements of its arrays included."""
+"""Maximum estimated size of a new message in bytes, including all array elements."""
 
 LONGEST_DEFAULT: Final = 2**20
-"""Largest number of characters of a default value."""
+"""Maximum length of a default value in characters."""
 
 VALUE_SIZE: Final = 64
-"""About what one value of a message takes in memory, in bytes: a Python object and its place."""
+"""Approximate memory of one value of a message in bytes: a Python object and its slot."""
 
 ELEMENT_SIZE: Final = 8
-"""Most bytes that one number of an array takes."""
+"""Maximum memory of one number in an array, in bytes."""
 
 
 def type_from_description(description: TypeDescription) -> Any:
-    """Return the message or service class that a description describes.
+    """Return the message or service class for a description.
 
-    The class is not among those that `aionode.interfaces.get_interface` finds by name.
+    The class is not registered with `aionode.interfaces.get_interface`.
 
     Raises:
         TypeDescriptionError: the description is invalid or exceeds a limit (a ValueError).
@@ -85,7 +85,7 @@ def type_from_description(description: TypeDescription) -> Any:
 def action_from_descriptions(
     name: str, send_goal: TypeDescription, get_result: TypeDescription, feedback: TypeDescription
 ) -> Any:
-    """Return the action class whose services and feedback message are described.
+    """Return the action class for the descriptions of its services and feedback message.
 
     Args:
         name: The ROS name of the action.
@@ -114,10 +114,10 @@ def composed(base: type[Any], name: str, halves: dict[str, type[Message]]) -> An
 
 
 def new_type(base: type[Any], name: str, body: dict[str, Any]) -> Any:
-    """Return a new class of this ROS name.
+    """Create a class with this ROS name.
 
     Raises:
-        TypeDescriptionError: the name of the type, or of a field, is invalid.
+        TypeDescriptionError: the name of the type or of a field is invalid.
     """
     if not name:
         raise TypeDescriptionError(name, "it has no name")
@@ -130,11 +130,11 @@ def new_type(base: type[Any], name: str, body: dict[str, Any]) -> Any:
 
 
 def default_of(type_: FieldType, text: str) -> object:
-    """Return the default value that a text describes.
+    """Parse a default value.
 
     Raises:
-        ValueError: it is none of that type; or another exception of `ast.literal_eval`.
-        TypeError: it is no list.
+        ValueError: it does not fit the type; other exceptions of `ast.literal_eval` are possible.
+        TypeError: it is not a list.
     """
     if len(text) > LONGEST_DEFAULT:
         raise ValueError("it is too long")
@@ -142,7 +142,7 @@ def default_of(type_: FieldType, text: str) -> object:
     if type_.container != "single":
         value = ast.literal_eval(text)
         if not isinstance(value, list | tuple):
-            raise TypeError("it is no list")
+            raise TypeError("it is not a list")
         return tuple(value)
     if kind in {"string", "wstring"}:
         return text
@@ -157,7 +157,7 @@ def default_of(type_: FieldType, text: str) -> object:
 
 
 class DescribedTypes:
-    """Makes the classes of one description, each on the first call.
+    """Creates the classes of one description on demand.
 
     Args:
         description: The description.
@@ -174,18 +174,18 @@ class DescribedTypes:
         self.parts = {part.type_name: part for part in parts}
         self._made: dict[str, type[Message]] = {}
         self._size_bytes: dict[str, int] = {}  # of a new message of each class
-        self._open: list[str] = []  # types that are being made; each uses the next
+        self._open: list[str] = []  # types being created; each uses the next
         if len(parts) > MOST_TYPES:
-            raise self._error(f"it has {len(parts)} types, at most {MOST_TYPES} fit")
+            raise self._error(f"it has {len(parts)} types, at most {MOST_TYPES} are allowed")
         count = sum(len(part.fields) for part in parts)
         if count > MOST_FIELDS:
-            raise self._error(f"it has {count} fields, at most {MOST_FIELDS} fit")
+            raise self._error(f"it has {count} fields, at most {MOST_FIELDS} are allowed")
 
     def _error(self, problem: str) -> TypeDescriptionError:
         return TypeDescriptionError(self.name, problem)
 
     def composed(self, base: type[Any], halves: tuple[str, ...], names: list[str]) -> Any:
-        """Return the class of a service, made of the messages of these names."""
+        """Return the class of a service, composed of the messages with these names."""
         parts = map(self.message, names)
         return composed(base, self.name, dict(zip(halves, parts, strict=True)))
 
@@ -221,8 +221,8 @@ class DescribedTypes:
                 size_bytes += self._size_of(types[field.name])
         if size_bytes > LARGEST_MESSAGE:
             raise self._error(
-                f"a new {brief(name)} takes {size_bytes / 2**20:.3g} MiB with the elements of its "
-                f"arrays, at most {LARGEST_MESSAGE >> 20} MiB fit"
+                f"a new {brief(name)} takes {size_bytes / 2**20:.3g} MiB including its "
+                f"arrays; at most {LARGEST_MESSAGE >> 20} MiB are allowed"
             )
         self._size_bytes[name] = size_bytes
         body = {
@@ -234,7 +234,7 @@ class DescribedTypes:
         return cls
 
     def _field_type(self, field: Any) -> FieldType:
-        """Return the type of a field; its `type_id` encodes both kind and container."""
+        """Return the type of a field; its `type_id` encodes kind and container."""
         described = field.type
         container, kind = divmod(described.type_id, 48)
         if kind not in KINDS or container >= len(CONTAINERS):
@@ -242,12 +242,13 @@ class DescribedTypes:
         if described.string_capacity > LARGEST_BOUND:
             raise self._error(
                 f"{brief(field.name)} is a string of {described.string_capacity} characters, "
-                f"at most {LARGEST_BOUND} fit"
+                f"at most {LARGEST_BOUND} are allowed"
             )
         sized = CONTAINERS[container] in {"array", "bounded"}
         if sized and not 0 < described.capacity <= LARGEST_BOUND:
             raise self._error(
-                f"{brief(field.name)} has {described.capacity} elements, 1 to {LARGEST_BOUND} fit"
+                f"{brief(field.name)} has {described.capacity} elements; "
+                f"1 to {LARGEST_BOUND} are allowed"
             )
         return FieldType(
             KINDS[kind],
@@ -258,18 +259,18 @@ class DescribedTypes:
         )
 
     def _default(self, field: Any, type_: FieldType) -> object:
-        """Return the default of a field, which ROS describes as Python writes it."""
+        """Return the default of a field, which ROS writes in Python notation."""
         text: str = field.default_value
         try:
             return default_of(type_, text)
         except (ValueError, TypeError, SyntaxError, MemoryError, RecursionError) as error:
             raise self._error(
-                f"{brief(field.name)} has the default {brief(text)}, which is no {type_}: "
+                f"{brief(field.name)} has the default {brief(text)}, which is not a {type_}: "
                 f"{brief(str(error))}"
             ) from error
 
     def _size_of(self, type_: FieldType) -> int:
-        """Return about how many bytes the field takes in a new message."""
+        """Return the approximate size of the field in a new message, in bytes."""
         size_bytes = VALUE_SIZE
         if type_.nested is not None:
             size_bytes += self._size_bytes[type_.nested.__ros_type__]

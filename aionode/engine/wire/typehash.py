@@ -1,6 +1,6 @@
-"""RIHS01 type hashes, which tell whether two nodes use the same definition of a type.
+"""RIHS01 type hashes, which identify the definition of a type.
 
-It is part of the keys of topics and services: only endpoints with equal hashes communicate.
+They are part of the keys of topics and services: only endpoints with equal hashes communicate.
 """
 
 from __future__ import annotations
@@ -26,6 +26,6 @@ def type_hash(cls: type[Any]) -> str:
     Raises:
         TypeError: `cls` is not such a class.
     """
-    # ROS 2 hashes exactly this output of json.dumps, including the order of keys and the blanks.
+    # ROS 2 hashes exactly this output of json.dumps, including the key order and spaces.
     text = json.dumps(describe(unserialized(cls)))
     return "RIHS01_" + hashlib.sha256(text.encode()).hexdigest()

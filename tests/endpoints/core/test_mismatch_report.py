@@ -43,8 +43,8 @@ async def test_two_types_of_one_topic_are_reported(
     (text,) = warnings(caplog)
     assert text == (
         "topic '/words': the subscription of node /node has type std_msgs/msg/Int8, this "
-        "publisher std_msgs/msg/String. They will not hear each other; use one type, or another "
-        "name"
+        "publisher std_msgs/msg/String. They will not hear each other; use the same type, or "
+        "another name"
     )
 
 

@@ -93,7 +93,7 @@ def test_localhost_only_overrules_the_variables_that_replaced_it(
 @pytest.mark.parametrize(
     ("environ", "named"),
     [
-        ({"ROS_DOMAIN_ID": "abc"}, r"ROS_DOMAIN_ID: 'abc' given; a whole number from 0 to"),
+        ({"ROS_DOMAIN_ID": "abc"}, r"ROS_DOMAIN_ID: 'abc' given; use an integer from 0 to"),
         ({"ROS_DOMAIN_ID": "-1"}, "ROS_DOMAIN_ID: '-1' given"),
         ({"ROS_DOMAIN_ID": "1_0"}, "ROS_DOMAIN_ID: '1_0' given"),
         ({"ROS_DOMAIN_ID": "4294967296"}, "ROS_DOMAIN_ID: '4294967296' given"),

@@ -1,6 +1,6 @@
-"""Messages between processes of one user on one host, over a Unix socket in the event loop.
+"""A transport between processes of one user on one host: a Unix socket in the event loop.
 
-It works beside Zenoh, which discovers the processes and carries messages to all others. See "Link"
+It works next to Zenoh, which discovers the processes and carries messages to all others. See "Link"
 in docs/design.md.
 """
 

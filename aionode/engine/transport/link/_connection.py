@@ -39,50 +39,51 @@ __all__ = ["Connection", "LinkOwner", "WriteWaiter", "flush"]
 logger = logging.getLogger("aionode.transport.link")
 
 READ_BYTES: Final = 1 << 15
-"""Bytes that are read before the rest of the loop runs: a few hundred small messages."""
+"""Bytes to read before the rest of the loop runs: a few hundred small messages."""
 
 READ_MAX: Final = 1 << 20
-"""Bytes that are read at once of a large payload."""
+"""Bytes to read at once of a large payload."""
 
 LAST_READS: Final = 10_000
-"""Reads in a row of one socket: more than it holds, so that a peer that keeps writing
-does not block the loop.
+"""Maximum number of consecutive reads from one socket: more than it can hold, so that a peer that
+keeps writing does not block the loop.
 """
 
 BATCH_BYTES: Final = 1 << 16
-"""A batch of this size is sent without waiting for the loop's next iteration, in bytes."""
+"""A batch of at least this size is sent without waiting for the loop's next iteration, in bytes."""
 
 LENT_BYTES: Final = 96 << 20
 LENT_PIECES: Final = 256
-"""Shared memory that one process may hold, in bytes and in buffers, each of which takes one or
-two descriptors. A frozen process releases none, and its socket may hold hundreds of references;
-beyond the limit payloads go through the stream, where a full socket stops them.
+"""Limits of the shared memory lent to one process, in bytes and in buffers, each of which takes one
+or two descriptors. A frozen process releases none, and its socket may hold hundreds of references;
+beyond the limit, payloads go through the stream, where a full socket stops them.
 """
 
 URGENT_BYTES: Final = 1 << 28
-"""Bytes that may wait for a process that sends requests but reads no responses."""
+"""Maximum number of bytes that wait for a process that sends requests but reads no responses."""
 
 MAX_HELD: Final = 1 << 20
-"""An incomplete frame is reported to `LinkOwner.on_held` from this size on, in bytes."""
+"""Size from which an incomplete frame is reported to `LinkOwner.on_held`, in bytes."""
 
 DESCRIPTORS: Final = 16
-"""Descriptors that are received at once."""
+"""Maximum number of descriptors to receive at once."""
 
 MAX_DESCRIPTORS: Final = 64
-"""Descriptors that may wait for their frames: each arrives with the first byte of its own."""
+"""Maximum number of descriptors waiting for their frames: each comes with its frame's first
+byte."""
 
 STALLED_S: Final = 1.0
-"""How long, when a context closes, a process may read nothing of what waits for it."""
+"""How long a process may leave pending data unread when a context closes, in seconds."""
 
 BURST_NS: Final = 20_000
-"""Frames within this time after the last one are collected until the loop's next iteration.
+"""Frames sent within this time of the previous one wait for the loop's next iteration.
 
-A system call costs more than everything else that is done for a small message.
+A system call costs more than everything else about a small message.
 """
 
 NO_DESCRIPTOR: Final = "a descriptor could not be received: too many files are open"
 
-# As plain numbers: members of an enumeration are slower.
+# Plain numbers, as enumeration members are slower.
 MSG_CMSG_CLOEXEC: Final = int(getattr(socket, "MSG_CMSG_CLOEXEC", 0))
 MSG_CTRUNC: Final = int(getattr(socket, "MSG_CTRUNC", 0))
 DATA: Final = int(Kind.DATA)
@@ -99,28 +100,28 @@ class WriteWaiter(Protocol):
 
     @property
     def unsent(self) -> int:
-        """Messages not yet written to the socket, or only partly."""
+        """The number of messages not yet written to the socket, or only partly."""
 
     def on_writable(self) -> None:
         """Write until `Connection.write` refuses, and then call `when_writable` again."""
 
 
 class LinkOwner(Protocol):
-    """Handles what happens on a connection."""
+    """Handles the events of a connection."""
 
     def on_call(
         self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
     ) -> None:
-        """Take a REQUEST or REPLY; callbacks may run within this call until the deadline."""
+        """Handle a REQUEST or REPLY; callbacks may run within this call until the deadline."""
 
     def on_control(self, connection: Connection, control: Control) -> None:
-        """Take a control frame."""
+        """Handle a control frame."""
 
     def on_held(self, connection: Connection) -> None:
-        """Handle that the connection holds much of an incomplete frame."""
+        """Handle that the connection holds a large part of an incomplete frame."""
 
     def on_closed(self, connection: Connection) -> None:
-        """Handle that the socket was closed from either end; called once."""
+        """Handle that the socket was closed by either end; called once."""
 
 
 class Connection:
@@ -128,16 +129,16 @@ class Connection:
 
     Args:
         loop: The running loop.
-        sock: A connected, non-blocking socket; it is closed with the connection.
+        sock: A connected, non-blocking socket; the connection closes it.
         pool: The buffers of this context.
-        owner: Is told what happens.
+        owner: Handles its events.
 
     Attributes:
         participant: The context at the other end; empty before its `Hello`.
-        secret: By what the other end knows this one when Zenoh continues the link.
+        secret: Authenticates this end to the other one when Zenoh continues the link.
         pool: The buffers of this context.
-        receivers: The subscriptions here that hear publishers of the other process.
-        lent: The buffers that the other process reads now, until it releases them, by number.
+        receivers: The subscriptions here that receive from publishers of the other process.
+        lent: The buffers that the other process is reading, by number, until it releases them.
     """
 
     def __init__(
@@ -157,29 +158,29 @@ class Connection:
         self._owner = owner
         self._parser = FrameParser()
         self._max_held = HEADER_SIZE + SECRET_SIZE - 1  # a Hello is a header and a secret
-        # Descriptors that were received before the rest of their frames.
+        # Descriptors received before the rest of their frames.
         self._descriptors: deque[int] = deque()
         self._ancillary = socket.CMSG_SPACE(DESCRIPTORS * array.array("i").itemsize)
-        # Frames of a burst, which are sent together in the loop's next iteration.
+        # Frames of a burst, to be sent together in the loop's next iteration.
         self._batch: list[bytes] = []
         self._batched = 0
         self._flush_planned = False
         self._sent_ns = 0
-        # Whether the socket takes nothing now, and whether sending has failed for good.
+        # Whether the socket is full, and whether sending has failed for good.
         self._full = False
         self._failed = False
-        # The rest of a frame or batch of which the socket took only a part.
+        # The rest of a frame or batch of which the socket accepted only a part.
         self._rest = memoryview(b"")
-        # Frames that are never dropped and go before the queues once the socket is writable.
+        # Frames that are never dropped, and precede the queues once the socket is writable.
         self._urgent: deque[tuple[bytes, SharedBuffer | None]] = deque()
         self._urgent_bytes = 0
-        # Queues that wait for the socket, in turn; emptied whenever it is writable.
+        # Queues waiting for the socket, in turn; emptied whenever it is writable.
         self._queues: dict[WriteWaiter, None] = {}
-        # Numbers of the buffers whose descriptor the other process has, until they are closed.
+        # Numbers of the buffers whose descriptors the other process has, until they are closed.
         self._known: set[int] = set()
         self.lent: dict[int, SharedBuffer] = {}
         self._lent_bytes = 0
-        # Buffers of the other process that are mapped here.
+        # The other process's buffers that are mapped here.
         self._mappings = BufferMappings()
         # Futures that `progress` has returned and that are not done yet.
         self._waiters: list[asyncio.Future[None]] = []
@@ -198,9 +199,9 @@ class Connection:
     # Sending
 
     def write(self, data: bytes, buffer: SharedBuffer | None = None) -> bool:
-        """Take a frame; False if the socket is full or closed, and the frame was not taken.
+        """Write a frame; return False, without taking it, if the socket is full or closed.
 
-        The frame's buffer is released when the other process has released it.
+        The frame's buffer is released once the other process has released it.
         """
         sock = self._sock
         if self._full or sock is None:
@@ -216,7 +217,7 @@ class Connection:
                 self._flush_planned = True
                 self._loop.call_soon(self._planned_flush)
             return True
-        try:  # `_send` inlined: one call less for each message
+        try:  # `_send` inlined: one call less per message
             sent = sock.send(data)
         except (BlockingIOError, InterruptedError):
             sent = 0
@@ -230,13 +231,13 @@ class Connection:
         return True
 
     def when_writable(self, queue: WriteWaiter) -> None:
-        """Call `queue.on_writable` when the socket takes more."""
+        """Call `queue.on_writable` once the socket accepts more."""
         self._queues[queue] = None
 
     def send(self, control: Control) -> None:
-        """Send a control frame, which is never dropped; does nothing when closed.
+        """Send a control frame, which is never dropped; does nothing if closed.
 
-        It overtakes the queues that wait for the socket, but no other frame sent by this.
+        It overtakes the queues waiting for the socket, but no other frame sent by this method.
         """
         self._send_now_or_later(control.pack(), None)
 
@@ -270,7 +271,7 @@ class Connection:
         self._flush()
 
     def _flush(self) -> None:
-        """Send what was batched."""
+        """Send the batch."""
         batch, sock = self._batch, self._sock
         if not batch or sock is None:
             return
@@ -283,7 +284,7 @@ class Connection:
             self.wake()
 
     def _send(self, sock: socket.socket, data: bytes | memoryview) -> None:
-        """Send what the socket takes, and keep the rest."""
+        """Send what the socket accepts, and keep the rest."""
         try:
             sent = sock.send(data)
         except (BlockingIOError, InterruptedError):
@@ -296,13 +297,13 @@ class Connection:
             self._note_full()
 
     def _send_failed(self, error: OSError) -> None:
-        """Send no more, read what the other process has left in the socket, and then close it.
+        """Stop sending, read what the other process has left in the socket, and then close it.
 
-        It has ended, perhaps right after its last messages, which only this socket has. They are
-        not read here, because this may be called while a frame is being handled.
+        The process has ended, perhaps right after its last messages, which only this socket holds.
+        They are not read here, because this may be called while a frame is being handled.
         """
         if not self._failed:
-            self._failed = self._full = True  # keep what is to be sent, for retransmission
+            self._failed = self._full = True  # keep unsent data for retransmission
             self._batch.clear()
             self._loop.call_soon(self._read_out_and_close, error)
 
@@ -352,14 +353,14 @@ class Connection:
             self.send(Forget(number))
 
     def _on_writable(self) -> None:
-        """Send the rest of a frame, then urgent frames, then what waits in queues, in turn."""
+        """Send the rest of a frame, then urgent frames, then the queues in turn."""
         if self._failed:
             return
         rest, self._rest = self._rest, memoryview(b"")
         if self._sock is not None and rest:
             self._send(self._sock, rest)
             if self._rest or self._failed:
-                self.wake()  # a large frame takes many rounds, and each of them is progress
+                self.wake()  # a large frame takes many rounds, each of which is progress
                 return
         self._full = False
         self._loop.remove_writer(self._fd)
@@ -372,7 +373,7 @@ class Connection:
         self.wake()
 
     def send_rest(self) -> bool:
-        """Send what waits, as the event loop would next; whether nothing is left."""
+        """Send what is pending, as the event loop would next; return whether nothing is left."""
         if self._full:
             self._on_writable()
         else:
@@ -381,12 +382,12 @@ class Connection:
 
     @property
     def idle(self) -> bool:
-        """Whether everything was handed to the operating system."""
+        """Whether everything was passed to the operating system."""
         return not (self._batch or self._full)
 
     def unsent(self, gid: bytes) -> int:
-        """Return how many messages of a publisher are left in what the socket took a part of."""
-        batch = bytes(self._rest.obj)  # whole, as `_rest` is a view of its end
+        """Count a publisher's messages in the partly written batch that are not completely sent."""
+        batch = bytes(self._rest.obj)  # all of it, as `_rest` is a view of its end
         left = len(self._rest)
         unsent = 0
         for frame in reversed(FrameParser().feed(batch) if left else ()):
@@ -398,11 +399,11 @@ class Connection:
 
     @property
     def queues(self) -> list[WriteWaiter]:
-        """The queues that wait for the socket to take more."""
+        """The queues waiting for the socket to accept more."""
         return list(self._queues)
 
     def progress(self) -> asyncio.Future[None]:
-        """Return a future that is done when the socket took data, credit came, or it was closed."""
+        """Return a future that completes when data is sent, credit arrives, or it is closed."""
         waiter: asyncio.Future[None] = self._loop.create_future()
         if self._sock is None:
             waiter.set_result(None)
@@ -411,7 +412,7 @@ class Connection:
         return waiter
 
     def wake(self) -> None:
-        """Complete every future of `progress`."""
+        """Complete all futures returned by `progress`."""
         if self._waiters:
             waiters, self._waiters = self._waiters, []
             for waiter in waiters:
@@ -421,16 +422,16 @@ class Connection:
     # Receiving
 
     def read_until_eof(self) -> None:
-        """Read everything up to the end of a socket that is known to have been closed.
+        """Read everything up to the end of a socket that is known to be closed.
 
-        uvloop may not report it: it does so once only if the other end left data unread.
+        uvloop may not report it: it only does so once, if the other end left data unread.
         """
         for _ in range(LAST_READS):
             if not self._on_readable():
                 return
 
     def _on_readable(self) -> bool:  # noqa: C901  # one call for each message
-        """Read once; return whether there was anything, so that there may be more."""
+        """Read once; return whether there was anything, as then there may be more."""
         sock = self._sock
         if sock is None:
             return False
@@ -459,7 +460,7 @@ class Connection:
         except FrameError as error:
             self.close(error if not flags & MSG_CTRUNC else FrameError(NO_DESCRIPTOR))
         else:
-            if flags & MSG_CTRUNC:  # the frames before the one that lacks its descriptor are whole
+            if flags & MSG_CTRUNC:  # frames before the one that lacks its descriptor are complete
                 self.close(FrameError(NO_DESCRIPTOR))
             elif data and self._parser.held > self._max_held:
                 self._owner.on_held(self)
@@ -472,7 +473,7 @@ class Connection:
             if kind == DATA:
                 payload: Data = self._map(frame) if frame.in_shm else frame.payload
                 handler = handlers.get(frame.gid)
-                if handler is not None:  # else the subscription was just destroyed
+                if handler is not None:  # otherwise the subscription was just destroyed
                     handler(payload, frame.sequence, frame.source_ns, inline_deadline_ns)
             elif kind in (REPLY, REQUEST):
                 payload = self._map(frame) if frame.in_shm else frame.payload
@@ -490,11 +491,11 @@ class Connection:
 
     @property
     def held(self) -> int:
-        """Bytes that are held of an incomplete frame."""
+        """The number of bytes held of an incomplete frame."""
         return self._parser.held
 
     def accept_hello(self, participant: str) -> None:
-        """Take any frame from now on: the other end is the context `participant`."""
+        """Accept any frame from now on: the other end is the context `participant`."""
         self.participant = participant
         self._max_held = MAX_HELD
 
@@ -530,13 +531,13 @@ class Connection:
     # Closing
 
     def abandon(self) -> None:
-        """Close this process's descriptor of the socket, which another process goes on using."""
+        """Close this process's descriptor of the socket, which another process keeps using."""
         sock, self._sock = self._sock, None
         if sock is not None:
             sock.close()
 
     def close(self, reason: Exception | None = None) -> None:
-        """Close the socket, whatever waits; closing twice has no further effect."""
+        """Close the socket, even with data pending; repeating it has no effect."""
         sock, self._sock = self._sock, None
         if sock is None:
             return
@@ -560,7 +561,7 @@ class Connection:
                 self.pool.release(buffer)
         self._urgent.clear()
         for buffer in self.lent.values():
-            buffer.retired = True  # the other process may go on reading it
+            buffer.retired = True  # the other process may still be reading it
             self.pool.release(buffer)
         self.lent.clear()
         self._lent_bytes = self._urgent_bytes = 0
@@ -578,7 +579,7 @@ def whole(data: bytes, buffer: SharedBuffer) -> bytes:
 
 
 async def flush(connection: Connection) -> None:
-    """Wait until everything was handed to the operating system, or nothing is read for a while."""
+    """Wait until everything was passed to the operating system, or nothing is read for a while."""
     try:
         while not (connection.idle or connection.closed):
             async with asyncio.timeout(STALLED_S):
@@ -587,7 +588,7 @@ async def flush(connection: Connection) -> None:
         for queue in connection.queues:
             if unsent := queue.unsent:
                 logger.warning(
-                    "%s: the last %d messages to the process %s were given up: it has read nothing "
+                    "%s: dropped the last %d messages to process %s, which has read nothing "
                     "for %g s",
                     queue.name,
                     unsent,

@@ -1,9 +1,9 @@
-"""The continuation of a link over Zenoh: batches of frames, each with a proof of its sender.
+"""Continues a link over Zenoh: batches of frames, each authenticated.
 
-Zenoh takes a batch from anyone, and may show it to anyone. So each end of a link makes a secret for
-it, and tells it to the other end over the socket. A batch carries a keyed hash instead of the
-secret: who has seen one can make no other one, and alter none. Batches are numbered, so that none
-counts twice; only the stop of a lease may come more than once, and in any order.
+Zenoh accepts a batch from anyone, and may show it to anyone. So each end of a link creates a secret
+for it, and sends it to the other end over the socket. A batch carries a keyed hash instead of the
+secret: whoever sees a batch can neither forge nor alter one. Batches are numbered to prevent
+replays; only the stop of a lease may arrive more than once, and in any order.
 """
 
 from __future__ import annotations
@@ -27,10 +27,10 @@ HEADER: Final = struct.Struct("<16s16sQ")  # the name of the link, the hash of t
 HASH_SIZE: Final = 16
 
 STOPS: Final = 0
-"""The number of batches that hold nothing but stops of leases."""
+"""The number of batches that contain only stops of leases."""
 
 MOST_LINKS: Final = 4_000
-"""The secrets of so many links are remembered; a batch comes soon after the end of its link."""
+"""Number of links whose secrets are remembered; a batch follows soon after its link's end."""
 
 
 def name_of(secret: bytes) -> bytes:
@@ -39,12 +39,12 @@ def name_of(secret: bytes) -> bytes:
 
 
 def hash_of(secret: bytes, rest: bytes | memoryview) -> bytes:
-    """Return what only the two ends of a link can make of the number and frames of a batch."""
+    """Return the hash of a batch's number and frames, keyed with the secret of the link."""
     return blake2b(rest, key=secret, digest_size=HASH_SIZE, person=b"batch").digest()
 
 
 def seal(secret: bytes, number: int, frames: bytes) -> bytes:
-    """Return frames as a batch.
+    """Return frames as an authenticated batch.
 
     Args:
         secret: The sender's secret of the link.
@@ -56,14 +56,14 @@ def seal(secret: bytes, number: int, frames: bytes) -> bytes:
 
 
 class LinkSecret:
-    """The secret by which the other end of a link proves itself.
+    """The secret by which the other end of a link authenticates itself.
 
     Args:
         participant: Its context.
         secret: Its secret.
 
     Attributes:
-        number: That of its last batch.
+        number: The number of its last batch.
     """
 
     def __init__(self, participant: str, secret: bytes) -> None:
@@ -73,7 +73,7 @@ class LinkSecret:
 
 
 class LinkSecrets:
-    """The secrets of the other ends of all links that there were lately."""
+    """The secrets of the other ends of all recent links."""
 
     def __init__(self) -> None:
         self._by_name: Recent[bytes, LinkSecret] = Recent(MOST_LINKS)
@@ -87,10 +87,10 @@ class LinkSecrets:
         self._by_name.clear()
 
     def unseal(self, batch: bytes) -> tuple[str, list[Frame]]:
-        """Return the context that has sent a batch, and its frames.
+        """Verify a batch; return the context that sent it, and its frames.
 
         Raises:
-            FrameError: it comes from no end of a link, or came before, or cannot be read.
+            FrameError: it is not from an end of a link, is a replay, or is malformed.
         """
         if len(batch) < HEADER.size:
             raise FrameError(f"expected a batch, got {len(batch)} bytes")
@@ -98,12 +98,12 @@ class LinkSecrets:
         link = self._by_name.get(name)
         rest = memoryview(batch)[HEADER.size - 8 :]
         if link is None or not compare_digest(proof, hash_of(link.secret, rest)):
-            raise FrameError("nothing proves that it comes from the other end of a link")
+            raise FrameError("it is not authenticated by the other end of a link")
         if number != STOPS and number <= link.number:
-            raise FrameError(f"batch {number} of a link came a second time")
+            raise FrameError(f"batch {number} of a link was received twice")
         frames = FrameParser().feed(batch[HEADER.size :])
         if number != STOPS:
             link.number = number
         elif any(frame.kind != Kind.STOP for frame in frames):
-            raise FrameError("expected nothing but stops in a batch without a number")
+            raise FrameError("expected only stops in an unnumbered batch")
         return link.participant, frames

@@ -1,4 +1,4 @@
-"""The endpoints of one kind in a context that may use links, found by gid or by name."""
+"""A context's endpoints of one kind that may use links, by gid and by name."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ EndpointT = TypeVar("EndpointT", bound=HasEndpoint)
 
 
 class EndpointTable(Generic[EndpointT]):
-    """Endpoints, added when they are created and removed when they are closed."""
+    """Endpoints, from their creation until they are closed."""
 
     def __init__(self) -> None:
         self._by_gid: dict[bytes, EndpointT] = {}
         self._by_name: dict[str, dict[bytes, EndpointT]] = defaultdict(dict)
 
     def add(self, gid: bytes, endpoint: EndpointT) -> None:
-        """Add an endpoint, with its gid as other processes know it."""
+        """Add an endpoint, with the gid by which other processes know it."""
         self._by_gid[gid] = endpoint
         self._by_name[endpoint.endpoint.name][gid] = endpoint
 
@@ -49,25 +49,25 @@ class EndpointTable(Generic[EndpointT]):
         return self._by_gid.get(gid)
 
     def values(self) -> list[EndpointT]:
-        """Return all of them."""
+        """Return all endpoints."""
         return list(self._by_gid.values())
 
     def named(self, name: str) -> list[EndpointT]:
-        """Return those of one topic or service."""
+        """Return the endpoints of one topic or service."""
         return list(self._by_name.get(name, {}).values())
 
 
 def can_link(publisher: EndpointInfo) -> bool:
-    """Whether a publisher's messages may go over a link.
+    """Return whether a publisher's messages may go over a link.
 
-    Not those of a transient-local publisher: Zenoh keeps them for late subscriptions, and therefore
-    has to carry them all.
+    Those of a transient-local publisher may not: Zenoh keeps them for late subscriptions, and so
+    has to carry all of them.
     """
     return publisher.qos.resolved().durability is not DurabilityPolicy.TRANSIENT_LOCAL
 
 
 def communicate_by_link(ours: EndpointInfo, theirs: EndpointInfo) -> bool:
-    """Whether two endpoints match, and the publisher, if one is, can send over a link."""
+    """Return whether two endpoints match, and the publisher, if any, can send over a link."""
     if not ours.matches(theirs):
         return False
     publisher = ours if ours.kind is EndpointKind.PUBLISHER else theirs

@@ -25,10 +25,10 @@ if TYPE_CHECKING:
 __all__ = ["Advertisement", "Listener", "available", "host_id", "is_own_user", "socket_folder"]
 
 BACKLOG: Final = 1024
-"""Contexts that may dial while this one is busy, for example while many start at once."""
+"""Number of contexts that may dial while this one is busy, as when many start at once."""
 
 UNIX_SOCKETS: Final = Path("/proc/net/unix")
-"""Lists the sockets of this system, or of this container, with the paths they were bound to."""
+"""Lists the Unix sockets of this system or container, with the paths they are bound to."""
 
 SOCKET_ID: Final = re.compile(rb"/([0-9a-f]{1,32})\.(?:sock|new)$", re.MULTILINE)
 """The id of a context in the path of its socket, at the end of a line of that list."""
@@ -36,19 +36,19 @@ SOCKET_ID: Final = re.compile(rb"/([0-9a-f]{1,32})\.(?:sock|new)$", re.MULTILINE
 CREDENTIALS: Final = struct.Struct("3i")
 
 MAX_PATH_BYTES: Final = 107
-"""Most bytes in the path of a Unix socket on Linux, without the zero byte at its end."""
+"""Maximum length of a Unix socket's path on Linux in bytes, without the trailing NUL."""
 
 NAME_BYTES: Final = len("/" + 32 * "f" + ".sock")
-"""Most characters in the name of a socket: that of a context's id, which has up to 32 digits."""
+"""Maximum length of a socket's name: that of a context's id, which has up to 32 digits."""
 
 NEW_S: Final = 10
-"""After this time, in seconds, a socket that still has its temporary name belongs to no process."""
+"""Age from which a socket with a temporary name belongs to no process any more, in seconds."""
 
 BOOT_ID: Final = Path("/proc/sys/kernel/random/boot_id")
 
 
 def available() -> bool:
-    """Whether this system has what a link needs: Unix sockets, credentials, sealed memory."""
+    """Return whether this system has what links need: Unix sockets, credentials, sealed memory."""
     return (
         sys.platform == "linux"
         and hasattr(socket, "SO_PEERCRED")
@@ -58,7 +58,7 @@ def available() -> bool:
 
 
 def host_id() -> str:
-    """Return an id of this host that lasts until it is rebooted."""
+    """Return an id of this host that lasts until the next reboot."""
     return xxhash.xxh3_64_hexdigest(BOOT_ID.read_bytes())
 
 
@@ -67,7 +67,7 @@ class Advertisement(NamedTuple):
 
     Attributes:
         participant: Id of the context.
-        version: Of the protocol.
+        version: The version of the protocol.
         host: Id of the host.
         uid: The user.
     """
@@ -88,7 +88,7 @@ class Advertisement(NamedTuple):
 
     @classmethod
     def parse(cls, text: str) -> Advertisement | None:
-        """Return the advertisement that `text` wrote, or None for anything else."""
+        """Parse an advertisement; return None for anything else."""
         chunks = text.split("/")
         if len(chunks) != 5 or chunks[1] != "link":
             return None
@@ -99,12 +99,12 @@ class Advertisement(NamedTuple):
         return cls(participant, int(version), host, int(uid)) if numbers and hexadecimal else None
 
     def is_near(self, other: Advertisement) -> bool:
-        """Whether the two can be linked."""
+        """Return whether the two can be linked."""
         return self[1:] == other[1:] and self.participant != other.participant
 
 
 def socket_folder(environ: Mapping[str, str]) -> Path:
-    """Return the folder of this user's sockets, which is created if it does not exist.
+    """Return the folder of this user's sockets, creating it if necessary.
 
     Raises:
         TransportError: it cannot be created, its path is too long for a socket, or other users can
@@ -116,7 +116,7 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
     else:
         folder = Path(tempfile.gettempdir()) / f"aionode-{os.getuid()}"
     size = len(os.fsencode(folder)) + NAME_BYTES
-    if size > MAX_PATH_BYTES:  # of some contexts the path would fit, as their ids are shorter
+    if size > MAX_PATH_BYTES:  # some contexts with shorter ids would fit
         raise TransportError(
             f"link: {folder} is too long for the path of a Unix socket: {size} bytes with the "
             f"name of the socket, and at most {MAX_PATH_BYTES} are possible; set XDG_RUNTIME_DIR "
@@ -141,7 +141,7 @@ def socket_folder(environ: Mapping[str, str]) -> Path:
 
 
 def is_own_user(sock: socket.socket) -> bool:
-    """Whether a process of this user is at the other end."""
+    """Return whether a process of this user is at the other end."""
     data = sock.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, CREDENTIALS.size)
     _, uid, _ = CREDENTIALS.unpack(data)
     return bool(uid == os.getuid())
@@ -151,7 +151,7 @@ class Listener:
     """The listening socket of one context, which others find by the context's id.
 
     Args:
-        folder: As `socket_folder` returns it.
+        folder: The result of `socket_folder`.
         participant: Id of the context.
 
     Raises:
@@ -167,7 +167,7 @@ class Listener:
         try:
             self.sock.bind(os.fspath(temporary))
             self.sock.listen(BACKLOG)
-            # It gets its name only when it listens, or another process would remove it as dead.
+            # It is renamed only once it listens; otherwise another process would remove it as dead.
             temporary.rename(self._path)
         except OSError as error:
             self.sock.close()
@@ -179,7 +179,7 @@ class Listener:
         """Return the connection of another process of this user, if one is waiting.
 
         Raises:
-            OSError: no descriptor is left.
+            OSError: no descriptors are left.
         """
         try:
             sock, _ = self.sock.accept()
@@ -189,7 +189,7 @@ class Listener:
         return checked(sock)
 
     def dial(self, participant: str) -> socket.socket | None:
-        """Return a connection to another context; None if it is not there, or of another user."""
+        """Connect to another context; return None if it is absent or another user's."""
         sock = new_socket()
         try:
             sock.connect(os.fspath(self._folder / f"{participant}.sock"))
@@ -208,17 +208,17 @@ class Listener:
         """Remove the sockets of processes that were killed."""
         for path in self._folder.glob("*.new"):
             with suppress(OSError):  # another process was faster
-                # A socket has this name only for the moment until it listens.
+                # A socket only has this name until it listens.
                 age_ns = MachineTime().system_ns() - path.lstat().st_mtime_ns
                 if age_ns > NEW_S * S_TO_NS:
                     path.unlink()
         paths = [*self._folder.glob("*.sock")]
         listed: set[bytes] = set()
-        with suppress(OSError):  # thousands of lines where many are linked
+        with suppress(OSError):  # thousands of lines if there are many links
             listed.update(SOCKET_ID.findall(UNIX_SOCKETS.read_bytes() if paths else b""))
         for path in paths:
             if path.stem.encode() in listed:
-                continue  # dialling all those that live would keep them busy while many start
+                continue  # dialling all live ones would keep them busy when many start
             probe = new_socket()
             try:
                 probe.connect(os.fspath(path))
@@ -235,7 +235,7 @@ def new_socket() -> socket.socket:
     """Return a non-blocking Unix socket.
 
     Raises:
-        TransportError: no descriptor is left.
+        TransportError: no descriptors are left.
     """
     try:
         sock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)

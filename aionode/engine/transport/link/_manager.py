@@ -1,4 +1,4 @@
-"""The links of one context: which contexts to link to, and what to do with each control frame."""
+"""Manages the links of one context: which contexts to link to, and how to handle control frames."""
 
 from __future__ import annotations
 
@@ -52,31 +52,31 @@ __all__ = ["LinkManager"]
 logger = logging.getLogger("aionode.transport.link")
 
 AGAIN_S: Final = 1.0
-"""Time from the end of a link, or from a failed attempt, to the next attempt.
+"""Delay between the end of a link, or a failed attempt, and the next attempt, in seconds.
 
-Twice as long after each attempt that failed, up to `LAST_AGAIN_S`.
+It doubles after each failed attempt, up to `LAST_AGAIN_S`.
 """
 
 LAST_AGAIN_S: Final = 30.0
 
 HELLO_S: Final = 5.0
-"""Time within which the other end of an accepted socket has to send its `Hello`."""
+"""Timeout for the other end of an accepted socket to send its `Hello`, in seconds."""
 
 MAX_OPENING: Final = 64
-"""Accepted sockets that may be without a `Hello`; with one more the oldest is closed.
+"""Maximum number of accepted sockets without a `Hello`; beyond it, the oldest is closed.
 
-A context that was dialled may take as long as it likes, as it was announced: it is busy, and takes
-what was dialled when it is not.
+A context that was dialled may take as long as it likes, since it was announced: it is busy, and
+accepts the connection when it is not.
 """
 
 MAX_HELD: Final = 1 << 27
-"""Bytes of incomplete frames that are held for all links together."""
+"""Maximum number of bytes of incomplete frames, over all links."""
 
 MAX_ENDING: Final = 1_000
-"""Destroyed publishers that are remembered until their subscriptions have confirmed."""
+"""Number of destroyed publishers to remember until their subscriptions have confirmed."""
 
 RETRANSMIT_BYTES: Final = 1 << 20
-"""A batch of retransmitted messages has this size, or one frame more."""
+"""Size of a batch of retransmitted messages, which may be exceeded by one frame."""
 
 
 class LinkManager:
@@ -114,17 +114,17 @@ class LinkManager:
         self._graph: Graph | None = None
         self._loop: asyncio.AbstractEventLoop | None = None
         self._listener: Listener | None = None
-        # Contexts that can be linked: from their advertisement until it is withdrawn.
+        # Contexts that can be linked, from their advertisement until it is withdrawn.
         self._near: set[str] = set()
-        # By context: added when its Hello has arrived, removed when the connection is closed.
+        # By context, from the arrival of its Hello until the connection is closed.
         self._links: dict[str, Connection] = {}
-        # Connections whose Hello has not arrived, the oldest first, and the context that was
-        # dialled; None for those that were accepted.
+        # Connections whose Hello has not arrived, oldest first, with the context that was dialled,
+        # or None if accepted.
         self._opening: dict[Connection, str | None] = {}
-        # Contexts not to dial now: from each attempt, and each end of a link, until a Hello
-        # arrives, a delay is over, or the advertisement is withdrawn.
+        # Contexts not to dial now: from an attempt or the end of a link until a Hello arrives, a
+        # delay has passed, or the advertisement is withdrawn.
         self._backoff: set[str] = set()
-        # Failed attempts in a row, by context, until a Hello arrives.
+        # Consecutive failed attempts by context, until a Hello arrives.
         self._failures: dict[str, int] = {}
         # By connection and publisher: what a destroyed publisher left to be sent or confirmed,
         # until everything is confirmed or the connection is closed.
@@ -135,7 +135,7 @@ class LinkManager:
     # Lifetime
 
     def open(self, graph: Graph, listener: Listener | None) -> None:
-        """Start to accept links and to dial; without a listener there are no links."""
+        """Start accepting and dialling; without a listener there are no links."""
         self.pool = BufferPool()
         self._graph = graph
         self._loop = asyncio.get_running_loop()
@@ -154,7 +154,7 @@ class LinkManager:
         for timer in self._timers:
             timer.cancel()
         self._timers.clear()
-        for send_queue in self._ending.values():  # `flush` has warned of what is lost
+        for send_queue in self._ending.values():  # `flush` has warned about losses
             send_queue.drop()
         self._ending.clear()
         for connection in [*self._links.values(), *self._opening]:
@@ -169,8 +169,8 @@ class LinkManager:
     def abandon(self) -> None:
         """Close the descriptors of all sockets, in a forked child.
 
-        The parent's links would not end with the parent while the child has them. Nothing is sent,
-        and the parent's socket keeps its name.
+        Otherwise the parent's links would outlive the parent. Nothing is sent, and the parent's
+        socket keeps its name.
         """
         if self._listener is not None:
             self._listener.sock.close()
@@ -178,11 +178,14 @@ class LinkManager:
             connection.abandon()
 
     async def flush(self) -> None:
-        """Wait until what was written was handed to the operating system.
+        """Wait until pending data was passed to the operating system.
 
-        A process that reads nothing for `STALLED_S` is given up, and a warning says what was lost.
+        A process that reads nothing for `STALLED_S` is given up, with a warning about what was
+        lost.
         """
-        async with asyncio.TaskGroup() as tasks:  # so that several frozen processes cost one delay
+        async with (
+            asyncio.TaskGroup() as tasks
+        ):  # so that several frozen processes cause only one delay
             for connection in list(self._links.values()):
                 tasks.create_task(flush(connection))
 
@@ -194,7 +197,7 @@ class LinkManager:
         return self._link_changes + (0 if self._graph is None else self._graph.changes)
 
     def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
-        """Return whether there may be subscriptions to a publisher that nothing announces."""
+        """Return whether a publisher may have subscriptions that are not announced."""
         return self._peer_directory.may_be_heard(publisher, changed)
 
     def linked(self, participant: str) -> Connection | None:
@@ -202,7 +205,7 @@ class LinkManager:
         return self._links.get(participant)
 
     def remote(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
-        """Return the endpoints of other contexts that have this name."""
+        """Return the endpoints of other contexts with this name."""
         if self._graph is None:
             return []
         return [
@@ -212,7 +215,7 @@ class LinkManager:
         ]
 
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
-        """Call `call` after a delay, unless the links are closed before."""
+        """Call `call` after a delay, unless the links are closed first."""
         if self._loop is None or self._listener is None:
             return
 
@@ -224,7 +227,7 @@ class LinkManager:
         self._timers.add(timer)
 
     def post(self, connection: Connection, stop: bytes) -> None:
-        """Send a STOP to the other end of a link over Zenoh; from any thread. It may be lost."""
+        """Send a STOP to the other end of a link over Zenoh, from any thread. It may be lost."""
         self._peer_directory.post(connection.participant, seal(connection.secret, STOPS, stop))
 
     def keep(self, gid: bytes, send_queue: LinkSendQueue) -> None:
@@ -235,7 +238,7 @@ class LinkManager:
                 given_up.drop()
 
     def remove(self, gid: bytes) -> None:
-        """Forget an endpoint of this context, which was closed."""
+        """Forget a closed endpoint of this context."""
         writer = self.writers.get(gid)
         if writer is not None:
             self.writers.remove(gid)
@@ -252,7 +255,7 @@ class LinkManager:
         return list(self._links)
 
     def on_advertisement(self, advertisement: Advertisement, present: bool) -> None:
-        """Take the advertisement of a context that can be linked, or its withdrawal."""
+        """Handle the advertisement of a context that can be linked, or its withdrawal."""
         participant = advertisement.participant
         if not present:
             self._near.discard(participant)
@@ -264,7 +267,7 @@ class LinkManager:
         self._consider(participant)
 
     def _read_until_eof(self, participant: str) -> None:
-        """Read a link to its end, of which something else has told."""
+        """Read a link to its end, which was learned from elsewhere."""
         connection = self._links.get(participant)
         if connection is not None:
             connection.read_until_eof()
@@ -274,7 +277,7 @@ class LinkManager:
             writer.reconsider()
 
     def on_endpoint(self, endpoint: EndpointInfo) -> None:
-        """Take a new endpoint, of this context or another."""
+        """Handle a new endpoint, of this context or another."""
         if self._graph is None:
             return
         readers = self.readers.named(endpoint.name)
@@ -294,12 +297,12 @@ class LinkManager:
         endpoint: EndpointInfo | None = None,
         readers: Sequence[LinkReader] = (),
     ) -> None:
-        """Use the link to a context, or dial it if it has a match.
+        """Use the link to a context, or dial it if there are matching endpoints.
 
         Args:
             participant: The context.
-            endpoint: Which endpoint there is of interest; None for all.
-            readers: Which subscriptions here may hear it.
+            endpoint: The endpoint there to consider; None for all.
+            readers: The subscriptions here that may receive from it.
         """
         if participant not in self._near:
             return
@@ -313,18 +316,18 @@ class LinkManager:
         elif (
             self.participant < participant
             and participant not in self._backoff
-            # Its advertisement may come and go while it is dialled, which ends the backoff.
+            # Its advertisement may come and go while it is being dialled, which ends the backoff.
             and participant not in self._opening.values()
             and self._has_matches(participant, endpoint)
         ):
             self._dial(participant)
 
     def _has_matches(self, participant: str, endpoint: EndpointInfo | None) -> bool:
-        """Whether a context, or its new endpoint, matches an endpoint of this context."""
+        """Return whether a context, or its new endpoint, matches an endpoint of this context."""
         graph = self._graph
         if graph is None:
             return False
-        # Of each new endpoint only itself is looked at: all of them each time would be quadratic.
+        # Only the new endpoint is considered: checking all of them each time would be quadratic.
         if endpoint is not None:
             return any(
                 communicate_by_link(ours, endpoint) for ours in graph.own_opposites(endpoint)
@@ -336,7 +339,7 @@ class LinkManager:
         )
 
     def _open_publishers(self, connection: Connection) -> None:
-        """Ask for what the publishers at the other end have for our subscriptions."""
+        """Ask for the messages of the publishers at the other end that match our subscriptions."""
         for reader in self.readers.values():
             for publisher in self.remote(EndpointKind.PUBLISHER, reader.endpoint.name):
                 if publisher.node.participant == connection.participant:
@@ -357,7 +360,7 @@ class LinkManager:
             self._begin(sock, participant)
 
     def _try_later(self, participant: str) -> None:
-        """Dial again after a delay, which grows: the other may be busy, or restarting."""
+        """Dial again after a growing delay: the other context may be busy, or restarting."""
         self._backoff.add(participant)
         failures = self._failures.get(participant, 0)
         self._failures[participant] = failures + 1
@@ -426,7 +429,7 @@ class LinkManager:
     # The owner of connections
 
     def on_held(self, connection: Connection) -> None:
-        """Bound how much is held of incomplete frames: end the link that holds most."""
+        """Limit the bytes held of incomplete frames by ending the link that holds most."""
         if not connection.participant:
             connection.close(FrameError("expected HELLO, got a longer frame"))
         connections = [*self._links.values(), *self._opening]
@@ -466,7 +469,7 @@ class LinkManager:
         if frame.kind == REPLY:
             requester = self.requesters.get(frame.gid)
             call = None if requester is None else requester.calls.get(frame.sequence)
-            if call is not None:  # else it was just cancelled
+            if call is not None:  # otherwise it was just cancelled
                 call.replied(frame, payload)
             return
         gid, request = server_of(payload)
@@ -477,7 +480,7 @@ class LinkManager:
             server.take(connection, frame, request, inline_deadline_ns)
 
     def on_control(self, connection: Connection, control: Control) -> None:
-        """Do what a control frame says."""
+        """Handle a control frame."""
         if not connection.participant:
             if not isinstance(control, Hello):
                 raise FrameError(f"expected HELLO, got {type(control).__name__.upper()}")
@@ -541,7 +544,7 @@ class LinkManager:
     # Retransmission
 
     def _retransmit_unacked(self, connection: Connection) -> None:
-        """Send what is not confirmed to the process that it is for, and to no other."""
+        """Send what is not confirmed to the process concerned, and to no other."""
         unacked = [data for writer in self.writers.values() for data in writer.broken(connection)]
         for key in [key for key in self._ending if key[0] is connection]:
             unacked += self._ending.pop(key).unacked()
@@ -558,7 +561,7 @@ class LinkManager:
                 size, number = 0, number + 1
 
     def on_retransmit(self, data: bytes) -> None:
-        """Take what another context could not deliver over its link."""
+        """Handle what another context could not deliver over its link."""
         if self._listener is None:  # closed: each end of a link is followed by a batch
             return
         try:

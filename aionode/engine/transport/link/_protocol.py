@@ -4,13 +4,13 @@ Each frame is a header of 40 bytes, little endian, and a payload::
 
     size u32 | kind u8 | flags u8 | mark u16 | sequence i64 | source_ns i64 | gid 16 bytes | payload
 
-A receiver stays in step only while it understands every frame, so anything unknown raises
+A receiver stays in sync only while it understands every frame, so anything unknown raises
 `FrameError` and ends the link; there is no way to find the start of the next frame. A large payload
-is in shared memory: a flag is set, and a `BufferRef` follows the header instead. A second flag says
-that the file descriptor of that memory is sent along with the frame.
+is in shared memory: a flag is set, and a `BufferRef` follows the header instead. A second flag
+indicates that the memory's file descriptor is sent along with the frame.
 
-DATA, STOP, REQUEST and REPLY carry a payload of a user and stay a `Frame`. Every other kind is a
-control frame: a class of its own, whose `pack` writes it and which `decode_control` reads.
+DATA, STOP, REQUEST and REPLY carry user payloads and stay a `Frame`. Every other kind is a control
+frame: a class of its own, whose `pack` writes it and which `decode_control` parses.
 """
 
 from __future__ import annotations
@@ -57,12 +57,12 @@ __all__ = [
 ]
 
 Handler = Callable[[bytes | bytearray | memoryview, int, int, int], None]
-"""Takes a message of one publisher: its payload, number and time, and until which `perf_ns` its
-callback may run within the call.
+"""Handles a message of one publisher: its payload, number and time, and the `perf_ns` deadline for
+running its callback inline.
 """
 
 VERSION: Final = 3
-"""Version of this format; only equal versions can be linked."""
+"""Version of this format; only contexts with equal versions can be linked."""
 
 GID_SIZE: Final = 16
 
@@ -71,7 +71,7 @@ NO_GID: Final = bytes(GID_SIZE)
 SECRET_SIZE: Final = 16
 
 MAX_INLINE: Final = 1 << 26
-"""The largest payload in the stream, in bytes; a larger size means that the stream is corrupt."""
+"""The largest payload in the stream, in bytes; a larger size indicates a corrupt stream."""
 
 HEADER: Final = struct.Struct("<IBBHqq16s")
 
@@ -93,7 +93,7 @@ BUFFER_REF: Final = struct.Struct("<QQ")
 
 
 class Kind(enum.IntEnum):
-    """The kinds of frames. Control frames are documented at the class that is named here."""
+    """The kinds of frames. Control frames are documented in the class named here."""
 
     HELLO = 1
     """`Hello`."""
@@ -112,7 +112,7 @@ class Kind(enum.IntEnum):
     DATA = 8
     """Message number `sequence` of publisher `gid`."""
     REQUEST = 9
-    """Request number `sequence` of client `gid`; the payload begins with the server's gid."""
+    """Request number `sequence` of client `gid`; the payload starts with the server's gid."""
     REPLY = 10
     """The response to request `sequence` of client `gid`."""
     FAIL = 11
@@ -128,16 +128,17 @@ class Kind(enum.IntEnum):
     RETRANSMIT_DONE = 16
     """`RetransmitDone`."""
     STOP = 17
-    """As DATA, but beside the link: the stop of a lease, after which nothing older is taken."""
+    """Like DATA, but outside the link: the stop of a lease, after which nothing older is
+    accepted."""
 
 
 LAST_KIND: Final = max(Kind).value
 
-MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16  # of a message in the stream
+MESSAGE_MARK: Final = int(Kind.DATA) | MARK << 16  # for a message in the stream
 
 
 class Frame(msgspec.Struct, frozen=True, gc=False):
-    """One frame as it was received.
+    """One received frame.
 
     Attributes:
         kind: One of `Kind`.
@@ -145,8 +146,8 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
         source_ns: When it was sent, in nanoseconds since 1970 by the sender's clock.
         gid: 16 bytes that identify the publisher or client.
         payload: The bytes after the header.
-        in_shm: Whether `payload` is the `BufferRef` of the real payload.
-        has_fd: Whether the file descriptor of that memory is sent along.
+        in_shm: Whether `payload` is the `BufferRef` of the actual payload.
+        has_fd: Whether the memory's file descriptor is sent along.
     """
 
     kind: int
@@ -159,7 +160,7 @@ class Frame(msgspec.Struct, frozen=True, gc=False):
 
 
 class BufferRef(NamedTuple):
-    """The place of a large payload."""
+    """The location of a large payload."""
 
     number: int
     """Identifies the shared buffer; the sender gets it back with `Release`."""
@@ -172,7 +173,7 @@ class BufferRef(NamedTuple):
 
     @classmethod
     def unpack(cls, data: bytes) -> BufferRef:
-        """Return the reference that `pack` wrote.
+        """Parse a reference written by `pack`.
 
         Raises:
             FrameError: `data` has the wrong size.
@@ -205,16 +206,16 @@ def pack(
 
 
 def has_fd(data: bytes) -> bytes:
-    """Return a packed frame, whose payload is in shared memory, with the flag for a descriptor."""
+    """Set the descriptor flag of a packed frame whose payload is in shared memory."""
     return data[:FLAGS_AT] + bytes([HAS_FD]) + data[FLAGS_AT + 1 :]
 
 
 class FrameParser:
-    """Splits the stream into frames, whatever the size of the pieces that arrive.
+    """Splits the stream into frames, whatever the size of the chunks received.
 
     Attributes:
-        missing: How many more bytes the current frame needs at least; 1 or more.
-        held: How many bytes of an incomplete frame are held.
+        missing: Minimum number of further bytes that the current frame needs; 1 or more.
+        held: Number of bytes held of an incomplete frame.
     """
 
     __slots__ = ("_pieces", "held", "missing")
@@ -228,10 +229,11 @@ class FrameParser:
     def take_messages(
         self, data: bytes, handlers: Mapping[bytes, Handler], inline_deadline_ns: int
     ) -> bytes:
-        """Hand the messages that the stream goes on with to their handlers, and return the rest.
+        """Pass the messages at the start of the data to their handlers, and return the rest.
 
-        The rest begins with a frame of another kind, or with a part of a frame; it is for `feed`.
-        Messages of publishers without a handler are left out. Nothing is made but payloads.
+        The rest starts with a frame of another kind, or an incomplete frame, and is for `feed`.
+        Messages of publishers without a handler are skipped. No objects except payloads are
+        created.
         """
         if self._pieces:
             if len(data) < self.missing:
@@ -248,7 +250,7 @@ class FrameParser:
                 break
             offset = begin + size
             handler = handlers.get(gid)
-            if handler is not None:  # else the subscription was just destroyed
+            if handler is not None:  # otherwise the subscription was just destroyed
                 handler(data[begin:offset], sequence, source_ns, inline_deadline_ns)
         return data[offset:]
 
@@ -302,7 +304,7 @@ class FrameParser:
 
 
 class Control(msgspec.Struct, frozen=True, gc=False):
-    """A control frame: what the two ends of a link tell each other beside the payloads."""
+    """A control frame, which the ends of a link exchange besides payloads."""
 
     def pack(self) -> bytes:
         """Return the frame as bytes."""
@@ -310,7 +312,7 @@ class Control(msgspec.Struct, frozen=True, gc=False):
 
     @classmethod
     def from_frame(cls, frame: Frame) -> Self:
-        """Return what `pack` wrote.
+        """Parse a frame written by `pack`.
 
         Raises:
             FrameError: the payload does not fit this kind.
@@ -319,14 +321,14 @@ class Control(msgspec.Struct, frozen=True, gc=False):
 
 
 class Hello(Control, frozen=True, gc=False):
-    """The first frame in each direction: who is at this end."""
+    """The first frame in each direction: identifies this end."""
 
     participant: str
     """Id of the context: hexadecimal, without leading zeros."""
     version: int
     domain_id: int
     secret: bytes
-    """The secret by which frames that continue the link over Zenoh prove their sender."""
+    """The secret that authenticates frames continuing the link over Zenoh."""
 
     def pack(self) -> bytes:
         """Return the frame as bytes."""
@@ -335,10 +337,10 @@ class Hello(Control, frozen=True, gc=False):
 
     @classmethod
     def from_frame(cls, frame: Frame) -> Self:
-        """Return what `pack` wrote.
+        """Parse a frame written by `pack`.
 
         Raises:
-            FrameError: there is no secret in it.
+            FrameError: it does not contain a secret.
         """
         if len(frame.payload) != SECRET_SIZE:
             raise FrameError(
@@ -349,7 +351,7 @@ class Hello(Control, frozen=True, gc=False):
 
 
 class OfSubscription(Control, frozen=True, gc=False):
-    """A control frame that names a publisher and one subscription of the other process."""
+    """A control frame about a publisher and one subscription of the other process."""
 
     publisher: bytes
     subscription: bytes
@@ -359,9 +361,9 @@ class Open(OfSubscription, frozen=True, gc=False):
     """A subscription asks for the messages of a publisher."""
 
     window: int
-    """Messages that the publisher may send before it gets credit; 0 for any number."""
+    """Messages that the publisher may send before it gets credit; 0 for no limit."""
     confirms: bool
-    """Whether the subscription confirms what it has received; else it may lose messages."""
+    """Whether the subscription confirms what it receives; otherwise it may lose messages."""
 
     def pack(self) -> bytes:
         """Return the frame as bytes."""
@@ -374,7 +376,7 @@ class Open(OfSubscription, frozen=True, gc=False):
 
 
 class Opened(OfSubscription, frozen=True, gc=False):
-    """The publisher sends over the link whatever follows message number `sequence`."""
+    """The publisher sends all messages after number `sequence` over the link."""
 
     sequence: int
 
@@ -389,7 +391,7 @@ class Opened(OfSubscription, frozen=True, gc=False):
 
 
 class Switched(OfSubscription, frozen=True, gc=False):
-    """The subscription takes the publisher's messages from the link only."""
+    """The subscription accepts the publisher's messages only from the link now."""
 
     def pack(self) -> bytes:
         """Return the frame as bytes."""
@@ -453,7 +455,7 @@ class OfRequest(Control, frozen=True, gc=False):
 
 
 class Fail(OfRequest, frozen=True, gc=False):
-    """A server's error in place of a response."""
+    """A server's error instead of a response."""
 
     error_type: str
     error_text: str
@@ -565,10 +567,10 @@ CONTROLS: Final[dict[int, type[Control]]] = {
 
 
 def decode_control(frame: Frame) -> Control:
-    """Return the control frame that `frame` is.
+    """Parse a control frame.
 
     Raises:
-        FrameError: it carries a payload of a user, or its own payload does not fit its kind.
+        FrameError: it carries a user payload, or its own payload does not fit its kind.
     """
     control = CONTROLS.get(frame.kind)
     if control is None or frame.in_shm:
@@ -577,7 +579,7 @@ def decode_control(frame: Frame) -> Control:
 
 
 def subscription_in(frame: Frame) -> bytes:
-    """Return the gid of the subscription that a control frame names.
+    """Return the gid of the subscription in a control frame.
 
     Raises:
         FrameError: there is none.

@@ -1,4 +1,4 @@
-"""Publishers, which send each message over links, over Zenoh, or both."""
+"""Publishers that send each message over links, over Zenoh, or both."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ __all__ = ["LinkWriter"]
 
 
 class LinkWriter(Writer):
-    """A publisher, which decides the route of each message.
+    """A publisher that chooses the route of each message.
 
     Args:
         registry: The links of this context.
@@ -54,21 +54,21 @@ class LinkWriter(Writer):
         self._zenoh = zenoh
         self._msg_type = msg_type
         self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
-        # One for each process that has asked for the messages; removed when its last subscription
-        # leaves, when the link ends, or when the publisher is destroyed.
+        # One per process that asked for the messages; removed when its last subscription leaves,
+        # the link ends, or the publisher is destroyed.
         self._send_queues: dict[Connection, LinkSendQueue] = {}
-        # The number of the last message, as far as it was encoded for anything.
+        # The number of the last message that was encoded for any route.
         self._sequence = 0
-        # The same, for `write`: one of them may prove to be broken meanwhile, and is removed.
+        # The same for `write`, as a broken one may be removed during iteration.
         self._targets: tuple[LinkSendQueue, ...] = ()
-        # Encodes messages in one piece; None if there is no link, or if `_write_views` has to see
-        # to them.
+        # Encodes messages in one piece; None if there is no link, or if `_write_views` has to
+        # handle them.
         self._encode: Callable[[Any], bytes] | None = None
-        # Whether Zenoh has to carry messages too: a matched subscription has not switched.
+        # Whether Zenoh has to carry messages too, because a matched subscription has not switched.
         self._needs_zenoh = True
-        # The registry's `changes` when that was computed; -1 to compute it again.
+        # The registry's `changes` when that was computed; -1 to recompute it.
         self._asked_at = -1
-        # Messages dropped in send queues that were removed.
+        # Messages dropped by send queues that were removed.
         self._dropped = 0
 
     @property
@@ -78,7 +78,7 @@ class LinkWriter(Writer):
 
     @property
     def dropped(self) -> int:
-        """The number of messages dropped because a link was slow, or Zenoh."""
+        """The number of messages dropped because a link or Zenoh was slow."""
         linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
         return self._dropped + linked + self._zenoh.dropped
 
@@ -90,7 +90,7 @@ class LinkWriter(Writer):
 
     @property
     def linked(self) -> int:
-        """The number of subscriptions that receive over a link only."""
+        """The number of subscriptions that receive only over a link."""
         return sum(
             reader.switched
             for send_queue in self._send_queues.values()
@@ -104,7 +104,7 @@ class LinkWriter(Writer):
             payload = encode(msg)
             size = len(payload)
             if size < SHARED_FROM:
-                # `protocol.pack` inlined: one call less for each message.
+                # `protocol.pack` inlined: one call less per message.
                 data = MESSAGE_HEADER.pack(size, MESSAGE_MARK, sequence, source_ns, self._gid)
                 data += payload
                 for send_queue in self._targets:
@@ -121,19 +121,19 @@ class LinkWriter(Writer):
             self._sequence = sequence
 
     def _write_views(self, msg: Any, sequence: int, source_ns: int) -> None:
-        """Send a message over links whose type may hold arrays, which are not copied."""
+        """Send a message whose type may contain arrays over links, without copying them."""
         parts = cdr.parts_encoder(self._msg_type)(msg)
         self._write_parts(parts, sequence, source_ns)
 
     def _targets_changed(self) -> None:
-        """Find out how to send from the next message on."""
+        """Decide how to send from the next message on."""
         self._targets = tuple(self._send_queues.values())
         self._encode = None
         if self._targets and not has_views(self._msg_type):
             self._encode = cdr.encoder(self._msg_type)
 
     def _write_parts(self, parts: Sequence[Data], sequence: int, source_ns: int) -> None:
-        """Send what may be large: if it is, in one shared buffer for all links."""
+        """Send a payload that may be large: if so, through one shared buffer for all links."""
         pool = self._registry.pool
         size = sum(map(len, parts))
         buffer = pool.filled(parts, size) if size >= SHARED_FROM else None
@@ -146,22 +146,22 @@ class LinkWriter(Writer):
             pool.release(buffer)
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
-        """Return what sends the stop of a lease."""
+        """Return an object that sends the stop of a lease."""
         payload = cdr.encoder(self._msg_type)(stop)
         return LinkStop(self, payload, self._zenoh.prepare_stop(stop, is_last))
 
     def assert_liveliness(self) -> None:
-        """Tell the subscriptions of other contexts: over Zenoh, which reaches all of them."""
+        """Tell the subscriptions of other contexts over Zenoh, which reaches all of them."""
         self._zenoh.assert_liveliness()
 
     def has_room(self) -> bool:
-        """Whether one more message could be sent without dropping any."""
+        """Whether another message could be sent without dropping any."""
         return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (
             not (self._needs_zenoh and self.update()) or self._zenoh.has_room()
         )
 
     async def drain(self) -> None:
-        """Wait until everything was handed to the operating system, or to Zenoh."""
+        """Wait until everything was passed to the operating system, or to Zenoh."""
         while slow := [
             send_queue for send_queue in self._send_queues.values() if not send_queue.is_done()
         ]:
@@ -216,7 +216,7 @@ class LinkWriter(Writer):
             self.reconsider()
 
     def credit(self, connection: Connection, credit: Credit) -> None:
-        """Take the credit of a subscription."""
+        """Handle credit from a subscription."""
         send_queue = self._send_queues.get(connection)
         if send_queue is not None:
             send_queue.credit(credit)
@@ -232,7 +232,7 @@ class LinkWriter(Writer):
         self.reconsider()
 
     def broken(self, connection: Connection) -> Iterator[bytes]:
-        """Stop using `connection`, which is closed; yield the frames that may not have arrived."""
+        """Stop using a closed `connection`; yield the frames that may not have arrived."""
         send_queue = self._forget(connection)
         self.reconsider()
         return iter(()) if send_queue is None else send_queue.unacked()
@@ -245,15 +245,15 @@ class LinkWriter(Writer):
         return send_queue
 
     def reconsider(self) -> None:
-        """Make the next message check whether a subscription needs Zenoh.
+        """Make the next message check whether any subscription needs Zenoh.
 
-        Not now: with many subscriptions to one topic, each of them would look at all.
+        Not done now: with many subscriptions to one topic, each of them would check all.
         """
         self._needs_zenoh = True
         self._asked_at = -1
 
     def update(self) -> bool:
-        """Return whether a subscription needs Zenoh: it has not switched, or is not announced."""
+        """Return whether a subscription needs Zenoh: one that has not switched, or is unannounced."""
         registry = self._registry
         if not self._send_queues:
             self._needs_zenoh = True

@@ -1,4 +1,4 @@
-"""The subscriptions of this process that hear each publisher at the other end of a link."""
+"""The subscriptions of this process that receive from each publisher at a link's other end."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Receiver", "ReceiverTable"]
 
 
 class Receiver(Protocol):
-    """A subscription of this process that hears one publisher of the other process."""
+    """A subscription of this process that receives from one publisher of the other process."""
 
     @property
     def gid(self) -> bytes:
@@ -21,26 +21,26 @@ class Receiver(Protocol):
     def from_link(
         self, payload: Data, sequence: int, source_ns: int, inline_deadline_ns: int
     ) -> None:
-        """Take a message."""
+        """Handle a message."""
 
     def opened(self, sequence: int) -> None:
-        """Expect what follows message number `sequence` over the link."""
+        """Expect the messages after number `sequence` over the link."""
 
     def gone(self) -> None:
-        """Expect nothing more: the publisher was destroyed."""
+        """Expect nothing more, as the publisher was destroyed."""
 
     def broken(self) -> None:
-        """Expect nothing more: the link has ended."""
+        """Expect nothing more, as the link has ended."""
 
 
 class ReceiverTable:
-    """The receivers of one link, by the gid of the publisher that they hear.
+    """The receivers of one link, by the gid of their publisher.
 
-    One is added when it asks for the publisher, and removed when either is destroyed or the link
-    ends.
+    A receiver is added when it asks for the publisher's messages, and removed when either is
+    destroyed or the link ends.
 
     Attributes:
-        handlers: What takes a publisher's messages, by its gid; changes with the receivers.
+        handlers: Handle a publisher's messages, by its gid; updated with the receivers.
     """
 
     def __init__(self) -> None:
@@ -55,7 +55,7 @@ class ReceiverTable:
         self.handlers[publisher] = handler_for(receivers)
 
     def remove(self, publisher: bytes, receiver: Receiver) -> None:
-        """Pass nothing to `receiver` any more."""
+        """Stop passing messages to `receiver`."""
         receivers = self._receivers.get(publisher, {})
         receivers.pop(receiver.gid, None)
         if receivers:
@@ -65,18 +65,18 @@ class ReceiverTable:
             self.handlers.pop(publisher, None)
 
     def of(self, publisher: bytes) -> list[Receiver]:
-        """Return the subscriptions here that hear a publisher over this link."""
+        """Return the subscriptions here that receive from a publisher over this link."""
         return list(self._receivers.get(publisher, {}).values())
 
     def get(self, publisher: bytes, subscription: bytes) -> Receiver | None:
-        """Return one subscription that hears a publisher, if it does.
+        """Return one subscription if it receives from a publisher.
 
-        Of the others none is looked at, as each of many asks for each of many publishers.
+        It does not scan the others, as each of many asks for each of many publishers.
         """
         return self._receivers.get(publisher, {}).get(subscription)
 
     def clear(self) -> list[Receiver]:
-        """Remove and return all of them: the link has ended."""
+        """Remove and return all receivers, as the link has ended."""
         receivers = [receiver for many in self._receivers.values() for receiver in many.values()]
         self._receivers.clear()
         self.handlers.clear()
@@ -84,7 +84,7 @@ class ReceiverTable:
 
 
 def handler_for(receivers: dict[bytes, Receiver]) -> Handler:
-    """Return what passes a publisher's messages to its receivers; mostly there is one."""
+    """Return a function that passes a publisher's messages to its receivers, mostly just one."""
     if len(receivers) == 1:
         (only,) = receivers.values()
         return only.from_link

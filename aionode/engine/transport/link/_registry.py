@@ -1,4 +1,4 @@
-"""The links of a context, as its publishers, subscriptions and services use them."""
+"""The links of a context, as used by its publishers, subscriptions and services."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ __all__ = ["LinkRegistry", "PeerDirectory"]
 
 
 class LinkRegistry(Protocol):
-    """The links of one context, as its endpoints see them.
+    """The links of one context, as seen by its endpoints.
 
     Attributes:
-        drops: What is dropped of what others send.
+        drops: Counts what is dropped of what others send.
         pool: Shared memory for large payloads.
         now_ns: Returns the system time, in nanoseconds since 1970.
     """
@@ -34,7 +34,7 @@ class LinkRegistry(Protocol):
         """A number that is incremented whenever endpoints or links change."""
 
     def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
-        """Return whether there may be subscriptions to a publisher that nothing announces.
+        """Return whether a publisher may have subscriptions that are not announced.
 
         `changed` is called when the answer may have changed, until the publisher is removed.
         """
@@ -43,13 +43,13 @@ class LinkRegistry(Protocol):
         """Return the link to a context, if there is one."""
 
     def remote(self, kind: EndpointKind, name: str) -> list[EndpointInfo]:
-        """Return the endpoints of other contexts that have this name."""
+        """Return the endpoints of other contexts with this name."""
 
     def later(self, delay_s: float, call: Callable[[], None]) -> None:
-        """Call `call` after a delay, unless the links are closed before."""
+        """Call `call` after a delay, unless the links are closed first."""
 
     def post(self, connection: Connection, stop: bytes) -> None:
-        """Send a STOP to the other end of a link over the other transport; from any thread.
+        """Send a STOP to the other end of a link over the other transport, from any thread.
 
         It may be lost.
         """
@@ -58,17 +58,17 @@ class LinkRegistry(Protocol):
         """Keep what a destroyed publisher left to be sent or confirmed."""
 
     def remove(self, gid: bytes) -> None:
-        """Forget an endpoint of this context, which was closed."""
+        """Forget a closed endpoint of this context."""
 
 
 class PeerDirectory(Protocol):
-    """Facts about other contexts that the other transport knows, apart from the graph.
+    """What the other transport knows about other contexts, apart from the graph.
 
     Attributes:
-        advertisement: What it announces of this context; None for nothing.
-        on_advertisement: Called with what another context announces, and whether it is present.
-        on_unannounced_peers: Called when participants that announce nothing have come or gone.
-        on_retransmit: Called with what another context has retransmitted to this one.
+        advertisement: Its announcement of this context; None for none.
+        on_advertisement: Called with another context's announcement, and whether it is present.
+        on_unannounced_peers: Called when participants without announcements have come or gone.
+        on_retransmit: Called with what another context retransmitted to this one.
     """
 
     advertisement: str | None
@@ -77,19 +77,19 @@ class PeerDirectory(Protocol):
     on_retransmit: Callable[[bytes], None]
 
     def may_be_heard(self, publisher: EndpointInfo, changed: Callable[[], None]) -> bool:
-        """Return whether there may be subscriptions to a publisher that nothing announces.
+        """Return whether a publisher may have subscriptions that are not announced.
 
         `changed` is called when the answer may have changed, until `forget`.
         """
 
     def forget(self, publisher: EndpointInfo, changed: Callable[[], None]) -> None:
-        """Do not call `changed` any more, as the publisher is closed."""
+        """Stop calling `changed`, as the publisher is closed."""
 
     def retransmit(self, participant: str, data: bytes) -> None:
         """Send bytes to one other context, in order."""
 
     def post(self, participant: str, data: bytes) -> None:
-        """Send bytes to one other context at once, from any thread; they may be lost."""
+        """Send bytes to one other context immediately, from any thread; they may be lost."""
 
     def note_link(self, participant: str, on: bool) -> None:
         """Record whether there is a link to another context, for tools that ask."""

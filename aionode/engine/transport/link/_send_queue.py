@@ -1,4 +1,4 @@
-"""Messages of one publisher for one other process: waiting, or sent and not confirmed."""
+"""One publisher's messages for one other process: waiting, or sent but not confirmed."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ if TYPE_CHECKING:
 __all__ = ["DATA", "LinkSendQueue", "RemoteSubscription"]
 
 MAX_READERS: Final = 1_000
-"""Subscriptions to one topic that a process may have."""
+"""Maximum number of subscriptions to one topic in a process."""
 
 MAX_UNCONFIRMED: Final = 20_000
-"""Messages that are kept until they are confirmed: more than a subscription in a working
-process ever leaves unconfirmed. Beyond it the oldest are forgotten.
+"""Maximum number of unconfirmed messages to keep: more than a subscription in a working process
+ever leaves unconfirmed. Beyond it, the oldest are forgotten.
 """
 
 DATA: Final = int(Kind.DATA)
 
 
 class RemoteSubscription:
-    """A subscription at the other end of a link, as its publisher sees it.
+    """A subscription at the other end of a link, as seen by its publisher.
 
     Attributes:
-        window: How many messages may be sent beyond what it has used; 0 for any number.
-        used: How many messages it has used, counted like those that were sent.
-        confirmed: The number of the last message that it has confirmed.
+        window: How many messages may be sent beyond what it has used; 0 for no limit.
+        used: Number of messages it has used, counted like those that were sent.
+        confirmed: Number of the last message it has confirmed.
         confirms: Whether it confirms messages at all.
-        switched: Whether it takes messages from the link only.
+        switched: Whether it accepts messages only from the link.
     """
 
     __slots__ = ("confirmed", "confirms", "switched", "used", "window")
@@ -53,23 +53,23 @@ class RemoteSubscription:
 class LinkSendQueue:
     """Sends the messages of one publisher to the subscriptions of one other process.
 
-    A message waits here while the socket is full, or while the window of a KEEP_ALL subscription is
-    used up; a KEEP_LAST publisher drops the oldest beyond its depth. What was sent is kept until it
-    is confirmed.
+    Messages wait here while the socket is full, or the window of a KEEP_ALL subscription is used
+    up; a KEEP_LAST publisher drops the oldest beyond its depth. Sent messages are kept until they
+    are confirmed.
 
     Args:
         gid: The publisher.
         name: The topic.
         connection: The link.
-        depth: How many messages may wait.
-        keep_all: Whether none is dropped.
+        depth: Maximum number of waiting messages.
+        keep_all: Whether nothing may be dropped.
 
     Attributes:
         name: The topic.
         connection: The link.
-        readers: The subscriptions, by gid; changes with their `Open` and `Close`.
+        readers: The subscriptions by gid; updated by `Open` and `Close`.
         confirms: Whether any of them confirms messages.
-        dropped: How many messages were dropped because the queue was full.
+        dropped: Number of messages dropped because the queue was full.
     """
 
     __slots__ = (
@@ -99,9 +99,9 @@ class LinkSendQueue:
         self._depth = depth
         self._keep_all = keep_all
         self._limited = False  # whether a subscription has a window
-        self._sent = 0  # how many frames `_pass` has sent: what `used` is compared with
-        # Number, frame, and the buffer that holds its payload. What waits for the socket or for a
-        # window, and what was sent and is not confirmed by every subscription that confirms.
+        self._sent = 0  # frames sent by `_pass`, for comparison with `used`
+        # Number, frame, and the buffer with its payload: messages waiting for the socket or a
+        # window, and messages that not every confirming subscription has confirmed.
         self._waiting: deque[tuple[int, bytes, SharedBuffer | None]] = deque()
         self._unconfirmed: deque[tuple[int, bytes, SharedBuffer | None]] = deque()
 
@@ -153,7 +153,7 @@ class LinkSendQueue:
     # Sending
 
     def send(self, sequence: int, data: bytes, buffer: SharedBuffer | None = None) -> None:
-        """Send a frame after those that wait; at once if none does."""
+        """Send a frame after those that wait; immediately if none does."""
         if not (self._limited or self._waiting or buffer):  # `_pass` inlined: fewer calls
             if self.confirms:
                 self._unconfirmed.append((sequence, data, None))
@@ -174,14 +174,14 @@ class LinkSendQueue:
             self.connection.when_writable(self)
 
     def send_stop(self, sequence: int, data: bytes, buffer: SharedBuffer | None) -> None:
-        """Send the stop of a lease; what waits is dropped in its favour."""
+        """Send the stop of a lease, dropping what waits."""
         while self._waiting:
             self.dropped += 1
             self._let_go(self._waiting.popleft()[2])
         self.send(sequence, data, buffer)
 
     def _pass(self, sequence: int, data: bytes, buffer: SharedBuffer | None) -> bool:
-        """Give a frame to the connection if that, and the window of each subscription, allow it."""
+        """Pass a frame to the connection if it and every subscription's window permit."""
         if self._limited and not self._has_window():
             return False
         if buffer is not None:
@@ -209,7 +209,7 @@ class LinkSendQueue:
             self.connection.pool.release(buffer)
 
     def on_writable(self) -> None:
-        """Send what waits, as far as the socket and the windows allow."""
+        """Send what waits, as far as the socket and the windows permit."""
         waiting = self._waiting
         while waiting and self._pass(*waiting[0]):
             self._let_go(waiting.popleft()[2])
@@ -223,15 +223,15 @@ class LinkSendQueue:
         )
 
     def has_room(self) -> bool:
-        """Whether one more message can wait."""
+        """Whether another message can wait."""
         return len(self._waiting) < self._depth
 
     def is_done(self) -> bool:
-        """Whether nothing waits here, nor in the connection."""
+        """Whether nothing waits here, or in the connection."""
         return not self._waiting and self.connection.idle
 
     def end(self, last: bytes) -> None:
-        """Send what waits without regard to windows, and then one last frame."""
+        """Send what waits regardless of windows, and then a last frame."""
         self._limited = False
         self._keep_all = True
         self.send(0, last)
@@ -250,18 +250,18 @@ class LinkSendQueue:
 
     @property
     def settled(self) -> bool:
-        """Whether nothing waits, and nothing has to be retransmitted if the link breaks."""
+        """Whether nothing waits, and nothing would have to be retransmitted if the link broke."""
         return not (self._waiting or self._unconfirmed)
 
     def drop(self) -> None:
-        """Forget what is not confirmed."""
+        """Forget unconfirmed messages."""
         for entries in (self._unconfirmed, self._waiting):
             for _, _, buffer in entries:
                 self._let_go(buffer)
             entries.clear()
 
     def unacked(self) -> Iterator[bytes]:
-        """Yield what is not confirmed, as frames with their payload in them, and forget it."""
+        """Yield unconfirmed messages as frames that include their payload, and forget them."""
         for entries in (self._unconfirmed, self._waiting):
             for _, data, buffer in entries:
                 yield data if buffer is None else whole(data, buffer)

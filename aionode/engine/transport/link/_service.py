@@ -1,8 +1,8 @@
-"""Servers and clients, whose requests go over links or over Zenoh.
+"""Servers and clients whose requests go over links or over Zenoh.
 
-A request goes over links only if these reach every server of its service, because over Zenoh it
-reaches all of them. While a request of a client is under way over Zenoh, the next ones go over
-Zenoh as well, so that none overtakes another.
+A request goes over links only if they reach every server of its service, because over Zenoh it
+reaches all of them. While one of a client's requests is pending over Zenoh, later ones also go over
+Zenoh, so that none overtakes another.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ class LinkServer(Registration):
         registry: The links of this context.
         endpoint: The server.
         srv_type: Its service.
-        serve: Takes its requests.
+        serve: Handles its requests.
         zenoh: Its registration with Zenoh.
 
     Attributes:
-        unanswered: The requests that came over links, by the client's gid and number; each stays
-            until it is answered, dropped, or its link ends.
+        unanswered: The requests received over links, by client gid and number; each stays until it
+            is answered, dropped, or its link ends.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class LinkServer(Registration):
     def take(
         self, connection: Connection, frame: Frame, payload: Data, inline_deadline_ns: int
     ) -> None:
-        """Take a request; a handler may run within this call until `inline_deadline_ns`."""
+        """Handle a request; a handler may run within this call until `inline_deadline_ns`."""
         sample_info = SampleInfo(frame.gid, frame.sequence, frame.source_ns)
         try:
             message = cdr.decode(self.srv_type.Request, payload)
@@ -101,7 +101,7 @@ class LinkServer(Registration):
 
 
 class LinkRequest(Request):
-    """One request that came over a link."""
+    """A request received over a link."""
 
     def __init__(
         self, message: Any, sample_info: SampleInfo, connection: Connection, server: LinkServer
@@ -151,8 +151,8 @@ class LinkRequester(Requester):
         zenoh: Its registration with Zenoh.
 
     Attributes:
-        over_zenoh: The calls that are under way over Zenoh.
-        calls: The calls that are under way over links, by number.
+        over_zenoh: The calls pending over Zenoh.
+        calls: The calls pending over links, by number.
     """
 
     def __init__(
@@ -164,20 +164,21 @@ class LinkRequester(Requester):
         self.calls: dict[int, LinkCall] = {}
         self._registry = registry
         self._zenoh = zenoh
-        # The registry's `changes` when the next three were computed; -1 to compute them again: how
-        # many servers are matched, the links to those that are linked, and whether that is all.
+        # The registry's `changes` when the next three were computed, -1 to recompute them: the
+        # number of matched servers, the links to those that are linked, and whether that is all of
+        # them.
         self._asked_at = -1
         self._servers = 0
         self._connections: list[tuple[bytes, Connection]] = []
         self._reaches_all = False
 
     def note_malformed(self, problem: str) -> None:
-        """Count a response that cannot be read."""
+        """Count a malformed response."""
         self._registry.drops.note(Drop.MALFORMED, self.endpoint.name, problem)
 
     @property
     def servers(self) -> int:
-        """The number of servers of other contexts that are matched."""
+        """The number of matched servers in other contexts."""
         if self._asked_at != self._registry.changes:
             self._ask()
         return self._servers
@@ -224,7 +225,7 @@ class LinkRequester(Requester):
 
 
 class ForwardedCall:
-    """A call over Zenoh, which is in `LinkRequester.over_zenoh` while it is under way."""
+    """A call over Zenoh, kept in `LinkRequester.over_zenoh` while it is pending."""
 
     def __init__(
         self,
@@ -268,7 +269,7 @@ class LinkCall:
     """A call over one or more links.
 
     Attributes:
-        routes: The links over which an answer may still come.
+        routes: The links over which an answer may still arrive.
     """
 
     def __init__(self, requester: LinkRequester, sequence: int, reply_to: ReplyTo) -> None:
@@ -282,7 +283,7 @@ class LinkCall:
         return self._requester.calls.pop(self._sequence, None) is not None
 
     def replied(self, frame: Frame, payload: Data) -> None:
-        """Take a response."""
+        """Handle a response."""
         service = self._requester.endpoint.name
         try:
             response = cdr.decode(self._requester.srv_type.Response, payload)
@@ -295,7 +296,7 @@ class LinkCall:
             self._reply_to.reply(response, SampleInfo(frame.gid, frame.sequence, frame.source_ns))
 
     def failed(self, error_type: str, error_text: str) -> None:
-        """Take a server's error."""
+        """Handle a server's error."""
         if self._finish():
             name = self._requester.endpoint.name
             self._reply_to.fail(ServiceError(name, error_text, error_type))
@@ -320,7 +321,7 @@ class LinkCall:
 
 
 def server_of(payload: Data) -> tuple[bytes, Data]:
-    """Return the gid of the server that a request is for, and the request itself.
+    """Split a request payload into the gid of its server and the request itself.
 
     Raises:
         FrameError: the payload is too short for a gid.

@@ -1,9 +1,9 @@
 """Shared memory for large payloads.
 
-The sender copies a payload, once, into a buffer that it keeps and uses again, because fresh pages
-cost far more than the copy. The buffer is sealed: it cannot shrink, and its receivers cannot write
-to it. The first frame to a process comes with the buffer's descriptor; the receiver maps the buffer
-read-only, decodes in place, and keeps the mapping, so that later frames contain only the buffer's
+The sender copies a payload once into a buffer that it keeps and reuses, because fresh pages cost
+far more than the copy. The buffer is sealed: it cannot shrink, and its receivers cannot write to
+it. The first frame to a process carries the buffer's descriptor; the receiver maps the buffer
+read-only, decodes in place, and keeps the mapping, so later frames only contain the buffer's
 number. When the last array that refers to a payload is gone, the receiver releases the buffer.
 """
 
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from aionode.errors import FrameError
 
-with suppress(ImportError):  # on Windows, which has no links, but imports this all the same
+with suppress(ImportError):  # on Windows, which has no links, but imports this module anyway
     import fcntl
 
 if TYPE_CHECKING:
@@ -30,29 +30,29 @@ if TYPE_CHECKING:
 __all__ = ["SHARED_FROM", "BufferMappings", "BufferPool", "SharedBuffer"]
 
 SHARED_FROM: Final = 1 << 17
-"""From this size on, in bytes, a payload is shared; a smaller one is cheaper to send.
+"""Size from which a payload is shared, in bytes; smaller ones are cheaper to send.
 
-Shared against sent, by `benchmarks/ipc_shared_memory.py`: 210 µs against 210 at this size, 320
-against 1030 at twice the size, which a socket does not take at once, and 157 against 148 at half.
+Shared vs. sent, by `benchmarks/ipc_shared_memory.py`: 210 µs vs. 210 at this size, 320 vs. 1030 at
+twice the size, which a socket does not accept at once, and 157 vs. 148 at half the size.
 """
 
 MAX_IDLE: Final = 1 << 26
-"""Bytes that are kept in idle buffers."""
+"""Maximum number of bytes to keep in idle buffers."""
 
 MOST_IDLE: Final = 8
-"""Idle buffers that are kept; each takes two descriptors, and one in the other process."""
+"""Maximum number of idle buffers; each takes two descriptors, and one in the other process."""
 
 STEPS: Final = 8
-"""Sizes of buffers between two powers of two.
+"""Number of buffer sizes between two powers of two.
 
-Payloads whose size varies a little, like compressed images, then fit into the same buffer.
+Payloads whose size varies slightly, like compressed images, then fit into the same buffer.
 """
 
 MAX_MAPPINGS: Final = 400
-"""Most buffers of one sender that are mapped; it lends fewer, and keeps a few idle."""
+"""Maximum mapped buffers of one sender, which lends fewer, and keeps a few idle."""
 
 F_SEAL_FUTURE_WRITE: Final = 0x0010
-"""Linux 5.1: no further writable mapping can be created. Python has no name for it."""
+"""Linux 5.1: no further writable mappings can be created. Python has no name for it."""
 
 SEALS: Final = 0x0002 | 0x0004
 """F_SEAL_SHRINK and F_SEAL_GROW of Linux; Python on other systems has no names for them."""
@@ -67,11 +67,12 @@ class SharedBuffer:
     """A piece of shared memory and its descriptor.
 
     Attributes:
-        number: Identifies it in `BufferRef`, `Release` and `Forget`; unique in the pool, for ever.
+        number: Identifies it in `BufferRef`, `Release` and `Forget`; unique within the pool,
+            forever.
         size: Its size in bytes.
         fd: Its descriptor.
-        users: How many queues and receivers hold it.
-        retired: Whether it must not be used again: a receiver may never release it.
+        users: Number of queues and receivers that hold it.
+        retired: Whether it must not be reused, as a receiver may never release it.
     """
 
     __slots__ = ("_map", "fd", "number", "retired", "size", "users")
@@ -91,7 +92,7 @@ class SharedBuffer:
             raise
 
     def fill(self, parts: Sequence[Data]) -> None:
-        """Copy `parts`, which must fit, one after the other to the beginning."""
+        """Copy `parts`, which must fit, to the start, one after the other."""
         place = 0
         for part in parts:
             end = place + len(part)
@@ -115,20 +116,20 @@ class BufferPool:
     """The buffers of one sender.
 
     Attributes:
-        listeners: Called with the number of each buffer that is closed, so that receivers can be
-            told to forget it. Each open connection has one.
+        listeners: Called with the number of each closed buffer, so that receivers can be told to
+            forget it. Each open connection has one.
     """
 
     def __init__(self) -> None:
         self.listeners: set[Callable[[int], object]] = set()
         self._numbers = count(1)
-        # Buffers that nothing uses, the last used at the end: from their release until they are
-        # filled again or closed.
+        # Unused buffers, most recently used last: from their release until they are filled again or
+        # closed.
         self._idle: list[SharedBuffer] = []
         self._closed = False
 
     def filled(self, parts: Data | Sequence[Data], size: int | None = None) -> SharedBuffer | None:
-        """Return a buffer with a payload, held by one user; None if the system has no memory.
+        """Return a buffer with a payload, held by one user; None if the system is out of memory.
 
         Args:
             parts: The payload, or its parts, which must be buffers of single bytes.
@@ -142,14 +143,14 @@ class BufferPool:
         if buffer is None:
             try:
                 buffer = SharedBuffer(next(self._numbers), rounded(size))
-            except OSError:  # no descriptors or no memory left: the payload goes through the stream
+            except OSError:  # out of descriptors or memory: the payload goes through the stream
                 return None
         buffer.fill(parts)
         buffer.users = 1
         return buffer
 
     def _taken(self, size: int) -> SharedBuffer | None:
-        """Return the idle buffer that fits best; of several the last used: caches have it."""
+        """Return the best-fitting idle buffer, preferring the last used, which caches may hold."""
         fitting = [
             buffer for buffer in reversed(self._idle) if size <= buffer.size <= 4 * size + PAGE
         ]
@@ -160,7 +161,7 @@ class BufferPool:
         return buffer
 
     def release(self, buffer: SharedBuffer) -> None:
-        """Count one user of `buffer` less; without users it becomes idle or is closed."""
+        """Remove one user of `buffer`; without users it becomes idle or is closed."""
         buffer.users -= 1
         if buffer.users:
             return
@@ -184,7 +185,7 @@ class BufferPool:
 
 
 def rounded(size: int) -> int:
-    """Return the size of a buffer for `size` bytes; pages that are not used cost nothing."""
+    """Return the buffer size for `size` bytes; unused pages cost nothing."""
     step = max(PAGE, (1 << size.bit_length()) // (2 * STEPS))
     return -(-size // step) * step
 
@@ -193,18 +194,18 @@ def rounded(size: int) -> int:
 
 
 class BufferMappings:
-    """The buffers of one sender that its receiver has mapped.
+    """The buffers of one sender that are mapped by its receiver.
 
-    A mapping is kept until the sender closes its buffer or the link ends, so that its pages are
-    mapped once, not for each payload. The sender decides how many there are: it keeps few idle ones
-    (`BufferPool`) beside those that are still read here.
+    A mapping is kept until the sender closes its buffer or the link ends, so that pages are mapped
+    once, not for each payload. The sender decides how many there are: it keeps few idle ones
+    (`BufferPool`) besides those still being read here.
     """
 
     def __init__(self) -> None:
-        # By the number of the buffer: from its first frame until `forget` or `close`.
+        # By buffer number, from its first frame until `forget` or `close`.
         self._maps: dict[int, mmap.mmap] = {}
         # By the id of a weak reference to a payload, which this keeps alive: the reference, and
-        # what to call when the payload is gone. One is added for each payload.
+        # what to call when the payload is gone. One is added per payload.
         self._watched: dict[int, tuple[weakref.ref[Any], Callable[[], object]]] = {}
 
     def __len__(self) -> int:
@@ -220,11 +221,11 @@ class BufferMappings:
             size: The size of the payload in bytes.
             fd: The buffer's descriptor, if it came with the frame; it is closed.
             done: Called once, on any thread, when nothing refers to this payload any more: no view,
-                no slice of one, and no array made of one. Not called if this raises, nor after
+                no slice of one, and no array made from one. Not called if this raises, nor after
                 `close`.
 
         Raises:
-            FrameError: the buffer is not known, not sealed, or smaller than `size`.
+            FrameError: the buffer is unknown, not sealed, or smaller than `size`.
         """
         if fd is not None:
             if len(self._maps) >= MAX_MAPPINGS:
@@ -233,13 +234,13 @@ class BufferMappings:
             self._maps[number] = sealed_map(fd, size)
         mapping = self._maps.get(number)
         if mapping is None:
-            raise FrameError(f"shared buffer {number}, whose descriptor never came")
+            raise FrameError(f"the descriptor of shared buffer {number} is missing")
         if not 0 < size <= len(mapping):
             raise FrameError(f"a payload of {size} bytes in a shared buffer of {len(mapping)}")
         import numpy as np
 
-        # A slice of a view keeps only the object behind the view alive. So each payload gets an
-        # object of its own, which can also be weakly referenced; a mapping is shared by payloads.
+        # A slice of a view only keeps the object behind the view alive. So each payload gets an
+        # object of its own that can be weakly referenced; payloads share a mapping.
         payload: Any = np.frombuffer(mapping, np.uint8, size)
         watch = weakref.ref(payload, self._on_gone)  # weakref.finalize costs three times as much
         self._watched[id(watch)] = watch, done
@@ -263,11 +264,11 @@ class BufferMappings:
 def sealed_map(fd: int, size: int) -> mmap.mmap:
     """Map the whole buffer behind `fd` read-only, and close `fd`.
 
-    Pages are mapped when they are read: `MAP_POPULATE` takes as long as that does.
+    Pages are mapped when they are read: `MAP_POPULATE` takes just as long.
 
     Raises:
         FrameError: it is not a sealed buffer of at least `size` bytes. Reading one that shrinks
-            would end the process.
+            would kill the process.
     """
     try:
         seals = fcntl.fcntl(fd, fcntl.F_GET_SEALS)

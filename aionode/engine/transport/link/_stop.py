@@ -20,7 +20,7 @@ __all__ = ["LinkStop"]
 
 
 class StoppableWriter(Protocol):
-    """The members of a `LinkWriter` that the stop of a lease uses, with the same meaning."""
+    """The members of a `LinkWriter` used by the stop of a lease."""
 
     _registry: LinkRegistry
     _gid: bytes
@@ -35,21 +35,21 @@ class StoppableWriter(Protocol):
 class LinkStop(StopSender):
     """Sends the stop of a lease over each route that a subscription needs.
 
-    Only the loop may write to the socket of a link, which may hold a part of a frame. Past the loop
-    the stop goes over Zenoh to each linked context, as a frame that says so, and the subscriptions
-    there take nothing older from the link any more.
+    Only the loop may write to a link's socket, which may hold a partial frame. While the loop is
+    blocked, the stop goes over Zenoh to each linked context, as a frame marked as such, after which
+    the subscriptions there accept nothing older from the link.
 
     Args:
         writer: The publisher.
         payload: The message.
-        zenoh: What sends it over Zenoh.
+        zenoh: Sends it over Zenoh.
     """
 
     def __init__(self, writer: StoppableWriter, payload: bytes, zenoh: StopSender) -> None:
         self._writer = writer
         self._zenoh = zenoh
         self._payload = payload
-        self._frame = b""  # for other contexts, once it was sent past the loop
+        self._frame = b""  # for other contexts, once it was sent while the loop was blocked
 
     def send(self, sequence: int, source_ns: int) -> None:
         """Send it."""
@@ -65,7 +65,7 @@ class LinkStop(StopSender):
         )
         for send_queue in tuple(writer._send_queues.values()):
             send_queue.send_stop(sequence, data, buffer)
-            if send_queue.waits:  # the socket is full, and other topics' messages are before it
+            if send_queue.waits:  # the socket is full, with messages of other topics ahead
                 self._post(send_queue.connection, sequence, source_ns)
         if buffer is not None:
             pool.release(buffer)
@@ -74,7 +74,7 @@ class LinkStop(StopSender):
             self._zenoh.send(sequence, source_ns)
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:
-        """Send it over Zenoh only."""
+        """Send it only over Zenoh."""
         for connection in list(self._writer._send_queues):
             self._post(connection, sequence, source_ns)
         if self._writer._needs_zenoh:

@@ -1,22 +1,23 @@
-"""Subscriptions that hear each remote publisher over Zenoh, a link, or both during a hand-over.
+"""Subscriptions that receive from a remote publisher over Zenoh, a link, or both (hand-over).
 
 The hand-over moves a stream from one route to the other without losing, duplicating or reordering
-messages. A subscription hears a publisher of another process over Zenoh first. When the two
+messages. A subscription first receives from a publisher of another process over Zenoh. Once the two
 processes are linked:
 
-1. The subscription asks for the publisher (`Open`).
+1. The subscription asks for the publisher's messages (`Open`).
 2. The publisher answers with the number of its last message (`Opened`), and writes to both routes
    from the next one on.
-3. The subscription goes on with what arrives over Zenoh and holds what arrives over the link, until
-   Zenoh has delivered that number or a later one: then nothing older is on its way. If Zenoh stays
-   silent, it has lost the message, or was not matched when it was sent: the wait ends as well.
-4. The subscription takes the link and says so (`Switched`), and the publisher stops writing to
-   Zenoh if no other subscription needs it. Copies that Zenoh delivers ahead of the link are held.
+3. The subscription continues with what arrives over Zenoh and holds what arrives over the link,
+   until Zenoh has delivered that number or a later one: then nothing older is on its way. If Zenoh
+   stays silent, it lost the message, or was not matched when it was sent: the wait ends as well.
+4. The subscription switches to the link and says so (`Switched`), and the publisher stops writing
+   to Zenoh if no other subscription needs it. Copies that Zenoh delivers ahead of the link are
+   held.
 
-When the link ends, the publisher goes on over Zenoh and retransmits what the subscription has not
-confirmed, to the subscription's process alone, so that no other subscription gets it twice; then it
-says that this was all (`RetransmitDone`). Meanwhile the subscription recovers: it takes the next
-number from any route, also from a new link, and holds what is further ahead.
+When the link ends, the publisher continues over Zenoh and retransmits what the subscription has not
+confirmed, only to the subscription's process, so that no other subscription gets it twice; then it
+says that this was all (`RetransmitDone`). Meanwhile the subscription recovers: it accepts the next
+number from any route, including a new link, and holds what is further ahead.
 """
 
 from __future__ import annotations
@@ -46,39 +47,39 @@ if TYPE_CHECKING:
 __all__ = ["LinkReader", "RemotePublisher", "Route", "heard_from"]
 
 WINDOW: Final = 1_000
-"""Messages that a publisher may send ahead of those that a KEEP_ALL subscription has used."""
+"""How many messages a publisher may send ahead of those that a KEEP_ALL subscription has used."""
 
 MAX_FULL: Final = 50_000
-"""Messages that may wait for room in a KEEP_ALL subscription: its window, and the last ones of a
-publisher that is destroyed.
+"""Maximum number of messages that wait for room in a KEEP_ALL subscription: its window, and the
+last ones of a publisher that is destroyed.
 """
 
 MAX_HELD: Final = 2_000
-"""Most messages that are held until Zenoh has caught up; with more the link is taken.
+"""Maximum number of messages held until Zenoh has caught up; beyond it, the link is used.
 
-A reliable subscription holds as many as its depth, if that is more; a KEEP_ALL one always waits.
+A reliable subscription holds up to its depth, if that is more; a KEEP_ALL one always waits.
 """
 
 MAX_RECOVERING: Final = 50_000
-"""Most messages that are held while retransmitted ones are awaited."""
+"""Maximum number of messages held while waiting for retransmitted ones."""
 
 CONFIRM_BYTES: Final = 1 << 16
-"""After so many bytes a subscription confirms what it has received."""
+"""Number of bytes after which a subscription confirms what it has received."""
 
 MESSAGE_BYTES: Final = 1 << 10
-"""Bytes that each message counts beyond its payload: 64 empty messages are confirmed as well."""
+"""Bytes that each message counts besides its payload, so that 64 empty ones are confirmed too."""
 
 ZENOH_LATE_S: Final = 0.1
-"""Time for which a subscription that holds messages waits for the other route to deliver any."""
+"""How long a subscription that holds messages waits for the other route, in seconds."""
 
 RECOVERY_S: Final = 0.5
-"""The limit where messages are sent again: to a KEEP_ALL subscription, or after a link has ended,
+"""The same when messages are retransmitted: to a KEEP_ALL subscription, or after a link has ended,
 which the other process has to notice first.
 """
 
 
 class Route(enum.Enum):
-    """The route from which a subscription takes a publisher's messages."""
+    """The route from which a subscription accepts a publisher's messages."""
 
     ZENOH = "zenoh"
     BOTH = "both"
@@ -94,7 +95,7 @@ LINK: Final = Route.LINK
 
 
 class Message(NamedTuple):
-    """A message that may be held: where it arrived, others are awaited."""
+    """A message that may be held until others have arrived."""
 
     msg: Any
     sequence: int
@@ -103,7 +104,7 @@ class Message(NamedTuple):
 
 
 class RemotePublisher:
-    """One publisher of another process, as one subscription hears it: the hand-over's state.
+    """One publisher of another process, as seen by one subscription: the state of the hand-over.
 
     Args:
         registry: The links of this context.
@@ -114,10 +115,10 @@ class RemotePublisher:
         gid: The gid of the subscription.
         publisher: The gid of the publisher.
         participant: The context of the publisher.
-        connection: The link that it was asked for over; None while there is none.
-        route: Where its messages come from now.
-        last: The number of the last message that was delivered.
-        full: Messages that a KEEP_ALL subscription has no room for yet.
+        connection: The link over which it was asked for; None if there is none.
+        route: Where its messages currently come from.
+        last: Number of the last message delivered.
+        full: Messages for which a KEEP_ALL subscription has no room yet.
     """
 
     __slots__ = (
@@ -166,25 +167,25 @@ class RemotePublisher:
             and publisher.qos.resolved().reliability is reliable
         )
         self._keep_all = keeps_all(qos)
-        # The publisher writes to both routes after this number; changes when a link is opened.
+        # The publisher writes to both routes after this number; set when a link is opened.
         self._base = 0
-        # Whether the publisher sends over a link now, and whether it has sent its last frame.
+        # Whether the publisher is sending over a link, and whether it has sent its last frame.
         self._linked = False
         self._gone = False
-        # Links that have ended and whose unconfirmed messages were not all sent again yet.
+        # Ended links whose unconfirmed messages have not all been retransmitted yet.
         self._owed = 0
-        # By number: what came over one route and has to wait for another; empty in a steady state.
+        # By number: what arrived over one route and must wait for the other; empty in steady state.
         self._held: dict[int, Message] = {}
         self._max_held = MAX_HELD
         if self._keep_all:
             self._max_held = MAX_RECOVERING
         elif self._confirms:
             self._max_held = max(MAX_HELD, depth_of(qos))
-        # Messages, and their bytes, that arrived over the link since the last confirmation.
+        # Messages, and their bytes, received over the link since the last confirmation.
         self._used = 0
         self._used_bytes = 0
         self._waiting_for_room = False
-        # Whether `_on_timer` is due, and whether anything has arrived since it was set.
+        # Whether `_on_timer` is scheduled, and whether anything has arrived since.
         self._timer_runs = False
         self._progressed = False
 
@@ -204,7 +205,7 @@ class RemotePublisher:
         connection.send(Open(self.publisher, self.gid, window, self._confirms))
 
     def opened(self, sequence: int) -> None:
-        """Expect what follows message number `sequence` over the link."""
+        """Expect the messages after number `sequence` over the link."""
         self._base = sequence
         self._linked = True
         if self.route is Route.RECOVERING:
@@ -216,16 +217,16 @@ class RemotePublisher:
         self._route_changed()
 
     def close(self) -> None:
-        """Need nothing from the publisher any more."""
+        """Request nothing more from the publisher."""
         connection, self.connection = self.connection, None
         if connection is not None:
             connection.receivers.remove(self.publisher, self)
             connection.send(Close(self.publisher, self.gid))
 
     def gone(self) -> None:
-        """Expect nothing more over the link: the publisher was destroyed.
+        """Expect nothing more over the link, as the publisher was destroyed.
 
-        What it has written to Zenoh may still be on its way: older messages than those from the
+        What it has written to Zenoh may still be on its way: messages older than those from the
         link, or copies of them.
         """
         self._linked = False
@@ -233,11 +234,11 @@ class RemotePublisher:
         if self.route is LINK or (self.route is Route.BOTH and self.last >= self._base):
             self._release()
             self.route = ZENOH
-        self._confirm()  # or the publisher's process keeps the messages until the link ends
+        self._confirm()  # or the publisher's process would keep the messages until the link ends
         self._start_timer()
 
     def broken(self) -> None:
-        """Take Zenoh again, as soon as nothing is missing: the link has ended."""
+        """Switch back to Zenoh as soon as nothing is missing, as the link has ended."""
         self.connection = None
         self._owed += 1
         self._linked = False
@@ -257,7 +258,7 @@ class RemotePublisher:
     def from_link(
         self, payload: Data, sequence: int, source_ns: int, inline_deadline_ns: int
     ) -> None:
-        """Take a message that came over the link; before `opened` it is for another reader."""
+        """Handle a message from the link; before `opened` it is for another reader."""
         try:
             msg = self._decode(payload)
         except DecodeError as error:
@@ -268,7 +269,7 @@ class RemotePublisher:
                 self.last = sequence
                 self._deliver(msg, self.publisher, sequence, source_ns, inline_deadline_ns)
         else:
-            # It may be held for a while, so note that it has arrived now.
+            # It may be held for a while, so record that it has arrived now.
             message = Message(msg, sequence, source_ns, self._registry.now_ns())
             self._from_link_in_order(message, inline_deadline_ns)
         if self._confirms:
@@ -300,7 +301,7 @@ class RemotePublisher:
             self._route_changed()
 
     def from_zenoh(self, message: Message, inline_deadline_ns: int = NOT_INLINE_NS) -> None:
-        """Take a message that came over Zenoh."""
+        """Handle a message from Zenoh."""
         before = self.route
         self._progressed = True
         number = message.sequence
@@ -320,7 +321,7 @@ class RemotePublisher:
         self.reader.reject(error)
 
     def from_other_route(self, payload: Data, frame: Frame) -> None:
-        """Take what a link should have brought: its broken end left it, or the loop that writes."""
+        """Handle what a link should have delivered, from its broken end or from a blocked loop."""
         if frame.kind not in (Kind.DATA, Kind.STOP):
             return
         try:
@@ -342,7 +343,7 @@ class RemotePublisher:
         self._route_changed()
 
     def _stop(self, message: Message) -> None:
-        """Take the stop of a lease, which came past the link: nothing older is taken any more."""
+        """Handle the stop of a lease that bypassed the link: accept nothing older from now on."""
         if message.sequence <= self.last:
             return
         self._held = {n: held for n, held in self._held.items() if n > message.sequence}
@@ -360,17 +361,17 @@ class RemotePublisher:
         return bool(self._held) and self.route in (Route.BOTH, Route.RECOVERING)
 
     def stop_waiting(self) -> None:
-        """Deliver what is held: what has not arrived by now was lost."""
+        """Deliver what is held: what has not arrived by now is lost."""
         self._finish()
         self._route_changed()
 
     def _switch(self) -> None:
-        """Take the link from now on, and first what it has brought so far."""
+        """Switch to the link, and first deliver what it has brought so far."""
         if self.route is Route.BOTH:
             self._finish()
 
     def _finish(self) -> None:
-        """Deliver what is held, and go on with the link if there is one, else with Zenoh."""
+        """Deliver what is held, and continue with the link if there is one, else with Zenoh."""
         self._owed = 0
         if self.route is Route.BOTH or self.route is Route.RECOVERING:
             self._release()
@@ -391,7 +392,7 @@ class RemotePublisher:
     def _hold(self, message: Message) -> None:
         self._held[message.sequence] = message
         if self.route is LINK and len(self._held) > MAX_HELD:
-            # A copy: it comes over the link as well, or is retransmitted if that ends.
+            # Only a copy: it also comes over the link, or is retransmitted if that ends.
             del self._held[next(iter(self._held))]
         elif len(self._held) > MAX_RECOVERING:
             self._finish()
@@ -417,7 +418,7 @@ class RemotePublisher:
     # Effects of a decision
 
     def _route_changed(self) -> None:
-        """Tell the publisher that the link is taken, or wait for what is missing."""
+        """Tell the publisher about the switch to the link, or wait for what is missing."""
         if self.route is LINK and self.connection is not None:
             self.connection.send(Switched(self.publisher, self.gid))
             self._confirm()
@@ -429,7 +430,8 @@ class RemotePublisher:
             return
         self._timer_runs = True
         self._progressed = False
-        # Messages that a KEEP_ALL subscription waits for arrive for certain, perhaps sent again.
+        # Messages that a KEEP_ALL subscription waits for are certain to arrive, perhaps
+        # retransmitted.
         patient = self._keep_all or self._gone or self.route is Route.RECOVERING
         self._registry.later(RECOVERY_S if patient else ZENOH_LATE_S, self._on_timer)
 
@@ -467,28 +469,28 @@ class RemotePublisher:
             if self.route is not LINK and not self._gone:
                 return
             used, self._used, self._used_bytes = self._used, 0, 0
-            # Messages that are held when the publisher has gone are not asked for again.
+            # Messages held when the publisher has gone are not requested again.
             last = max(self.last, *self._held) if self._gone and self._held else self.last
             self.connection.send(Credit(self.publisher, self.gid, used, last))
 
 
 class LinkReader(ReaderRegistration):
-    """A subscription that hears some of its publishers over links.
+    """A subscription that may receive from publishers over links.
 
-    Zenoh delivers to this in place of the subscription's own reader, so that what arrives over both
-    routes is delivered once.
+    Zenoh delivers to this object instead of the subscription's own reader, so that what arrives
+    over both routes is delivered once.
 
     Args:
         registry: The links of this context.
         msg_type: The type of the messages.
-        reader: Where they go.
+        reader: Receives the messages.
 
     Attributes:
         endpoint: The subscription.
         raw: Whether messages are delivered as CDR bytes.
-        gid: The subscription's gid as other processes know it.
-        remote_publishers: The publishers that it was linked to, by gid. One is added when it is
-            asked for over a link; it stays when the link ends, and goes after the publisher has.
+        gid: The gid by which other processes know the subscription.
+        remote_publishers: The publishers to which it was linked, by gid. Added when asked for over
+            a link; kept when the link ends, and removed after the publisher has gone.
     """
 
     def __init__(self, registry: LinkRegistry, msg_type: type[Any], reader: Reader) -> None:
@@ -508,9 +510,9 @@ class LinkReader(ReaderRegistration):
         self._zenoh: Registration | None = None
 
     def attach(self, zenoh: Registration) -> None:
-        """Set the subscription's registration with Zenoh, whose token has the gid."""
+        """Set the subscription's registration with Zenoh, whose token determines the gid."""
         self._zenoh = zenoh
-        # Others know it by its token, which may say more than the graph does (`CPU_BACKEND`).
+        # Others know it by its token, which may contain more than the graph does (`CPU_BACKEND`).
         self.gid = getattr(zenoh, "gid", self.gid)
 
     def decoder(self) -> Callable[[Data], Any]:
@@ -526,7 +528,7 @@ class LinkReader(ReaderRegistration):
         inline_deadline_ns: int = 0,
         arrived_ns: int = 0,
     ) -> None:
-        """Take a message that came over Zenoh."""
+        """Handle a message from Zenoh."""
         remote_publisher = self.remote_publishers.get(gid)
         if remote_publisher is None:
             self.deliver_local(msg, gid, sequence, source_ns, inline_deadline_ns, arrived_ns)
@@ -536,17 +538,17 @@ class LinkReader(ReaderRegistration):
 
     @property
     def waiting(self) -> int:
-        """The number of messages that wait in the subscription."""
+        """The number of messages waiting in the subscription."""
         return self._reader.waiting
 
     def has_room(self) -> bool:
-        """Whether a message can be taken without losing one that should be kept."""
+        """Whether a message can be accepted without losing one that must be kept."""
         return self.has_room_itself() and not any(
             remote_publisher.full for remote_publisher in self.remote_publishers.values()
         )
 
     def open(self, publisher: EndpointInfo, connection: Connection) -> None:
-        """Ask for the messages of `publisher` over `connection`, unless that was done already."""
+        """Ask for the messages of `publisher` over `connection`, unless already done."""
         if not can_link(publisher) or not self.endpoint.matches(publisher):
             return
         remote_publisher = self.remote_publishers.get(publisher.gid)
@@ -563,7 +565,7 @@ class LinkReader(ReaderRegistration):
         return None if remote_publisher is None else remote_publisher.is_linked
 
     def forget(self, remote_publisher: RemotePublisher) -> None:
-        """Forget a publisher that was destroyed, when nothing of it is on its way any more."""
+        """Forget a destroyed publisher once none of its messages is on its way any more."""
         self.remote_publishers.pop(remote_publisher.publisher, None)
 
     def close(self) -> None:
@@ -579,7 +581,7 @@ class LinkReader(ReaderRegistration):
 def heard_from(
     readers: Iterable[LinkReader], participant: str
 ) -> dict[bytes, list[RemotePublisher]]:
-    """Return what subscriptions keep about the publishers of a context, by their gids."""
+    """Return the subscriptions' state for the publishers of a context, by their gids."""
     heard: dict[bytes, list[RemotePublisher]] = defaultdict(list)
     for reader in readers:
         for remote_publisher in reader.remote_publishers.values():

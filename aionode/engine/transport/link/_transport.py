@@ -1,4 +1,4 @@
-"""The transport that uses links where there are some, and Zenoh for everything else."""
+"""The transport that uses links where possible, and Zenoh for everything else."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ __all__ = ["LinkTransport"]
 logger = logging.getLogger("aionode.transport.link")
 
 LOOK_S = 0.001
-"""Time between two tries of `send_rest` whether a full socket takes more, in seconds."""
+"""Interval at which `send_rest` retries a full socket, in seconds."""
 
 
 class LinkTransport(Transport):
@@ -50,7 +50,7 @@ class LinkTransport(Transport):
         domain_id: The ROS domain.
         zenoh: The other transport.
         peer_directory: What the other transport knows about other contexts.
-        time_base: The time of the context; by default that of the machine.
+        time_base: The time of the context; defaults to that of the machine.
     """
 
     def __init__(
@@ -77,12 +77,12 @@ class LinkTransport(Transport):
         return await self.zenoh.other_domains()
 
     async def open(self, graph: Graph) -> None:
-        """Connect; without a folder for sockets, or descriptors, over the other transport only."""
+        """Connect; without a folder for sockets, or descriptors, only over the other transport."""
         listener = None
         try:
             listener = Listener(socket_folder(os.environ), self.manager.participant)
         except TransportError as error:
-            logger.warning("%s; Zenoh is used between processes of this host as well", error)
+            logger.warning("%s; using Zenoh between processes on this host as well", error)
         else:
             own = Advertisement.own(self.manager.participant)
             self._peer_directory.advertisement = own.text()
@@ -105,16 +105,16 @@ class LinkTransport(Transport):
             self.manager.on_advertisement(advertisement, present)
 
     async def all_known(self, quiet_s: float) -> bool:
-        """Wait until every context that can be reached has announced its endpoints."""
+        """Wait until every reachable context has announced its endpoints."""
         return await self.zenoh.all_known(quiet_s)
 
     @property
     def drops(self) -> Drops:
-        """What is dropped of what others send, over links or not."""
+        """Counts what is dropped of what others send, over links or not."""
         return self.manager.drops
 
     def silent_processes(self) -> list[str]:
-        """Return who does not answer."""
+        """Return the processes that do not answer."""
         return self.zenoh.silent_processes()
 
     async def observe(self, timeout_s: float) -> dict[str, bytes | None]:
@@ -126,15 +126,15 @@ class LinkTransport(Transport):
         self.zenoh.tell(report)
 
     async def link_status(self) -> LinkStatus:
-        """Return which contexts can be linked, and which are; all of them are asked."""
+        """Ask all contexts which of them can be linked, and which are."""
         return await self.zenoh.link_status()
 
     async def close(self) -> None:
         """Withdraw everything and disconnect.
 
-        Linked processes get what waits for them as long as they read; one that reads nothing for a
-        second is given up, and a warning says what was lost. The rest takes a second at most.
-        Cancelling it closes everything at once, and what waits is lost.
+        Linked processes receive pending data as long as they read; one that reads nothing for a
+        second is given up, with a warning about what was lost. The rest takes a second at most.
+        Cancelling it closes everything immediately, and pending data is lost.
         """
         try:
             await self.manager.flush()
@@ -144,7 +144,7 @@ class LinkTransport(Transport):
             await self.zenoh.close()
 
     def send_rest(self, ends_ns: int) -> None:
-        """Send what waits on the links as far as the other processes read it."""
+        """Send pending data on the links, as far as the other processes read it."""
         slow = list(self.manager._links.values())
         while slow := [connection for connection in slow if not connection.send_rest()]:
             if perf_ns() >= ends_ns:
@@ -152,7 +152,7 @@ class LinkTransport(Transport):
             select.select([], [], [], LOOK_S)
 
     def abandon(self) -> None:
-        """Leave the links to the process that this one was forked from."""
+        """Leave the links to the process from which this one was forked."""
         self.manager.abandon()
         self.zenoh.abandon()
 

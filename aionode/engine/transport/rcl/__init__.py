@@ -1,6 +1,6 @@
-"""Over the ROS 2 that is installed: messages travel through rcl and whatever middleware it runs.
+"""A transport over the installed ROS 2: messages travel through rcl and its middleware.
 
-The only package that imports rclpy, and it does so when a context opens, since that takes half a
+This is the only package that imports rclpy, and only when a context opens, since that takes half a
 second. Everything asynchronous is signalled through eventfds: no Python runs in the middleware's
 threads, and there is no executor.
 """

@@ -1,8 +1,8 @@
-"""Every function of rcl, rmw and rclpy that the transport uses, and how to find them.
+"""All functions of rcl, rmw and rclpy that the transport uses.
 
-Messages are taken and published as CDR by functions of librcl, called by ctypes, as rclpy has no
-raw form of requests and holds the GIL while it publishes. What makes and destroys entities, and
-what asks for the graph, is rclpy's own extension module, as used by its executors.
+Messages are taken and published as CDR by functions of librcl, through ctypes, as rclpy has no raw
+form of requests and holds the GIL while it publishes. Entities are created and destroyed, and the
+graph is queried, through rclpy's own extension module, as used by its executors.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 __all__ = ["MessageInfo", "Rcl", "RequestId", "ServiceInfo", "load"]
 
 OLDEST: Final = (7, 0)
-"""The first release of rclpy with what is needed: that of ROS 2 Jazzy."""
+"""The first release of rclpy with everything needed: that of ROS 2 Jazzy."""
 
 UNNUMBERED: Final = 2**64 - 1
 """RMW_MESSAGE_INFO_SEQUENCE_NUMBER_UNSUPPORTED."""
@@ -64,7 +64,7 @@ class MessageInfo(ctypes.Structure):
 
 
 class RequestId(ctypes.Structure):
-    """An ``rmw_request_id_t``: the client, and its number of the request."""
+    """An ``rmw_request_id_t``: the client, and its sequence number for the request."""
 
     _fields_ = (("gid", c_uint8 * 16), ("sequence", c_int64))
 
@@ -102,7 +102,7 @@ class ByteArray(ctypes.Structure):
 
 
 class ByteView(ctypes.Structure):
-    """A `ByteArray` that rcl reads: it shows a bytes object of Python, and keeps it."""
+    """A `ByteArray` that rcl reads: it exposes a bytes object and keeps it alive."""
 
     _fields_ = (
         ("buffer", c_char_p),
@@ -119,17 +119,17 @@ class ErrorString(ctypes.Structure):
 
 
 class Rcl:
-    """The functions. Those named ``*_without_gil`` release the GIL, the other ones keep it.
+    """The functions. Those named ``*_without_gil`` release the GIL, the others keep it.
 
-    No thread of the middleware ever wants the GIL, so keeping it cannot deadlock; it spares the
-    loop the wait for the GIL after each short call.
+    No thread of the middleware ever needs the GIL, so keeping it cannot deadlock; it saves the loop
+    waiting for the GIL after each short call.
 
     Attributes:
         module: rclpy's extension module.
         middleware: The name of the middleware, such as ``rmw_fastrtps_cpp``.
-        is_fast_dds: Whether that is Fast DDS: its gids are those of DDS, and its callbacks tell of
+        is_fast_dds: Whether that is Fast DDS: its gids are those of DDS, and its callbacks report
             each item.
-        notify: libc's ``eventfd_write`` as an ``rcl_event_callback_t``, which it fits.
+        notify: libc's ``eventfd_write`` as an ``rcl_event_callback_t``, whose signature matches.
     """
 
     def __init__(self, module: Any, version: str) -> None:
@@ -137,8 +137,8 @@ class Rcl:
         self.version = version
         self.middleware: str = module.rclpy_get_rmw_implementation_identifier()
         self.is_fast_dds = self.middleware.startswith("rmw_fastrtps")
-        # The functions of rmw and rcutils are found in the libraries that this one needs, whose
-        # names differ between installations.
+        # The functions of rmw and rcutils are found in the libraries that this one depends on,
+        # whose names differ between installations.
         rcl = rmw = rcutils = ctypes.PyDLL("librcl.so")
         freely = ctypes.CDLL("librcl.so")
         libc = ctypes.CDLL(None)
@@ -170,7 +170,7 @@ class Rcl:
             rcl.rcl_publisher_get_subscription_count, nothing, POINTER(c_size_t)
         )
         self.assert_liveliness = function(rcl.rcl_publisher_assert_liveliness, nothing)
-        # These wait for callbacks that are being called, which need no GIL.
+        # These wait for running callbacks, which need no GIL.
         self.set_subscription_callback = function(
             freely.rcl_subscription_set_on_new_message_callback, nothing, nothing, nothing
         )
@@ -201,13 +201,13 @@ class Rcl:
         self._reset_error = function(rcutils.rcutils_reset_error, returns=None)
 
     def error(self) -> str:
-        """Return why the last call of this thread failed, and forget it."""
+        """Return why this thread's last call failed, and reset it."""
         text: bytes = self._get_error().text
         self._reset_error()
         return text.decode(errors="replace").partition(", at ")[0]
 
     def forget_error(self) -> None:
-        """Forget why the last call of this thread failed."""
+        """Reset why this thread's last call failed."""
         self._reset_error()
 
     def new_array(self, size: int = 256) -> ByteArray:
@@ -222,7 +222,7 @@ class Rcl:
         self._free_array(byref(array))
 
     def publisher_gid(self, pointer: int) -> bytes:
-        """Return the gid of a publisher of this process; its first 12 bytes are its context's."""
+        """Return the gid of our publisher; its first 12 bytes identify the context."""
         gid = Gid()
         if self._publisher_gid(self._publisher_rmw(pointer), byref(gid)):
             self.forget_error()
@@ -243,31 +243,31 @@ def function(symbol: Any, *arguments: Any, returns: Any = c_int) -> Any:
 
 
 def view(payload: bytes) -> ByteView:
-    """Return an array that shows `payload`, and keeps it."""
+    """Return an array that exposes `payload` and keeps it alive."""
     size = len(payload)
     return ByteView(payload, size, size)
 
 
 @functools.cache
 def load() -> Rcl:
-    """Return the functions of the rclpy of this Python.
+    """Return the functions of this Python's rclpy.
 
     Raises:
-        TransportError: there is none, or one that is too old, or its middleware is missing.
+        TransportError: there is none, it is too old, or its middleware is missing.
     """
     if is_in_python():
         raise TransportError(
-            "transport=rcl: in this process, rclpy is aionode's; a program that imports rclpy runs "
-            "over DDS with ROS's own, or uses aionode's names"
+            "transport=rcl: in this process, rclpy is aionode's; to run over DDS, use ROS's own "
+            "rclpy, or aionode's API instead of rclpy's"
         )
     version = installed_version()
     check_middleware(os.environ)
     try:
         from rclpy.impl.implementation_singleton import rclpy_implementation
     except ImportError as error:
-        reason = str(error).partition("\n")[0]  # rclpy's texts have several lines
+        reason = str(error).partition("\n")[0]  # rclpy's messages have several lines
         raise TransportError(
-            f"transport=rcl: rclpy {version} cannot be imported by this Python "
+            f"transport=rcl: this Python cannot import rclpy {version} "
             f"{sys.version_info.major}.{sys.version_info.minor} ({reason}); use the Python that it "
             "is built for, with its ROS 2 sourced"
         ) from error
@@ -277,17 +277,17 @@ def load() -> Rcl:
         return Rcl(rclpy_implementation, version)
     except (OSError, AttributeError) as error:
         raise TransportError(
-            f"transport=rcl: the libraries of rclpy {version} lack something ({error}); it works "
+            f"transport=rcl: the libraries of rclpy {version} are incompatible ({error}); it works "
             "with those of ROS 2 Jazzy and Kilted"
         ) from error
-    except Exception as error:  # rclpy's own kinds, of which none is public
+    except Exception as error:  # rclpy's own exceptions, none of which is public
         raise TransportError(middleware_problem(error)) from error
 
 
 def is_in_python() -> bool:
-    """Return whether the rclpy that programs of this process import is aionode's.
+    """Return whether the rclpy imported by programs of this process is aionode's.
 
-    Its extension module is a module in Python.
+    Its extension module is written in Python.
     """
     loaded = sys.modules.get("rclpy")
     spec = importlib.util.find_spec("rclpy") if loaded is None else None
@@ -296,10 +296,10 @@ def is_in_python() -> bool:
 
 
 def installed_version() -> str:
-    """Return the version of the rclpy of this Python.
+    """Return the version of this Python's rclpy.
 
     Raises:
-        TransportError: there is none, or one that is too old.
+        TransportError: there is none, or it is too old.
     """
     try:
         version = importlib.metadata.version("rclpy")
@@ -318,10 +318,10 @@ def installed_version() -> str:
 
 
 def check_middleware(environ: Mapping[str, str]) -> None:
-    """Check that the middleware of the environment can be loaded: if not, rcl ends the process.
+    """Check that the environment's middleware can be loaded, as rcl would abort the process.
 
     Raises:
-        TransportError: it cannot.
+        TransportError: it cannot be loaded.
     """
     name = environ.get(RMW_VARIABLE, "")
     if not name:

@@ -1,7 +1,7 @@
-"""The graph: asked for when the middleware says that it has changed, and compared.
+"""Keeps the graph up to date: queries it when the middleware reports a change, and compares.
 
-rcl has a guard condition that is triggered by changes, and one thread waits for it. The questions
-are asked on the loop, a few at a time, as they hold the GIL anyway.
+rcl has a guard condition that is triggered by changes, for which one thread waits. Queries run on
+the loop, a few at a time, as they hold the GIL anyway.
 """
 
 from __future__ import annotations
@@ -31,25 +31,25 @@ if TYPE_CHECKING:
 __all__ = ["RclGraphWatcher"]
 
 UNKNOWN_NODES: Final = ("_NODE_NAME_UNKNOWN_", "_CREATED_BY_BARE_DDS_APP_")
-"""Names of the nodes of endpoints whose participant has not told of its nodes."""
+"""Node names of endpoints whose participant has not announced its nodes."""
 
 HIDDEN: Final = "_aionode_graph_"
-"""Prefix of the names of nodes that only ask for the graph."""
+"""Prefix of the names of nodes that only query the graph."""
 
 AGAIN_S: Final = 0.1
-"""Time until the graph is asked again after an incomplete answer, in seconds."""
+"""Delay before the graph is queried again after an incomplete answer, in seconds."""
 
 TRIES: Final = 20
-"""Times that the graph is asked again in a row."""
+"""Maximum number of consecutive repeated queries."""
 
 
 class RclGraphWatcher:
     """Keeps the graph of the context up to date.
 
     Attributes:
-        started_ns: When it began to watch, by `perf_ns`.
-        changed_ns: When the middleware last told of a change.
-        rounds: How many times everything was asked for.
+        started_ns: When it started to watch, by `perf_ns`.
+        changed_ns: When the middleware last reported a change.
+        rounds: Number of complete query rounds.
     """
 
     def __init__(self, state: RclState) -> None:
@@ -62,9 +62,9 @@ class RclGraphWatcher:
         self._fd = -1
         self._nodes: dict[NodeInfo, None] = {}
         self._endpoints: dict[bytes, EndpointInfo] = {}
-        self._steps: Iterator[None] | None = None  # of the round under way
+        self._steps: Iterator[None] | None = None  # of the current round
         self._stale = False  # whether it changed during the round
-        self._incomplete = 0  # how many rounds in a row had a part missing
+        self._incomplete = 0  # consecutive rounds with a part missing
         self._ids = 0
 
     @property
@@ -79,11 +79,11 @@ class RclGraphWatcher:
 
     @property
     def is_settled(self) -> bool:
-        """Whether nothing is being asked, or is to be asked again."""
+        """Whether no query is running or scheduled."""
         return self._steps is None and (self.is_complete or self._incomplete >= TRIES)
 
     def start(self, rcl: Rcl) -> None:
-        """Begin to watch."""
+        """Start watching."""
         loop = self._state.loop
         if loop is None:
             return
@@ -103,7 +103,7 @@ class RclGraphWatcher:
         os.eventfd_write(self._fd, 1)
 
     def stop(self) -> None:
-        """Watch no more, and forget what was found; the context removes it from its graph."""
+        """Stop watching, and forget what was found; the context removes it from its graph."""
         thread, self._thread = self._thread, None
         if thread is None:
             return
@@ -121,7 +121,7 @@ class RclGraphWatcher:
         self._endpoints.clear()
 
     def _wait(self, rcl: Rcl, wait_set: Any, guard: int) -> None:
-        """Wait for changes. In a thread of its own."""
+        """Wait for changes, in a thread of its own."""
         with wait_set, self._stop:
             while not self._stopping:
                 wait_set.clear_entities()
@@ -137,7 +137,7 @@ class RclGraphWatcher:
     def _on_change(self) -> None:
         try:
             os.eventfd_read(self._fd)
-        except BlockingIOError:  # the event was taken by an earlier turn
+        except BlockingIOError:  # an earlier iteration consumed the event
             return
         self.changed_ns = perf_ns()
         self._begin()
@@ -153,7 +153,7 @@ class RclGraphWatcher:
         self._go_on()
 
     def _go_on(self) -> None:
-        """Ask for some of it; the rest on the next turns of the loop."""
+        """Query a part; the rest follows in the next iterations of the loop."""
         loop, steps = self._state.loop, self._steps
         if steps is None or loop is None:
             return
@@ -170,7 +170,7 @@ class RclGraphWatcher:
             loop.call_later(AGAIN_S, self._begin)
 
     def _round(self) -> Iterator[None]:
-        """Ask for everything, and enter the differences; each step is short."""
+        """Query everything, and apply the differences; each step is short."""
         state = self._state
         rcl, graph, asker = state.rcl, state.graph, state.watcher
         if rcl is None or graph is None:
@@ -200,7 +200,7 @@ class RclGraphWatcher:
     def _enter(
         self, graph: Graph, nodes: list[NodeInfo], endpoints: dict[bytes, EndpointInfo]
     ) -> None:
-        """Enter what has changed since the last round."""
+        """Apply what has changed since the last round."""
         for gid, endpoint in list(self._endpoints.items()):
             if gid not in endpoints:
                 del self._endpoints[gid]
@@ -215,7 +215,7 @@ class RclGraphWatcher:
         self._nodes = dict.fromkeys(nodes)
 
     def _ask_nodes(self, asker: Any) -> list[NodeInfo]:
-        """Return the nodes of others."""
+        """Return the nodes of other contexts."""
         with asker:
             answer = asker.get_node_names_and_namespaces_with_enclaves()
         known = {(node.participant, node.enclave): node for node in self._nodes}
@@ -231,7 +231,7 @@ class RclGraphWatcher:
             seen[full_name] += 1
             if seen[full_name] <= own[full_name]:
                 continue
-            # There is no id: the name makes one, and the number of those of one name.
+            # There is no id: derive one from the name, and the index among nodes with that name.
             label = f"{full_name} {seen[full_name] - own[full_name]}"
             participant = hashlib.blake2b(label.encode(), digest_size=16).hexdigest()
             node = known.get((participant, enclave))
@@ -239,9 +239,9 @@ class RclGraphWatcher:
         return nodes
 
     def _are_possible(self, name: str, types: list[str]) -> bool:
-        """Return whether a topic or service could be one of ROS, and count it if not.
+        """Return whether a topic or service has a valid ROS name, and count it if not.
 
-        Types of DDS programs have names of their own, which tools show.
+        Types of plain DDS programs have names of their own, which tools show.
         """
         if names.is_full_name(name) and names.is_plain(*types):
             return True
@@ -284,7 +284,7 @@ class RclGraphWatcher:
     def _endpoint(
         self, kind: EndpointKind, node: NodeInfo, topic: str, info: dict[str, Any], gid: bytes
     ) -> EndpointInfo | None:
-        """Return an endpoint that was found."""
+        """Return a discovered endpoint."""
         type_hash = info["topic_type_hash"]
         try:
             qos = profile_from(info["qos_profile"])
@@ -311,9 +311,9 @@ class RclGraphWatcher:
         node: NodeInfo,
         endpoints: dict[bytes, EndpointInfo],
     ) -> bool:
-        """Find the servers or clients of a node; return whether it is still there.
+        """Find the servers or clients of a node; return whether it still exists.
 
-        rcl tells no gid, hash or QoS of them: the first is made up, the others are unknown.
+        rcl reports no gid, hash or QoS for them: the gid is made up, the others are unknown.
         """
         ask = (
             rcl.module.rclpy_get_service_names_and_types_by_node

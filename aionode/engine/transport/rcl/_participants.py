@@ -1,8 +1,8 @@
-"""Counts the processes of a domain on this host, whether discovery has found them or not.
+"""Counts the processes of a domain on this host, whether or not they have been discovered.
 
-Fast DDS announces a new participant before it listens. Those that answer at once are not heard,
-and they say no more until their next regular announcement, which they make every 3 s. Nothing in
-the graph tells of them meanwhile, but each has taken a port of the domain.
+Fast DDS announces a new participant before it listens, so immediate answers are lost, and are only
+repeated with the next regular announcement, every 3 s. Until then nothing in the graph reveals
+those processes, but each has taken a port of the domain.
 """
 
 from __future__ import annotations
@@ -20,32 +20,32 @@ if TYPE_CHECKING:
 __all__ = ["count_on_this_host", "lacks_participants"]
 
 UDP_SOCKETS: Final = Path("/proc/net/udp")
-"""The UDP sockets of this host or container: a heading, then one in each line."""
+"""The UDP sockets of this host or container: a heading, then one per line."""
 
 NOT_CONNECTED: Final = "00000000:0000"
-"""The other end of a socket that takes messages from anybody."""
+"""The remote address of a socket that receives messages from anybody."""
 
 FIRST_PORT: Final = 7410
-"""The port for discovery of the first participant of domain 0 (RTPS 2.5, 9.6.2.3)."""
+"""The discovery port of the first participant of domain 0 (RTPS 2.5, 9.6.2.3)."""
 
 DOMAIN_PORTS: Final = 250
-"""Distance between the ports of one domain and those of the next."""
+"""Distance between the ports of consecutive domains."""
 
 PARTICIPANTS: Final = 120
 """Participants with ports in a domain; each has two ports, the first one for discovery."""
 
 DISCOVERY_TOPIC: Final = "ros_discovery_info"
-"""The topic on which each participant of ROS 2 tells of its nodes."""
+"""The topic on which each ROS 2 participant announces its nodes."""
 
 HOST_BYTES: Final = 4
 """Bytes of a gid that identify Fast DDS and the host."""
 
 
 def lacks_participants(state: RclState) -> bool:
-    """Return whether participants run on this host that have not been discovered.
+    """Return whether there are undiscovered participants on this host.
 
-    Other middlewares than Fast DDS, and a context without a publisher or client of its own, which
-    does not know what gids of this host look like, lack none.
+    Returns False with middleware other than Fast DDS, and for a context without a publisher or
+    client, which does not know what gids of this host look like.
     """
     hosts = {prefix[:HOST_BYTES] for prefix in state.own_prefixes}
     if state.rcl is None or not hosts:
@@ -59,12 +59,12 @@ def lacks_participants(state: RclState) -> bool:
 
 
 def announced(module: Any, asker: Any) -> set[bytes]:
-    """Return the participants of ROS 2 that have been discovered."""
+    """Return the ROS 2 participants that have been discovered."""
     return prefixes(module.rclpy_get_publishers_info_by_topic, asker, DISCOVERY_TOPIC)
 
 
 def with_endpoints(module: Any, asker: Any) -> set[bytes]:
-    """Return all participants that have been discovered with an endpoint; dearer to find."""
+    """Return all participants discovered with an endpoint; this query is more expensive."""
     with asker:
         topics = module.rclpy_get_topic_names_and_types(asker, True)
     prefixes_found: set[bytes] = set()
@@ -75,14 +75,14 @@ def with_endpoints(module: Any, asker: Any) -> set[bytes]:
 
 
 def prefixes(ask: Callable[..., Any], asker: Any, topic: str) -> set[bytes]:
-    """Return the participants of the endpoints of a topic, which has the name of DDS."""
+    """Return the participants of a topic's endpoints, given its DDS name."""
     with asker:
         infos = ask(asker, topic, True)
     return {bytes(info["endpoint_gid"][:PREFIX_BYTES]) for info in infos}
 
 
 def count_on_this_host(domain_id: int) -> int:
-    """Return how many participants of a domain have a port for discovery on this host."""
+    """Count the participants of a domain with a discovery port on this host."""
     try:
         lines = UDP_SOCKETS.read_text("ascii").splitlines()[1:]
     except OSError:

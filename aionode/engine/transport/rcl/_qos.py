@@ -1,4 +1,4 @@
-"""QoS profiles of aionode and of rclpy, in both directions."""
+"""Converts QoS profiles between aionode and rclpy."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ __all__ = ["profile_from", "to_rmw"]
 
 
 def to_rmw(qos: QoSProfile, least_depth: int = 0) -> Any:
-    """Return `qos` as the extension module of rclpy takes it.
+    """Return `qos` in the form that rclpy's extension module takes.
 
     Args:
         qos: The profile.
-        least_depth: The depth if it has less.
+        least_depth: Minimum depth.
     """
     from rclpy import qos as rclpy_qos
     from rclpy.duration import Duration as RclpyDuration
@@ -47,9 +47,9 @@ def to_rmw(qos: QoSProfile, least_depth: int = 0) -> Any:
 
 
 def profile_from(values: Mapping[str, Any]) -> QoSProfile:
-    """Return the profile of an endpoint that was discovered.
+    """Return the profile of a discovered endpoint.
 
-    Discovery over DDS does not tell history and depth: they stay unknown.
+    DDS discovery does not transmit history and depth: they stay unknown.
     """
 
     def duration(name: str) -> Duration:

@@ -1,7 +1,7 @@
 """Servers and clients on rcl.
 
-A ROS 2 service carries no error and no end: a server whose handler fails can only be silent, and a
-call whose server is gone is ended here, when the graph says so.
+ROS 2 services cannot transmit errors or their own end: a server whose handler fails can only stay
+silent, and a call whose server is gone is ended here, when the graph shows it.
 """
 
 from __future__ import annotations
@@ -33,17 +33,17 @@ __all__ = ["RclRequester", "RclServer"]
 logger = logging.getLogger("aionode.transport.rcl")
 
 DEPTH: Final = 1000
-"""Depth of own servers and clients at least: with ROS's 10, some of 30 calls at once are lost."""
+"""Minimum depth of our servers and clients: with ROS's 10, some of 30 parallel calls are lost."""
 
 AVAILABLE_S: Final = 0.005
-"""Times that a client asks whether a server that the graph knows can answer already."""
+"""Interval at which a client checks whether a known server can answer yet, in seconds."""
 
 AVAILABLE_NS: Final = 5_000_000_000
-"""After which time a request is sent all the same."""
+"""Time after which a request is sent anyway, in nanoseconds."""
 
 
 class Exchanges:
-    """The two messages of a service in their forms: CDR, and rosidl's C structures.
+    """Converts the two messages of a service between CDR and rosidl's C structures.
 
     Raises:
         TransportError: see `rosidl_class`.
@@ -77,7 +77,7 @@ class Exchanges:
         payload: bytes,
         *others: Any,
     ) -> None:
-        """Send a message; `others` are the further arguments of `send`.
+        """Send a message; `others` are further arguments of `send`.
 
         Raises:
             TransportError: rcl refuses it.
@@ -100,7 +100,7 @@ class Exchanges:
             support.destroy(message)
 
     def close(self) -> None:
-        """Free what it holds."""
+        """Free its resources."""
         self._rcl.free_array(self._array)
 
 
@@ -108,7 +108,7 @@ class Exchanges:
 
 
 class RclServer(RclDeclaration):
-    """A server for the clients of others. Own clients are served by `LocalTransport`."""
+    """A server for clients of other contexts; our own clients are served by `LocalTransport`."""
 
     def __init__(
         self, state: RclState, endpoint: EndpointInfo, srv_type: Any, serve: Serve
@@ -125,7 +125,7 @@ class RclServer(RclDeclaration):
         state.add(self)
 
     def declare(self, rcl: Rcl) -> None:
-        """Make the server."""
+        """Create the server."""
         exchanges = Exchanges(rcl, self.endpoint)
         loop = self.state.loop
         if loop is None:
@@ -135,7 +135,7 @@ class RclServer(RclDeclaration):
         self._wake = Wake(loop, rcl, rcl.set_service_callback, self._handle.pointer, self._take)
 
     def undeclare(self) -> None:
-        """Destroy it; requests that were not answered never will be."""
+        """Destroy it; unanswered requests stay unanswered."""
         wake, self._wake = self._wake, None
         handle, self._handle = self._handle, None
         exchanges, self._exchanges = self._exchanges, None
@@ -189,12 +189,12 @@ class RclServer(RclDeclaration):
             logger.debug("%s: not answered: %s", self.endpoint.name, error)
 
     def note_failed(self) -> None:
-        """Warn once that clients do not learn of a failed request."""
+        """Warn once that clients are not told about failed requests."""
         if not self._warned:
             self._warned = True
             logger.warning(
-                "%s: a request failed, and its client waits for ever: over DDS, services have no "
-                "form for an error. Let the handler answer with a field that says so",
+                "%s: a request failed, and its client waits forever: over DDS, services cannot "
+                "transmit errors. Let the handler report failures in a field of the response",
                 self.endpoint.name,
             )
 
@@ -209,7 +209,7 @@ class RclRequest(Request):
         server.unanswered.add(self)
 
     def _finish(self) -> bool:
-        """Mark the request as answered; return whether this is the first time."""
+        """Mark the request as answered; return whether it was not answered before."""
         if self not in self._server.unanswered:
             return False
         self._server.unanswered.discard(self)
@@ -222,12 +222,12 @@ class RclRequest(Request):
             self._server.respond(self.sample_info, payload)
 
     def fail(self, error_type: str, error_text: str) -> None:  # noqa: ARG002  # cannot be told
-        """Leave the client without an answer: there is no form for an error."""
+        """Leave the client without an answer: errors cannot be transmitted."""
         if self._finish():
             self._server.note_failed()
 
     def drop(self) -> None:
-        """Leave the client without an answer; the graph tells it that the server goes."""
+        """Leave the client without an answer; the graph shows it that the server is going away."""
         self._finish()
 
 
@@ -235,7 +235,7 @@ class RclRequest(Request):
 
 
 class RclRequester(RclDeclaration, Requester):
-    """A client for the servers of others."""
+    """A client for servers of other contexts."""
 
     def __init__(self, state: RclState, endpoint: EndpointInfo, srv_type: Any) -> None:
         super().__init__(state, endpoint)
@@ -251,7 +251,7 @@ class RclRequester(RclDeclaration, Requester):
         state.add(self)
 
     def declare(self, rcl: Rcl) -> None:
-        """Make the client."""
+        """Create the client."""
         exchanges = Exchanges(rcl, self.endpoint)
         loop, graph = self.state.loop, self.state.graph
         if loop is None or graph is None:
@@ -265,7 +265,7 @@ class RclRequester(RclDeclaration, Requester):
         self._wake = Wake(loop, rcl, rcl.set_client_callback, self._handle.pointer, self._take)
 
     def undeclare(self) -> None:
-        """Destroy it, and end the calls under way."""
+        """Destroy it, and end pending calls."""
         wake, self._wake = self._wake, None
         handle, self._handle = self._handle, None
         exchanges, self._exchanges = self._exchanges, None
@@ -283,7 +283,7 @@ class RclRequester(RclDeclaration, Requester):
 
     @property
     def servers(self) -> int:
-        """The number of servers of others that are matched."""
+        """The number of matched servers in other contexts."""
         return len(self._servers)
 
     def _note_server(self, server: EndpointInfo, present: bool) -> None:
@@ -299,7 +299,7 @@ class RclRequester(RclDeclaration, Requester):
             call.end()
 
     def is_available(self) -> bool:
-        """Return whether a server can take a request and answer it."""
+        """Return whether a server can accept a request and answer it."""
         rcl = self.state.rcl
         if rcl is None or self._handle is None:
             return True  # then sending fails
@@ -357,7 +357,7 @@ class RclRequester(RclDeclaration, Requester):
 
 
 class RclCall:
-    """One call under way."""
+    """A pending call."""
 
     def __init__(self, requester: RclRequester, reply_to: ReplyTo, payload: bytes) -> None:
         self._requester = requester
@@ -368,7 +368,7 @@ class RclCall:
         requester.waiting.add(self)
 
     def send_when_available(self) -> None:
-        """Send the request as soon as a server that the graph knows can answer it."""
+        """Send the request as soon as a known server can answer it."""
         if self._reply_to is None:
             return
         requester = self._requester
@@ -385,7 +385,7 @@ class RclCall:
             requester.calls[self._number] = self
 
     def take(self, payload: bytes, info: ServiceInfo) -> None:
-        """Take the response."""
+        """Handle the response."""
         requester, reply_to = self._requester, self._reply_to
         self.cancel()
         if reply_to is None:
@@ -408,7 +408,7 @@ class RclCall:
             reply_to.end()
 
     def cancel(self) -> None:
-        """Forget the call: the server works on, as nothing tells it, and a reply is dropped."""
+        """Forget the call: the server is not told and continues, and its reply is dropped."""
         self._reply_to = None
         self._requester.waiting.discard(self)
         if self._number is not None:

@@ -1,4 +1,4 @@
-"""The state that all entities of one context share: rclpy's context, its nodes, the event loop."""
+"""The state shared by all entities of a context: rclpy's context, its nodes, the event loop."""
 
 from __future__ import annotations
 
@@ -42,11 +42,11 @@ class RclState:
         graph: The graph while it is open, else None.
         waker: Wakes the loop from the threads that send.
         bulk: The thread that sends large messages.
-        watcher: The node that asks for the graph while it is open; hidden from it.
+        watcher: The node that queries the graph while it is open; hidden from it.
         own_gids: Gids of this context's publishers and clients.
-        own_prefixes: How those begin over Fast DDS: each participant has one.
-        malformed: How many malformed messages came on each topic or service.
-        refused: How many messages rcl did not send, on each topic.
+        own_prefixes: Their prefixes over Fast DDS: each participant has one.
+        malformed: Number of malformed messages by topic or service.
+        refused: Number of messages that rcl did not send, by topic.
     """
 
     def __init__(self, participant: str, domain_id: int) -> None:
@@ -62,7 +62,7 @@ class RclState:
         self.own_prefixes: set[bytes] = set()
         self.drops = Drops(logger)
         self._context: Any = None
-        self._nodes: dict[NodeInfo, Any] = {}  # with their handles, None while it is closed
+        self._nodes: dict[NodeInfo, Any] = {}  # with their handles, or None while closed
         self._declarations: dict[RclDeclaration, None] = {}
 
     @property
@@ -72,14 +72,14 @@ class RclState:
 
     @property
     def watcher_name(self) -> str:
-        """The name of the node that asks for the graph."""
+        """The name of the node that queries the graph."""
         return f"_aionode_graph_{self.participant[:16]}"
 
     def open(self, loop: asyncio.AbstractEventLoop, graph: Graph) -> None:
         """Join the domain, and declare everything.
 
         Raises:
-            TransportError: rclpy is not installed, too old, or cannot join.
+            TransportError: rclpy is not installed, is too old, or cannot join.
         """
         rcl = self.rcl = load()
         from rclpy.context import Context
@@ -88,7 +88,7 @@ class RclState:
         try:
             # No signal handlers, and no log file in the user's home.
             context.init(args=[], initialize_logging=False, domain_id=self.domain_id)
-        except Exception as error:  # rclpy's own kinds, of which none is public
+        except Exception as error:  # rclpy's own exceptions, none of which is public
             raise TransportError(middleware_problem(error)) from error
         self._context, self.loop, self.graph = context, loop, graph
         self.waker.open(loop)
@@ -99,12 +99,12 @@ class RclState:
             declaration.declare(rcl)
 
     async def flush(self) -> None:
-        """Wait until the threads have sent what waits for them."""
+        """Wait until the threads have sent what is pending."""
         for declaration in list(self._declarations):
             await declaration.flush()
 
     def close(self) -> None:
-        """Undeclare everything, the newest first, and leave the domain."""
+        """Undeclare everything, newest first, and leave the domain."""
         if self._context is None:
             return
         for declaration in reversed(self._declarations):
@@ -138,13 +138,13 @@ class RclState:
         self._declarations.pop(declaration, None)
 
     def add_node(self, info: NodeInfo) -> None:
-        """Make a node now, or as soon as it is open."""
+        """Create a node now, or as soon as it is open."""
         self._nodes[info] = None
         if self._context is not None:
             self.node(info)
 
     def node(self, info: NodeInfo) -> Any:
-        """Return the handle of a node of this context, which is made at first use."""
+        """Return the handle of a node of this context, creating it on first use."""
         handle = self._nodes.get(info)
         if handle is None and self.rcl is not None:
             handle = self._nodes[info] = self._make_node(self.rcl, info.name, info.namespace)
@@ -157,7 +157,7 @@ class RclState:
             handle.destroy_when_not_in_use()
 
     def own_node_names(self) -> Counter[str]:
-        """Return how many nodes of this context have each full name."""
+        """Count the nodes of this context by full name."""
         return Counter(info.fully_qualified_name for info in self._nodes)
 
     def _make_node(self, rcl: Rcl, name: str, namespace: str) -> Any:
@@ -169,7 +169,7 @@ class RclState:
                 return rcl.module.Node(*arguments)
 
     def count_own_readers(self, writer: EndpointInfo) -> int:
-        """Return how many subscriptions of this context match a publisher of it."""
+        """Count the subscriptions of this context that match one of its publishers."""
         return sum(
             declaration.endpoint.kind is EndpointKind.SUBSCRIPTION
             and declaration.endpoint.name == writer.name
@@ -184,11 +184,11 @@ class RclState:
             self.own_prefixes.add(gid[:PREFIX_BYTES])
 
     def is_own(self, gid: bytes) -> bool:
-        """Return whether a message or request is of this context: `LocalTransport` has taken it."""
+        """Return whether a message is this context's own, which `LocalTransport` has delivered."""
         return gid in self.own_gids or gid[:PREFIX_BYTES] in self.own_prefixes
 
     def note_refused(self, topic: str) -> None:
-        """Count a message that the middleware has not taken, and log its reason."""
+        """Count a message that the middleware rejected, and log the reason."""
         reason = "" if self.rcl is None else self.rcl.error()
         self.drops.note(Drop.NOT_SENT, topic, reason)
 
@@ -214,7 +214,7 @@ class RclDeclaration(Registration):
 
     @abstractmethod
     def declare(self, rcl: Rcl) -> None:
-        """Make its entity.
+        """Create its entity.
 
         Raises:
             TransportError: its type is not installed, or rcl refuses it.
@@ -225,15 +225,15 @@ class RclDeclaration(Registration):
         """Destroy its entity, if there is one."""
 
     async def flush(self) -> None:
-        """Wait until what waits for a thread was sent."""
+        """Wait until what is pending in a thread was sent."""
 
     def close(self) -> None:
-        """Destroy it for good. Closing it again has no effect."""
+        """Destroy it for good. Repeating it has no effect."""
         self.state.remove(self)
         self.undeclare()
 
     def make(self, factory: Any, ros_class: Any, least_depth: int = 0) -> Any:
-        """Return a new entity of the endpoint's node.
+        """Create an entity on the endpoint's node.
 
         Raises:
             TransportError: rcl refuses it.
@@ -244,7 +244,7 @@ class RclDeclaration(Registration):
                 return factory(
                     node, ros_class, self.endpoint.name, to_rmw(self.endpoint.qos, least_depth)
                 )
-        except Exception as error:  # rclpy's own kinds, of which none is public
+        except Exception as error:  # rclpy's own exceptions, none of which is public
             raise TransportError(
                 f"{self.endpoint.kind.value} of {self.endpoint.name}: rcl refuses it: {error}"
             ) from error

@@ -31,20 +31,20 @@ if TYPE_CHECKING:
 __all__ = ["RclReader", "RclWriter"]
 
 BULK_BYTES: Final = 60_000
-"""From this size on a message is sent by a thread; after the first one, a subscription takes all of
-its messages without the GIL.
+"""Size from which a thread sends messages; after the first such message, a subscription takes all
+of its messages without holding the GIL.
 """
 
 GIVE_UP_TRIES: Final = 20
-"""Tries of a publisher that is being destroyed to send one more message (0.1 s each)."""
+"""Attempts of a publisher being destroyed to send one more message (0.1 s each)."""
 
 
 class RclWriter(RclDeclaration, Writer):
-    """A publisher for the subscriptions of others.
+    """A publisher for subscriptions of other contexts.
 
-    The loop sends small messages itself, which never waits with KEEP_LAST. Large ones are sent by
-    the context's thread; with KEEP_ALL, where DDS waits 0.1 s for readers and then refuses, all are
-    sent by a thread of this publisher, which tries again.
+    The loop itself sends small messages, which never blocks with KEEP_LAST. Large ones are sent by
+    the context's thread; with KEEP_ALL, where DDS waits 0.1 s for readers and then gives up, all
+    are sent by a thread of this publisher, which retries.
     """
 
     def __init__(self, state: RclState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
@@ -55,7 +55,7 @@ class RclWriter(RclDeclaration, Writer):
         self._handle: Any = None
         self._pointer = 0
         self._publish: Callable[..., int] | None = None
-        # Published before the context was open, for late readers.
+        # Messages published before the context was open, for late readers.
         self._early: deque[bytes] = deque(maxlen=depth_of(endpoint.qos))
         self._blocking = SendThread("aionode-rcl-blocking", state.waker) if self.bounded else None
         self._queue: SendQueue = (self._blocking or state.bulk).send_queue(
@@ -70,7 +70,7 @@ class RclWriter(RclDeclaration, Writer):
         state.add(self)
 
     def declare(self, rcl: Rcl) -> None:
-        """Make the publisher, and send what was published before."""
+        """Create the publisher, and send what was published before."""
         ros_class = rosidl_class(self.endpoint.type_name, self.endpoint.type_hash)
         self._closing = False
         self._handle = self.make(rcl.module.Publisher, ros_class)
@@ -94,11 +94,11 @@ class RclWriter(RclDeclaration, Writer):
 
     @property
     def active(self) -> bool:  # type: ignore[override]  # it is asked for
-        """Whether a reader is known: to the graph, or, which may be earlier, to the middleware."""
+        """Whether a reader is known to the graph or, possibly earlier, to the middleware."""
         return self._transient or bool(self._readers) or self._is_matched()
 
     def _is_matched(self) -> bool:
-        """Return whether the middleware knows of more readers than those of this context."""
+        """Return whether the middleware knows more readers than those of this context."""
         rcl, matched = self.state.rcl, self._matched
         if rcl is None or self._handle is None:
             return False
@@ -108,7 +108,7 @@ class RclWriter(RclDeclaration, Writer):
         return matched.value > 0 and matched.value > self.state.count_own_readers(self.endpoint)
 
     def undeclare(self) -> None:
-        """Destroy the publisher, after the messages that wait for a thread."""
+        """Destroy the publisher, after the messages pending in a thread."""
         handle, self._handle = self._handle, None
         self._publish = None
         self._closing = True
@@ -140,13 +140,13 @@ class RclWriter(RclDeclaration, Writer):
             self._note_refused()
 
     def _put(self, payload: bytes) -> None:
-        """Send a message by a thread: it may take long, or follows one that may."""
+        """Send a message from a thread: it may take long, or follows one that may."""
         send = partial(self._send_without_gil, self._handle, self._pointer, payload)
         self._queue.put(send, len(payload))
         self._queued = True
 
     def _is_queueing(self) -> bool:
-        """Return whether the next message has to wait for those before it."""
+        """Return whether the next message has to wait for earlier ones."""
         self._queued = self.bounded or len(self._queue) > 0
         return self._queued
 
@@ -162,11 +162,11 @@ class RclWriter(RclDeclaration, Writer):
             tries += self._closing
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:  # noqa: ARG002  # DDS sends lost ones again
-        """Return what sends the stop of a lease."""
+        """Return an object that sends the stop of a lease."""
         return RclStop(self, self._encode(stop))
 
     def write_stop(self, payload: bytes) -> None:
-        """Send the stop of a lease, behind a large message that a thread sends just now."""
+        """Send the stop of a lease, after a large message that a thread is currently sending."""
         self._queue.abandon()
         if self._publish is None:
             if self._transient:
@@ -177,7 +177,7 @@ class RclWriter(RclDeclaration, Writer):
             self.put_stop(payload)
 
     def put_stop(self, payload: bytes) -> None:
-        """Send the stop of a lease now, from any thread."""
+        """Send the stop of a lease immediately, from any thread."""
         rcl, pointer = self.state.rcl, self._pointer
         if rcl is None or self._handle is None:
             return
@@ -189,19 +189,19 @@ class RclWriter(RclDeclaration, Writer):
         self.state.note_refused(self.endpoint.name)
 
     def has_room(self) -> bool:
-        """Whether one more message can wait for its turn."""
+        """Whether another message can wait for its turn."""
         return not self.bounded or self._queue.has_room()
 
     async def flush(self) -> None:
-        """Wait until everything was handed to the middleware."""
+        """Wait until everything was passed to the middleware."""
         await self._queue.drain()
 
     async def drain(self) -> None:
-        """Wait until everything was handed to the middleware."""
+        """Wait until everything was passed to the middleware."""
         await self._queue.drain()
 
     def assert_liveliness(self) -> None:
-        """Tell the readers, as DDS does it."""
+        """Tell the readers, the DDS way."""
         if self._handle is not None and self.state.rcl is not None:
             self.state.rcl.assert_liveliness(self._pointer)
 
@@ -211,7 +211,7 @@ class RclWriter(RclDeclaration, Writer):
         return self._queue.dropped + self._refused
 
     def route_of(self, reader: EndpointInfo) -> str | None:
-        """Return ``rcl`` for the subscriptions of others."""
+        """Return ``rcl`` for subscriptions of other contexts."""
         return "rcl" if reader in self._readers else None
 
 
@@ -221,10 +221,10 @@ class RclStop(StopSender):
     def __init__(self, writer: RclWriter, payload: bytes) -> None:
         self._writer = writer
         self._payload = payload
-        self._past = 0  # its number, once it was sent past the loop
+        self._past = 0  # its number, once it was sent while the loop was blocked
 
     def send(self, sequence: int, source_ns: int) -> None:  # noqa: ARG002  # DDS has its own
-        """Send it, unless that was done past the loop."""
+        """Send it, unless that was done while the loop was blocked."""
         if sequence != self._past and self._writer.active:
             self._writer.write_stop(self._payload)
 
@@ -235,9 +235,9 @@ class RclStop(StopSender):
 
 
 class RclReader(RclDeclaration):
-    """A subscription for the publishers of others.
+    """A subscription for publishers of other contexts.
 
-    It cannot leave out this context's own publishers, whom `LocalTransport` serves, so it drops
+    It cannot exclude this context's own publishers, which `LocalTransport` serves, so it drops
     their messages.
     """
 
@@ -256,9 +256,9 @@ class RclReader(RclDeclaration):
         self._info = MessageInfo()
         self._to_info = byref(self._info)
         self._take_it: Callable[..., int] | None = None
-        self._other = b""  # gid of the publisher of the last message, which is no own one
+        self._other = b""  # gid of the last message's publisher, if not our own
         self._waits_for_room = False
-        # Where the middleware does not number messages.
+        # For middleware that does not number messages.
         self._counts: Recent[bytes, int] = Recent(REMEMBERED_PUBLISHERS)
         state.add(self)
 
@@ -279,7 +279,7 @@ class RclReader(RclDeclaration):
         self._wake = Wake(loop, rcl, rcl.set_subscription_callback, self._pointer, self._take)
 
     def _find_gid(self, rcl: Rcl) -> bytes | None:
-        """Return the gid of this subscription: the one of its node that is not known yet."""
+        """Return the gid of this subscription: the one on its node that is not known yet."""
         node, graph = self.state.node(self.endpoint.node), self.state.graph
         if graph is None:
             return None
@@ -330,7 +330,7 @@ class RclReader(RclDeclaration):
         return True
 
     def _deliver(self, rcl: Rcl, gid: bytes, inline_deadline_ns: int) -> None:
-        """Hand on the message that was taken."""
+        """Pass on the message that was taken."""
         info, array = self._info, self._array
         size = array.length
         if size >= BULK_BYTES:
@@ -349,7 +349,7 @@ class RclReader(RclDeclaration):
             self._reader.deliver(msg, gid, sequence, info.source_ns, inline_deadline_ns)
 
     def _wait_for_room(self) -> None:
-        """Leave messages in the middleware, which holds their publishers back."""
+        """Leave messages in the middleware, which slows their publishers down."""
         if not self._waits_for_room:
             self._waits_for_room = True
             self._reader.when_room(self._go_on)

@@ -1,4 +1,4 @@
-"""The contract of transports, on rcl."""
+"""Implements the transport contract on rcl."""
 
 from __future__ import annotations
 
@@ -25,38 +25,38 @@ if TYPE_CHECKING:
 __all__ = ["RclTransport"]
 
 KNOWN_S: Final = 0.25
-"""Time for which `open` waits for the graph: nothing tells that discovery is complete."""
+"""How long `open` waits for the graph, in seconds: nothing signals that discovery is complete."""
 
 QUIET_S: Final = 0.06
-"""After how much quiet `open` goes on early, if another node was found."""
+"""Quiet time after which `open` returns early, if another node was found, in seconds."""
 
 ALONE_QUIETS: Final = 1.6
-"""For how many of its times of quiet `all_known` waits for a first node.
+"""How long `all_known` waits for a first node, as a multiple of its quiet time.
 
-With the 2 s of tools that is more than the 3 s after which Fast DDS announces a process again, if
-its first announcements were lost on a busy machine.
+With the 2 s of tools, that exceeds the 3 s after which Fast DDS announces a process again if its
+first announcements were lost on a busy machine.
 """
 
 LACKING_QUIETS: Final = 3.5
-"""For how many of its times of quiet `all_known` waits for other processes of this host.
+"""How long `all_known` waits for other processes on this host, as a multiple of its quiet time.
 
-With the 2 s of tools that is more than twice the 3 s after which Fast DDS announces them again.
+With the 2 s of tools, that is more than twice the 3 s after which Fast DDS announces them again.
 """
 
 MAX_QUIETS: Final = 5
-"""For how many of its times of quiet `all_known` waits at most."""
+"""Maximum time that `all_known` waits, as a multiple of its quiet time."""
 
 CLOSE_S: Final = 0.8
-"""Time for which `close` waits for messages that a thread is sending."""
+"""How long `close` waits for messages that a thread is sending, in seconds."""
 
 
 class RclTransport(Transport):
-    """Reaches the nodes of the ROS 2 that is installed here, over the middleware that it runs.
+    """Reaches the nodes of the installed ROS 2, over its middleware.
 
     Args:
         participant: Id of the context, in hexadecimal.
-        network: The domain. Discovery range and peers are the middleware's business, which reads
-            the same environment variables.
+        network: The domain. Discovery range and peers are up to the middleware, which reads the
+            same environment variables.
     """
 
     def __init__(self, participant: str, network: Network) -> None:
@@ -72,12 +72,12 @@ class RclTransport(Transport):
 
     @property
     def malformed(self) -> Counter[str]:
-        """The number of messages in no known form, for each topic and service."""
+        """The number of malformed messages, by topic and service."""
         return self.drops.of(Drop.MALFORMED)
 
     @property
     def drops(self) -> Drops:
-        """What is dropped of what others send."""
+        """Counts what is dropped of what others send."""
         return self._state.drops
 
     @property
@@ -86,7 +86,7 @@ class RclTransport(Transport):
         return "" if self._state.rcl is None else self._state.rcl.middleware
 
     async def open(self, graph: Graph) -> None:
-        """Join the domain; return when the running nodes are known, as far as that can be told."""
+        """Join the domain; return when the running nodes are known, as far as can be determined."""
         self._state.open(asyncio.get_running_loop(), graph)
         if self._state.rcl is not None:
             self._watcher.start(self._state.rcl)
@@ -95,9 +95,9 @@ class RclTransport(Transport):
     async def all_known(self, quiet_s: float) -> bool:
         """Wait until the graph has not changed for half of `quiet_s`, and no part is missing.
 
-        Without another node it waits longer than `quiet_s`. For processes of this host that are
-        not known it waits `LACKING_QUIETS` times as long after `open`, and with changes that do
-        not end `MAX_QUIETS` times as long.
+        Without another node, it waits longer than `quiet_s`. For undiscovered processes on this
+        host, it waits `LACKING_QUIETS` times as long after `open`, and while changes continue, up
+        to `MAX_QUIETS` times as long.
         """
         await self._until_quiet(
             quiet_s / 2, quiet_s * ALONE_QUIETS, quiet_s * LACKING_QUIETS, quiet_s * MAX_QUIETS
@@ -107,7 +107,7 @@ class RclTransport(Transport):
     async def _until_quiet(
         self, quiet_s: float, alone_s: float, lacking_s: float, limit_s: float
     ) -> None:
-        """Wait until nothing has changed for a while, a longer one if something is missing."""
+        """Wait until nothing has changed for a while; for longer if something is missing."""
         ended = asyncio.get_running_loop().create_future()
         with suppress(TimeoutError):
             async with asyncio.timeout(limit_s):
@@ -124,7 +124,7 @@ class RclTransport(Transport):
         return now_ns - watcher.started_ns >= lacking_s * 1e9 or not lacks_participants(self._state)
 
     async def close(self) -> None:
-        """Withdraw everything and leave the domain; what a thread is sending has 0.8 s."""
+        """Withdraw everything and leave the domain; threads get 0.8 s to finish sending."""
         self._watcher.stop()
         with suppress(TimeoutError):
             async with asyncio.timeout(CLOSE_S):
@@ -155,7 +155,7 @@ class RclTransport(Transport):
 
 
 class RclNode(Registration):
-    """One node, which is made when the context is open."""
+    """A node, which is created once the context is open."""
 
     def __init__(self, state: RclState, info: NodeInfo) -> None:
         self._state = state

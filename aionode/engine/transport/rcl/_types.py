@@ -1,4 +1,4 @@
-"""From a class of aionode to the same type in the ROS that is installed."""
+"""Maps aionode's classes to the same types in the installed ROS."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ IMPLEMENTED: Final = {
     "_GetResult": "GetResultService",
     "_FeedbackMessage": "FeedbackMessage",
 }
-"""The parts of an action, by the end of their names."""
+"""The parts of an action, by the suffix of their names."""
 
 
 class TypeHash(ctypes.Structure):
@@ -38,22 +38,22 @@ class TypeHash(ctypes.Structure):
 
 
 def rosidl_class(type_name: str, type_hash: str) -> Any:
-    """Return the class of the installed ROS for a message or service type.
+    """Return the installed ROS's class for a message or service type.
 
     Args:
         type_name: Its ROS name, such as ``std_msgs/msg/String``.
-        type_hash: Its RIHS01 hash: the installed definition must be the same one.
+        type_hash: Its RIHS01 hash, which the installed definition must match.
 
     Raises:
-        TransportError: it is not installed, has no type support, or is defined otherwise.
+        TransportError: it is not installed, has no type support, or is defined differently.
     """
     cls = find(type_name)
-    # As rclpy.type_support.check_for_type_support, whose error tells less.
+    # Like rclpy.type_support.check_for_type_support, whose error says less.
     meta = type(cls)
     try:
         if meta._TYPE_SUPPORT is None:
             meta.__import_type_support__()
-    except Exception as error:  # of the generated module: whatever its import raises
+    except Exception as error:  # whatever the import of the generated module raises
         raise TransportError(f"{type_name}: its type support cannot be loaded ({error})") from error
     if meta._TYPE_SUPPORT is None:
         raise TransportError(
@@ -64,14 +64,14 @@ def rosidl_class(type_name: str, type_hash: str) -> Any:
     if installed and type_hash.startswith("RIHS") and installed != type_hash:
         raise TransportError(
             f"{type_name}: the installed ROS has another definition ({installed}, here "
-            f"{type_hash}); they would not understand each other: use the same version of the "
+            f"{type_hash}); they are incompatible: use the same version of the "
             "interface package on both sides"
         )
     return cls
 
 
 def find(type_name: str) -> Any:
-    """Return the class of the installed ROS for a type.
+    """Return the installed ROS's class for a type.
 
     Raises:
         TransportError: there is none.
@@ -122,7 +122,7 @@ def hash_text(version: int, value: bytes) -> str:
 
 
 class MessageSupport:
-    """Converts the messages of one type between CDR and rosidl's C structures, without Python's.
+    """Converts messages of one type between CDR and rosidl's C structures, bypassing Python's.
 
     Raises:
         TransportError: see `rosidl_class`.
@@ -138,7 +138,7 @@ class MessageSupport:
         self.destroy = CFUNCTYPE(None, c_void_p)(pointer(meta._DESTROY_ROS_MESSAGE))
 
     def to_cdr(self, message: int, array: ByteArray) -> bytes:
-        """Return a C structure as CDR; `array` holds it meanwhile.
+        """Serialize a C structure to CDR, using `array` as a buffer.
 
         Raises:
             TransportError: it cannot be serialized.

@@ -1,7 +1,7 @@
-"""From the middleware's threads to the event loop: its callback is libc's ``eventfd_write``.
+"""Signals the event loop from the middleware's threads: the callback is libc's ``eventfd_write``.
 
-A Python function in its place deadlocks: it wants the GIL while the middleware holds a lock that a
-publisher, which holds the GIL, waits for.
+A Python function instead would deadlock: it needs the GIL while the middleware holds a lock for
+which a publisher, which holds the GIL, is waiting.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
 __all__ = ["Wake"]
 
 UNCOUNTED: Final = 2**32
-"""More than there ever are: then it is taken until there is nothing."""
+"""More items than there ever are: take them until there are none."""
 
 
 class Wake:
     """Calls `take` on the loop as many times as an entity has items.
 
-    The middleware adds the number of new ones to the eventfd. So none is asked for in vain, which
-    costs as much as taking one, and waits for the middleware's lock.
+    The middleware adds the number of new items to the eventfd. So there is no unnecessary call,
+    which would cost as much as taking an item, and wait for the middleware's lock.
 
     Args:
         loop: The event loop.
         rcl: The functions of rcl.
-        set_callback: Sets the callback of the entity: a function of rcl.
+        set_callback: Sets the callback of the entity; a function of rcl.
         pointer: The entity.
-        take: Takes one item, given until which `perf_ns` a callback may run at once; returns
+        take: Takes one item, given the `perf_ns` deadline for running callbacks inline; returns
             whether there was one that could be taken. Must not raise.
     """
 
@@ -52,20 +52,20 @@ class Wake:
         self._set_callback = set_callback
         self._pointer = pointer
         self._take = take
-        self._left = 0  # how many there may be
+        self._left = 0  # how many items there may be
         self._fd = os.eventfd(0, os.EFD_NONBLOCK | os.EFD_CLOEXEC)
         loop.add_reader(self._fd, self._on_event)
         set_callback(pointer, rcl.notify, self._fd)
-        self.again()  # what came before the callback was set
+        self.again()  # for what arrived before the callback was set
 
     def again(self) -> None:
-        """Take everything there is from the next turn of the loop on."""
+        """Take everything there is, from the next loop iteration on."""
         self._go_on(UNCOUNTED)
 
     def _on_event(self) -> None:
         try:
             left = self._left + os.eventfd_read(self._fd)
-        except BlockingIOError:  # the event was taken by an earlier turn
+        except BlockingIOError:  # an earlier iteration consumed the event
             return
         self._left = 0
         if not self._rcl.is_fast_dds:
@@ -81,17 +81,19 @@ class Wake:
                 return
 
     def _go_on(self, left: int) -> None:
-        """Take so many more from the next turn of the loop on."""
+        """Take this many more, from the next loop iteration on."""
         if self._fd >= 0:
             self._left += left - 1
             os.eventfd_write(self._fd, 1)  # counts as one
 
     def close(self) -> None:
-        """Call `take` never again. To be called before the entity is destroyed."""
+        """Stop calling `take`. Must be called before the entity is destroyed."""
         fd, self._fd = self._fd, -1
         if fd < 0:
             return
-        self._set_callback(self._pointer, None, None)  # first: nothing may write to a reused fd
+        self._set_callback(
+            self._pointer, None, None
+        )  # first, so that nothing writes to a reused descriptor
         if not self._loop.is_closed():
             self._loop.remove_reader(fd)
         os.close(fd)

@@ -1,4 +1,4 @@
-"""One reader, as its writer sees it; the word is that of RTPS."""
+"""A writer's view of one reader; the term is RTPS's."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ __all__ = ["ReaderProxy"]
 
 
 class ReaderProxy:
-    """A reader, as its writer sees it.
+    """A writer's view of one reader.
 
     Attributes:
         gid: Its id.
         participant: Its context.
-        acked: It has acknowledged everything up to this sequence number.
+        acked: The sequence number up to which it has acknowledged everything.
         end: The `Entry.end` of the last acknowledged message.
         answered: Whether it has ever sent an ACKNACK.
         heard_ns: When it last sent an ACKNACK.
-        asked_ticks: At how many ticks it lacked messages before it sent its first ACKNACK.
+        asked_ticks: Number of ticks at which it lacked messages before its first ACKNACK.
         heartbeat_ns: When the last heartbeat was sent to it.
-        interval_ns: The time from one heartbeat to the next while it does not answer.
-        away_until_ns: Until when its return is waited for; 0 while it is present.
-        returned_ns: When it came back after it had vanished; 0 if it never vanished.
-        is_cut_off: Whether it vanished while it answered: either its connection was lost, and it
-            is expected to return at once, or it has ended. `StatefulWriter.tick` tells them apart.
-        resent: When each missing message was sent again.
+        interval_ns: The interval between heartbeats while it does not answer.
+        away_until_ns: Until when to wait for its return; 0 while it is present.
+        returned_ns: When it came back after vanishing; 0 if it never vanished.
+        is_cut_off: Whether it vanished while it was answering: either its connection was lost, and
+            it should return immediately, or it has ended. `StatefulWriter.tick` distinguishes them.
+        resent: When each missing message was resent.
     """
 
     __slots__ = (

@@ -1,7 +1,7 @@
-"""The reader's end of reliable delivery over a lossy transport. A state machine without I/O.
+"""The reader's end of reliable delivery over a lossy transport; a state machine without I/O.
 
-A reader has a `WriterProxy` for each writer that has sent it a HEARTBEAT: before that, a message is
-delivered as it comes. `stateful_writer` describes the protocol; the terms are those of RTPS.
+A reader has a `WriterProxy` for each writer that has sent it a HEARTBEAT; before that, messages are
+delivered as they arrive. `stateful_writer` describes the protocol; the terms are RTPS's.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ REMEMBERED_WRITERS: Final = 1_024
 """Number of writers whose state a reader remembers."""
 
 GONE_TICKS: Final = 300
-"""After so many ticks, 15 s, the messages of a writer that is not announced will not come.
+"""After this many ticks (15 s), messages of an unannounced writer are no longer expected.
 
-Ticks, and no time: while this process is frozen or stalled, nothing that others announce is seen.
+Ticks, not time: while this process is frozen or stalled, it sees no announcements.
 """
 
 
 class ReaderOutput(ProxyOutput, Protocol):
-    """The output of a `StatefulReader`, and its view of what else arrives."""
+    """The output of a `StatefulReader`, and its view of other arrivals."""
 
     def item_of(self, submessage: Submessage) -> Any:
-        """Return the message of a DATA submessage as `accept` gets it."""
+        """Return the message of a DATA submessage, in the form that `accept` gets."""
 
     def participant_of(self, writer: bytes) -> str:
         """Return the context that announces a writer; empty if none does."""
@@ -46,20 +46,20 @@ class ReaderOutput(ProxyOutput, Protocol):
         """Deliver them to the reader."""
 
     def malformed(self) -> None:
-        """Take note of a submessage without a valid sender."""
+        """Report a submessage without a valid sender."""
 
 
 class StatefulReader:
-    """The writers of one reader; the word is that of RTPS.
+    """A reader's view of all its writers; the term is RTPS's.
 
     Args:
         gid: The id of the reader.
-        output: What sends, and takes messages.
-        now_ns: A monotonic clock with an arbitrary zero.
-        span: How many messages later ones wait for at most; more are skipped, as a KEEP_LAST reader
-            would drop them anyway.
-        has_history: Whether the reader gets messages from before its time in another way, as a
-            transient local one does.
+        output: Sends submessages and accepts messages.
+        now_ns: A monotonic clock with an arbitrary epoch.
+        span: Maximum number of messages that later ones wait for; more are skipped, as a KEEP_LAST
+            reader would drop them anyway.
+        has_history: Whether the reader gets earlier messages in another way, as a transient local
+            one does.
 
     Attributes:
         proxies: The writers that have sent a HEARTBEAT, by gid.
@@ -77,7 +77,7 @@ class StatefulReader:
         has_history: bool = False,
     ) -> None:
         self.proxies: dict[bytes, WriterProxy] = {}
-        # The last sequence number of each writer without a proxy: no writer is in both.
+        # The last sequence number of each writer without a proxy; no writer is in both.
         self._last: Recent[bytes, int] = Recent(REMEMBERED_WRITERS)
         self._gid = gid
         self._output = output
@@ -86,13 +86,13 @@ class StatefulReader:
         self._has_history = has_history
 
     def clear(self) -> None:
-        """Forget the proxies: nothing comes any more."""
+        """Forget the proxies: nothing arrives any more."""
         self.proxies.clear()
 
     def receive_early(self, writer: bytes, sequence: int) -> bool:
-        """Record a message of a writer without a proxy; return whether it is to be delivered.
+        """Record a message of a writer without a proxy; return whether to deliver it.
 
-        The history of a transient local writer may contain it once more.
+        The history of a transient local writer may contain it again.
         """
         if self._has_history and 0 < sequence <= self._last.get(writer, 0):
             return False
@@ -114,7 +114,7 @@ class StatefulReader:
     def _receive_heartbeat(
         self, proxy: WriterProxy | None, heartbeat: Submessage
     ) -> WriterProxy | None:
-        """Return the proxy of its sender, if that has one now."""
+        """Return the proxy of its sender, if there is one now."""
         if proxy is not None and self._is_left_to_history(proxy, heartbeat):
             del self.proxies[proxy.gid]
             self._last.put(proxy.gid, proxy.delivered)
@@ -125,9 +125,11 @@ class StatefulReader:
                 return None
         elif proxy.participant.encode() != heartbeat.rest:
             proxy.participant = self._participant_of(heartbeat) or proxy.participant
-        if heartbeat.first > proxy.next:  # older messages may be here, and not received yet
+        if (
+            heartbeat.first > proxy.next
+        ):  # older messages may have arrived, but not been received yet
             self._output.receive_arrivals()
-        # While messages wait to be received, it cannot be told which ones are missing.
+        # While messages wait to be received, missing ones cannot be determined.
         ask = not self._output.has_arrivals()
         proxy.heartbeat(heartbeat.first, heartbeat.last, ask=ask)
         return proxy
@@ -135,7 +137,7 @@ class StatefulReader:
     def _is_left_to_history(self, proxy: WriterProxy, heartbeat: Submessage) -> bool:
         """Return whether the writer has forgotten this reader.
 
-        Then messages that were published meanwhile come as they do to a late reader.
+        Messages published in the meantime are then sent as to a late reader.
         """
         return self._has_history and proxy.next < heartbeat.first and not proxy.lacks
 
@@ -164,9 +166,9 @@ class StatefulReader:
         return proxy
 
     def _participant_of(self, heartbeat: Submessage) -> str:
-        """Return the context of the sender of a HEARTBEAT; empty if that is malformed.
+        """Return the context of a HEARTBEAT's sender; empty if malformed.
 
-        The announced one is preferred: else a lie would keep a writer waiting for acknowledgements.
+        The announced one takes precedence: a lie could keep a writer waiting for acknowledgements.
         """
         participant = self._output.participant_of(heartbeat.writer)
         if participant:

@@ -1,19 +1,19 @@
-"""The writer's end of reliable delivery over a lossy transport. A state machine without I/O.
+"""The writer's end of reliable delivery over a lossy transport; a state machine without I/O.
 
 A writer keeps what its readers have not acknowledged, and sends at most one window ahead of them,
 so that no queue on the way to them fills up. A KEEP_ALL writer waits for its slowest reader; a
 KEEP_LAST writer waits only while all of them lag, keeps its last messages, and counts what it
 drops. The reader's end is `stateful_reader`.
 
-The loss of the last message of a burst is detected by heartbeats: a writer that has been idle for a
+The loss of a burst's last message is detected by heartbeats: a writer that has been idle for a
 moment announces its last sequence number, and repeats this at growing intervals until it is
-acknowledged. The terms are those of RTPS.
+acknowledged. The terms are RTPS's.
 
-A reader that vanishes without having answered for a while was frozen, and is waited for. One that
-vanishes while it answers was cut off, or has ended: messages are kept for it as long as that holds
-nothing up, and only for a moment if its connection turns out to be alive. A reader that was asked
-for long and has never answered is none: any program may announce it.
-A reader that has everything is not asked by heartbeats, so a KEEP_ALL writer probes it.
+A reader that vanishes after not answering for a while was frozen, and is waited for. One that
+vanishes while answering was cut off, or has ended: messages are kept for it while that holds
+nothing up, but only briefly if its connection turns out to be alive. A reader that was asked for a
+long time and has never answered does not count: any program may announce one. A reader that has
+everything gets no heartbeats, so a KEEP_ALL writer probes it.
 """
 
 from __future__ import annotations
@@ -41,49 +41,49 @@ if TYPE_CHECKING:
 __all__ = ["MUTE_TICKS", "StatefulWriter", "WriterOutput"]
 
 RESEND_BYTES: Final = 128 * 1024
-"""Bytes that are sent again for one acknowledgement."""
+"""Maximum number of bytes to resend for one acknowledgement."""
 
 RESEND_NS: Final = 50_000_000
-"""A message is not sent again more often than this, as the last copy may still be on its way."""
+"""Minimum interval between copies of a message, as the last one may still be on its way."""
 
 HEARTBEAT_NS: Final = 1_000_000_000
-"""The interval of heartbeats to a reader that does not answer, and while the writer is busy."""
+"""Interval of heartbeats to a reader that does not answer, and while the writer is busy."""
 
 SILENT_NS: Final = 3_000_000_000
-"""A reader that vanishes after so long without an answer was frozen, and may return."""
+"""A reader that vanishes after not answering for this long was frozen, and may return."""
 
 UNHEARD_NS: Final = 500_000_000
-"""A reader that has everything, and from which nothing came for so long, is probed."""
+"""A reader that has everything, and has been silent for this long, is probed."""
 
 FLAPPING_NS: Final = 10_000_000_000
-"""A reader that vanishes within this time after its return is waited for as long again, and so is
+"""A reader that vanishes again within this time of its return is waited for as long again; so is
 one that was cut off."""
 
 KNOWN_NS: Final = 1_000_000_000
-"""The loss of a connection is known so long after the readers behind it have vanished."""
+"""How long after its readers have vanished the loss of a connection is known."""
 
 RETURN_NS: Final = 120_000_000_000
-"""Time for which messages are kept for a reader that vanished after `SILENT_NS` without a sign."""
+"""How long to keep messages for a reader that vanished after `SILENT_NS` of silence."""
 
 MOST_READERS: Final = 1_000
-"""A writer with more readers waits for none that vanishes: any process may announce thousands, and
-withdraw them, again and again."""
+"""A writer with more readers than this does not wait for any that vanishes: any process may
+announce and withdraw thousands, repeatedly."""
 
 LOST_RANGES: Final = 16
-"""Number of ranges of reported losses that are remembered before acknowledged ones are dropped."""
+"""Number of ranges of reported losses to remember before acknowledged ones are dropped."""
 
 UNANSWERED_EACH_TICK: Final = 10
-"""So many readers that have never answered are asked at once, the others later: whoever announces
+"""Number of readers that have never answered to ask at once, the others later, so that announcing
 thousands of them costs no more."""
 
 MUTE_TICKS: Final = 200
-"""A reader that has never answered, and lacked messages at so many ticks, about ten seconds, does
-not acknowledge. Ticks are counted, not time: those of a writer that stood still are late too."""
+"""A reader that has never answered, and lacked messages at this many ticks (about ten seconds),
+does not acknowledge. Ticks are counted, not time, as those of a stalled writer are late too."""
 
 
 Entry: TypeAlias = tuple[int, bytes, bytes, int]
-"""One message of a writer: its sequence number, payload and attachment, and its end. That is the
-bytes of all messages of this writer up to and including this one, with `OVERHEAD_BYTES` for each.
+"""A message of a writer: sequence number, payload, attachment, and its end, which is the total size
+of this writer's messages up to and including it, with `OVERHEAD_BYTES` for each.
 
 A message costs one append and one popleft, so this is a plain tuple: a NamedTuple costs more."""
 
@@ -95,36 +95,36 @@ class WriterOutput(Protocol):
         """Send a message to every reader."""
 
     def send(self, participant: str, submessage: bytes) -> None:
-        """Send a submessage to the context of one reader; it may be lost. Any thread may call."""
+        """Send a submessage to one reader's context; it may be lost. Called from any thread."""
 
     def source_ns(self, extra: bytes) -> int:
-        """Return when the message with an attachment was published, in nanoseconds since 1970."""
+        """Return when a message was published, from its attachment, in nanoseconds since 1970."""
 
     def lost(self, count: int) -> None:
         """Count messages that were dropped before every reader had them."""
 
     def mute(self, reader: ReaderProxy) -> None:
-        """Take note that a reader, which is removed, has never answered."""
+        """Report that a reader that is being removed has never answered."""
 
 
 class StatefulWriter:
-    """The messages of one writer that some reader has not acknowledged; the word is that of RTPS.
+    """The messages of one writer that some reader has not acknowledged; the term is RTPS's.
 
     Args:
         gid: The id of the writer.
-        participant: The id of its context, to which readers answer.
-        output: What sends.
-        depth: How many messages are kept at most.
-        limit_bytes: How many bytes of messages are kept at most; the newest is, whatever its size.
+        participant: The id of its context, to which readers reply.
+        output: Sends messages and submessages.
+        depth: Maximum number of messages to keep.
+        limit_bytes: Maximum number of bytes to keep; the newest message is kept whatever its size.
         keep_all: Whether nothing may be dropped.
-        now_ns: A monotonic clock with an arbitrary zero.
-        has_lost: Tells whether the connection to a context was lost in the last seconds; by default
-            no connection ever is.
+        now_ns: A monotonic clock with an arbitrary epoch.
+        has_lost: Returns whether the connection to a context was lost in the last seconds; by
+            default never.
 
     Attributes:
         entries: The messages, in order of sequence.
-        readers: The readers that acknowledge, by gid; those that may return stay in it.
-        sent: The sequence number of the last message that was sent.
+        readers: The readers that acknowledge, by gid, including those that may return.
+        sent: Sequence number of the last message sent.
         has_other_readers: Whether there are readers that do not acknowledge.
     """
 
@@ -154,14 +154,14 @@ class StatefulWriter:
         self._put = output.put
         self._now_ns = now_ns
         self._has_lost = has_lost
-        # Invariants: `sent` <= `_last`, no reader has acknowledged more than `sent`, and
-        # `_unsent` has those of `entries` that are beyond `sent`.
+        # Invariants: `sent` <= `_last`, no reader has acknowledged more than `sent`, and `_unsent`
+        # holds the `entries` after `sent`.
         self._last = 0  # the last sequence number that was written
         self._end = 0  # of the last message that was written, as `Entry.end`
         self._sent_end = 0  # of the last message that was sent
         self._sent_ns = 0
-        # A message that ends before this is within the window, whatever `_admits` would say. The
-        # next message computes it after readers have come or gone: each of many costs the same.
+        # A message that ends before this is within the window, whatever `_admits` says. Recomputed
+        # for the next message after readers come or go, so that many at once cost no more.
         self._window_end = -1
         # Sequence numbers below this one that are not in `entries` were never written here.
         self._jumped_to = 0
@@ -189,9 +189,9 @@ class StatefulWriter:
         self._output.send(reader.participant, data)
 
     def announce_only(self, sequence: int) -> None:
-        """Tell current readers to wait for nothing before a message, which is sent another way.
+        """Tell current readers not to wait for anything before a message that is sent another way.
 
-        Another thread than the writer's may call this.
+        May be called from another thread than the writer's.
         """
         for reader in list(self.readers.values()):
             if not reader.away_until_ns:
@@ -205,7 +205,7 @@ class StatefulWriter:
         reader = self.readers.get(gid)
         if reader is None:
             reader = ReaderProxy(gid, participant, self._last, self._end, now_ns)
-            if self._unsent:  # messages that are still to be sent are for this reader too
+            if self._unsent:  # pending messages are for this reader too
                 reader.acked, reader.end = self.sent, self._sent_end
             self.readers[gid] = reader
         else:
@@ -221,14 +221,14 @@ class StatefulWriter:
     def remove(self, gid: bytes) -> None:
         """Remove a reader that has vanished, or wait for its return.
 
-        While connections are made anew, a reader can vanish and return more than once. Whether its
-        connection was lost may be known only after the reader has vanished: `tick` asks for that.
+        While connections are re-established, a reader can vanish and return more than once. Whether
+        its connection was lost may be known only after it has vanished: `tick` checks for that.
         """
         reader = self.readers.get(gid)
         if reader is None or reader.away_until_ns:
             return
         now_ns = self._now_ns()
-        # One that has never answered is no reader of aionode, and nothing is kept for it.
+        # One that has never answered is not an aionode reader, and nothing is kept for it.
         asked = reader.answered and (self._keep_all or reader.acked < self.sent)
         if len(self.readers) > MOST_READERS:
             del self.readers[gid]
@@ -246,7 +246,7 @@ class StatefulWriter:
         self.pump()
 
     def _update_window(self) -> None:
-        """Compute `_window_end` after a change of the readers or of what they have."""
+        """Recompute `_window_end` after readers, or what they have, have changed."""
         ends = [reader.end for reader in self.readers.values() if not reader.away_until_ns]
         if ends:
             self._window_end = (min(ends) if self._keep_all else max(ends)) + WINDOW_BYTES
@@ -256,7 +256,7 @@ class StatefulWriter:
     # Writing
 
     def write(self, sequence: int, payload: bytes, extra: bytes) -> None:
-        """Send a message, at once or as soon as the window is open."""
+        """Send a message now, or as soon as the window is open."""
         end = self._end + len(payload) + OVERHEAD_BYTES
         if end <= self._window_end and sequence == self._last + 1 and not self._unsent:
             # The common case: `_write_slowly` would do the same.
@@ -276,7 +276,7 @@ class StatefulWriter:
             self._put(payload, extra)
 
     def _write_slowly(self, entry: Entry) -> None:
-        """Send a message after a jump of sequence numbers, or as the window allows."""
+        """Send a message after a jump of sequence numbers, or as the window permits."""
         sequence = entry[0]
         readers_changed = self._window_end < 0
         if readers_changed:
@@ -289,13 +289,13 @@ class StatefulWriter:
         self._end = entry[3]
         self.entries.append(entry)
         self._unsent.append(entry)
-        # Behind a message that waits, only an acknowledgement opens the window, and that pumps too.
+        # Behind a waiting message, only an acknowledgement opens the window, and that also pumps.
         if len(self._unsent) == 1 or readers_changed or self.has_other_readers:
             self.pump()
         self._drop_oldest()
 
     def _drop_oldest(self) -> None:
-        """Drop messages beyond the limits; a KEEP_ALL writer asks `has_room` instead."""
+        """Drop messages beyond the limits; a KEEP_ALL writer checks `has_room` instead."""
         entries, limit_bytes = self.entries, NEVER if self._keep_all else self._limit_bytes
         while len(entries) > self._limit or self._end - entries[0][3] > limit_bytes:
             oldest = entries.popleft()[0]
@@ -306,13 +306,13 @@ class StatefulWriter:
     def write_stop(
         self, sequence: int, payload: bytes, extra: bytes, put: Callable[[bytes, bytes], None]
     ) -> None:
-        """Send the last message of a lease at once; messages that wait for the window are dropped.
+        """Send the last message of a lease immediately, dropping messages waiting for the window.
 
         Args:
             sequence: Its number.
             payload: Its bytes.
             extra: Its attachment.
-            put: Sends it to every reader, unless it was sent already.
+            put: Sends it to every reader, unless it was already sent.
         """
         if self._unsent:
             first, last = self._unsent[0][0], self._unsent[-1][0]
@@ -363,7 +363,7 @@ class StatefulWriter:
                 continue
             is_read = True
             is_open = (
-                reader.acked >= self.sent  # `end` counts messages that were dropped unsent too
+                reader.acked >= self.sent  # `end` includes messages that were dropped unsent
                 or end - reader.end <= WINDOW_BYTES
                 or sequence - reader.acked <= WINDOW_MESSAGES
             )
@@ -392,7 +392,7 @@ class StatefulWriter:
     def has_room(self) -> bool:
         """Return whether another message can be kept without dropping one.
 
-        A KEEP_ALL writer first drops the messages that only readers lack which were cut off.
+        A KEEP_ALL writer first drops the messages that only cut-off readers lack.
         """
         if not self._is_full:
             return True
@@ -412,7 +412,7 @@ class StatefulWriter:
 
     @property
     def done(self) -> bool:
-        """Whether every reader has acknowledged everything, those that were cut off left out."""
+        """Whether every reader has acknowledged everything, except for those that were cut off."""
         return not self.entries or self.entries[-1][0] <= self._acked
 
     @property
@@ -443,7 +443,7 @@ class StatefulWriter:
         self.pump()
 
     def _end_of(self, sequence: int) -> int:
-        """Return the `Entry.end` of the last message up to one that was sent."""
+        """Return the `Entry.end` of the last message up to a sequence number that was sent."""
         entries = self.entries
         if sequence >= self.sent or not entries:
             return self._sent_end
@@ -454,7 +454,7 @@ class StatefulWriter:
         return end - len(payload) - OVERHEAD_BYTES
 
     def _index(self, sequence: int) -> int:
-        """Return the position of the first entry from a sequence number on."""
+        """Return the index of the first entry from a sequence number on."""
         entries = self.entries
         guess = sequence - entries[0][0] if entries else 0
         if guess <= 0:
@@ -464,7 +464,7 @@ class StatefulWriter:
         return bisect_left(entries, sequence, hi=min(guess, len(entries)), key=itemgetter(0))
 
     def _resend(self, reader: ReaderProxy, ranges: list[tuple[int, int]], now_ns: int) -> None:
-        """Send a reader what it lacks, and announce a gap for what is no longer kept."""
+        """Resend what a reader lacks, and announce a gap for what is no longer kept."""
         left = RESEND_BYTES
         entries = self.entries
         for begin, end in ranges[:MAX_RANGES]:
@@ -476,7 +476,7 @@ class StatefulWriter:
                     if any(
                         n <= absent and now_ns - at < RESEND_NS for n, at in reader.resent.items()
                     ):
-                        return  # it was sent again before it was dropped, and may be on its way
+                        return  # it was resent before it was dropped, and may be on its way
                     self._lose(max(first, self._jumped_to), absent)
                     self._gap(reader, first, absent)
                 first = absent + 1
@@ -539,13 +539,13 @@ class StatefulWriter:
         return bool(self.entries) or any(reader.away_until_ns for reader in self.readers.values())
 
     def _has_ended(self, reader: ReaderProxy, now_ns: int) -> bool:
-        """Return whether a reader that is away was taken for cut off, but has a connection."""
+        """Return whether an absent reader was considered cut off, but still has a connection."""
         waited_ns = now_ns - (reader.away_until_ns - FLAPPING_NS)
         is_known = reader.is_cut_off and waited_ns >= KNOWN_NS
         return is_known and not self._has_lost(reader.participant)
 
     def _give_up(self, reader: ReaderProxy) -> None:
-        """Wait for a reader no longer; it has lost what it lacks, unless it has ended."""
+        """Stop waiting for a reader; it has lost what it lacks, unless it has ended."""
         del self.readers[reader.gid]
         if not reader.is_cut_off:
             self._lose(max(reader.acked + 1, self._jumped_to), self.sent)
@@ -556,8 +556,8 @@ class StatefulWriter:
     def probe(self) -> bool:
         """Ask readers that have everything for an answer; return whether to call again.
 
-        To be called more often than every `SILENT_NS` for a KEEP_ALL writer, for which the silence
-        of a reader that vanishes means that it may return.
+        Must be called more often than every `SILENT_NS` for a KEEP_ALL writer, for which the
+        silence of a reader that vanishes means that it may return.
         """
         now_ns = self._now_ns()
         for reader in self.readers.values():
@@ -571,7 +571,7 @@ class StatefulWriter:
 
     @property
     def _acked(self) -> int:
-        """The last message that all readers have, those that were cut off left out."""
+        """The last message that all readers have, not counting those that were cut off."""
         readers = self.readers.values()
         return min((reader.acked for reader in readers if not reader.is_cut_off), default=self.sent)
 

@@ -1,4 +1,4 @@
-"""The submessages of the protocol, which are those of RTPS, and their binary form.
+"""The submessages of the protocol, which are RTPS's, and their binary form.
 
 Each is for one context. Its bytes are::
 
@@ -29,18 +29,18 @@ VERSION: Final = 2
 """Contexts of different versions do not acknowledge each other's messages."""
 
 MAX_RANGES: Final = 64
-"""Most ranges of missing messages that one ACKNACK names."""
+"""Maximum number of missing ranges that one ACKNACK lists."""
 
 LARGEST: Final = 2**63 - 2**20
-"""The largest number that is accepted: a reader counts on from it, and its answer has to hold the
-result."""
+"""The largest number that is accepted: a reader counts on from it, and its answer must be able to
+represent the result."""
 
 HEADER: Final = struct.Struct("<BBH16s16sqq")
 RANGE: Final = struct.Struct("<qq")
 
 
 class SubmessageKind(enum.IntEnum):
-    """The kind of a submessage, which decides what `first`, `last` and the rest mean."""
+    """The kind of a submessage, which determines the meaning of `first`, `last` and the rest."""
 
     HEARTBEAT = 1
     """The writer has sent messages up to `last`; those before `first` are not for this reader.
@@ -48,7 +48,7 @@ class SubmessageKind(enum.IntEnum):
     The rest is the writer's participant, to which the reader sends an ACKNACK.
     """
     ACKNACK = 2
-    """The reader has taken all messages before `first`. The rest are missing ranges."""
+    """The reader has everything before `first`. The rest lists missing ranges."""
     GAP = 3
     """The messages from `first` to `last` will not be sent."""
     DATA = 4
@@ -69,7 +69,7 @@ class Submessage(NamedTuple):
     rest: bytes
 
     def ranges(self) -> list[tuple[int, int]]:
-        """Return the missing ranges of an ACKNACK, first and last of each."""
+        """Return the missing ranges of an ACKNACK, as pairs of first and last."""
         size = min(len(self.rest) // RANGE.size, MAX_RANGES) * RANGE.size
         return list(RANGE.iter_unpack(self.rest[:size]))
 
@@ -87,9 +87,9 @@ def pack_ranges(ranges: Sequence[tuple[int, int]]) -> bytes:
 
 
 def unpack(data: bytes) -> Submessage | None:
-    """Return the submessage in `data`, or None if its form is unknown.
+    """Parse a submessage; return None if its format is unknown.
 
-    Numbers beyond `LARGEST` are unknown as well.
+    Numbers beyond `LARGEST` are rejected as well.
     """
     if len(data) < HEADER.size:
         return None

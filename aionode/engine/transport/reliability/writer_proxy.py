@@ -1,11 +1,11 @@
-"""One writer, as one of its readers sees it; the word is that of RTPS. A state machine without I/O.
+"""A reader's view of one writer (the term is RTPS's); a state machine without I/O.
 
 `stateful_writer` describes the protocol.
 
-Whoever may publish on the topic can send a HEARTBEAT or GAP in the name of a writer. So neither
-moves a reader further past the messages that have come than a writer may send ahead. What says more
-is a claim: the reader asks for its last message, and believes it when a message has come so far. A
-message that was said not to come, and comes, is taken.
+Whoever may publish on the topic can send a HEARTBEAT or GAP in a writer's name. So neither moves a
+reader further past the received messages than a writer may send ahead. Anything beyond that is a
+claim: the reader asks for its last message, and believes the claim once a message has reached it. A
+message that was announced as missing, but arrives, is accepted.
 """
 
 from __future__ import annotations
@@ -33,32 +33,32 @@ if TYPE_CHECKING:
 __all__ = ["ProxyOutput", "WriterProxy"]
 
 ACK_BYTES: Final = 64 * 1024
-"""A reader acknowledges unasked after so many bytes."""
+"""Number of bytes after which a reader acknowledges unasked."""
 
 ACK_OVERHEAD_BYTES: Final = 256
-"""Bytes that each message counts besides its payload: 256 messages without any make one
-acknowledgement, and a writer's window is more than ten times that."""
+"""Bytes that each message counts besides its payload: 256 empty messages cause one acknowledgement,
+and a writer's window is more than ten times that."""
 
 NACK_NS: Final = 5_000_000
-"""A reader asks for missing messages no more often than this, unless it gets a heartbeat."""
+"""Minimum interval between requests for missing messages, unless a heartbeat arrives."""
 
 MAX_HELD: Final = 10_000
-"""Number of messages that a reader holds while earlier ones are missing; more are sent again."""
+"""Number of messages held while earlier ones are missing; further ones will be resent."""
 
 HELD_BYTES: Final = 2 * WINDOW_BYTES
-"""Bytes that a reader holds: a writer sends a window ahead, and may send it again."""
+"""Number of bytes held: a writer sends a window ahead, and may resend it."""
 
 MAX_GAPS: Final = 1_000
-"""Number of gaps that a reader notes ahead of the next message; it asks again for more."""
+"""Number of gaps noted ahead of the next message; the reader asks again for further ones."""
 
 BELIEVED: Final = WINDOW_BYTES // OVERHEAD_BYTES
-"""A HEARTBEAT or GAP is believed for so many messages beyond those that have arrived: a full window
-of empty ones."""
+"""A HEARTBEAT or GAP is believed for this many messages beyond those that have arrived: a full
+window of empty ones."""
 
 ANEW_AFTER: Final = 16
 ANEW_NS: Final = 1_000_000_000
-"""A reader to which so many messages in a row, and for so long, come far below `next` starts anew:
-a wrong number has moved it. What was only overtaken comes in less time."""
+"""A reader starts over after this many consecutive messages far below `next`, over this long: a
+wrong number has moved it. Messages that were merely overtaken arrive in less time."""
 
 NOT_NOW: Final = -1
 
@@ -67,37 +67,37 @@ class ProxyOutput(Protocol):
     """The output of a `WriterProxy`."""
 
     def accept(self, item: Any, proxy: WriterProxy) -> bool:
-        """Take the next message; return whether it is used, or else waits for room."""
+        """Accept the next message; return whether it is used now, rather than waiting for room."""
 
     def send(self, participant: str, submessage: bytes) -> None:
         """Send a submessage to the context of a writer; it may be lost."""
 
     def refused(self, last: int) -> None:
-        """Take note of a HEARTBEAT or GAP up to `last` that the writer cannot have sent."""
+        """Report a HEARTBEAT or GAP up to `last` that the writer cannot have sent."""
 
     def started_anew(self, first: int) -> None:
-        """Take note that messages from `first` on are taken that were said not to come."""
+        """Report that messages from `first` on are accepted that were announced as missing."""
 
 
 class WriterProxy:
-    """A writer, as one of its readers sees it.
+    """A reader's view of one writer.
 
     Args:
         gid: Its id.
         participant: Its context.
         reader: The id of the reader.
-        output: Each message is given to it once and in order.
-        now_ns: A monotonic clock with any zero.
-        first: The sequence number of the first message for this reader, as the writer says.
-        span: How many messages later ones wait for at most.
-        delivered: The last message of this writer that the reader has already.
+        output: Receives each message once and in order.
+        now_ns: A monotonic clock with an arbitrary epoch.
+        first: Sequence number of the first message for this reader, according to the writer.
+        span: Maximum number of messages that later ones wait for.
+        delivered: The last message of this writer that the reader already has.
 
     Attributes:
         participant: Its context.
-        heard_ns: When it last sent anything besides its messages.
-        absent_ticks: For how many ticks in a row its endpoint was missing in the graph.
-        next: The sequence number that is accepted next.
-        expected: As `next` while nothing is held back or missing; else no sequence number.
+        heard_ns: When it last sent anything besides messages.
+        absent_ticks: Number of consecutive ticks at which its endpoint was missing from the graph.
+        next: The sequence number to be accepted next.
+        expected: Like `next` while nothing is held back or missing; otherwise no sequence number.
         last: The highest known sequence number; not updated by messages in order.
     """
 
@@ -149,26 +149,26 @@ class WriterProxy:
         self._span = span
         self._output = output
         self._now_ns = now_ns
-        # Invariants: `_delivered` < `next`, and all in `_held` is beyond `next`.
-        # Messages that came before an earlier one: item and size by sequence number.
+        # Invariants: `_delivered` < `next`, and everything in `_held` is beyond `next`.
+        # Messages that arrived before an earlier one: item and size by sequence number.
         self._held: dict[int, tuple[Any, int]] = {}
         self._held_bytes = 0
         # Ranges from `next` on that will not be sent.
         self._gaps: list[tuple[int, int]] = []
-        # Sequence numbers of messages that were accepted, but wait for room.
+        # Sequence numbers of accepted messages that wait for room.
         self._waiting: deque[int] = deque()
         self._unacked_bytes = 0
         self._nacked_ns = 0
-        # The last message that has arrived, and the last that was delivered. `receive_expected`
-        # leaves both to `_catch_up`, which sees by `_seen` that it has moved `next`.
+        # The last message that arrived, and the last one delivered. `receive_expected` leaves both
+        # to `_catch_up`, which detects by `_seen` that `next` has moved.
         self._reached = first - 1
         self._delivered = delivered
         self._seen = first
         # Up to where the writer has said that nothing will come, and the last claim beyond what is
-        # believed: a range that will not come, and the last message that was sent.
+        # believed: a range that will not come, and the last message sent.
         self._claimed = first
         self._claim: tuple[int, int, int] | None = None
-        # Messages far below `next`, in ascending order: how many, the last, and since when.
+        # Messages far below `next`, in ascending order: how many, the last one, and since when.
         self._old = 0, 0, 0
 
     @property
@@ -190,13 +190,13 @@ class WriterProxy:
             self.acknowledge()
 
     def receive(self, sequence: int, item: Any, size: int, *, is_resent: bool = False) -> None:
-        """Handle a message, whether it is new or was sent again.
+        """Handle a message, whether new or resent.
 
         Args:
             sequence: Its number.
             item: The message.
             size: How many bytes it has.
-            is_resent: Whether it was sent to this reader alone.
+            is_resent: Whether it was sent to this reader only.
         """
         self._catch_up()
         if self._delivered < sequence < self.next:
@@ -223,14 +223,14 @@ class WriterProxy:
         self._update_expected()
 
     def _catch_up(self) -> None:
-        """Take into account what `receive_expected` has counted."""
+        """Account for what `receive_expected` has counted."""
         if self.next > self._seen:
             self._delivered = self.next - 1
             self._reached = max(self._reached, self._delivered)
             self._old = 0, 0, 0
 
     def _note_reached(self, sequence: int) -> None:
-        """Note how far messages have come, and believe a claim that is no more than that."""
+        """Record how far messages have arrived, and believe a claim up to that point."""
         self._old = 0, 0, 0
         self._reached = max(self._reached, sequence)
         claim = self._claim
@@ -240,13 +240,13 @@ class WriterProxy:
             self._add_gap(*claim[:2])
 
     def _start_anew(self, sequence: int) -> None:
-        """Go back to a message that came although it is below `next`."""
-        if self._claimed - sequence >= ANEW_AFTER:  # fewer were perhaps overtaken
+        """Go back to a message that arrived although it is below `next`."""
+        if self._claimed - sequence >= ANEW_AFTER:  # fewer may have been overtaken
             self._output.started_anew(sequence)
         self._start_at(sequence)
 
     def _start_at(self, sequence: int) -> None:
-        """Expect a message below `next`; none after it was delivered."""
+        """Expect a message below `next`; nothing after it was delivered."""
         self._claimed = self.next = self._seen = sequence
         self._gaps.clear()
         for held in [number for number in self._held if number > sequence + BELIEVED]:
@@ -255,7 +255,7 @@ class WriterProxy:
         self._reached = max(self.last, sequence - 1)
 
     def _is_anew(self, sequence: int) -> bool:
-        """Return whether a message far below `next` ends a row of such ones, and forget the row."""
+        """Return whether a message far below `next` completes a run of such messages."""
         count, last, since_ns = self._old
         now_ns = self._now_ns()
         if sequence <= last:
@@ -267,14 +267,14 @@ class WriterProxy:
         return True
 
     def _may_hold(self, size: int) -> bool:
-        """Return whether one more message can be held; a message that is not is sent again."""
+        """Return whether another message can be held; one that cannot will be resent."""
         count = len(self._held)
         return count < WINDOW_MESSAGES or (
             count < MAX_HELD and self._held_bytes + size <= HELD_BYTES
         )
 
     def _unhold(self, sequence: int) -> tuple[Any, int] | None:
-        """Return a message that was held, and no longer is; None if it is not here."""
+        """Remove and return a held message; None if there is none."""
         message = self._held.pop(sequence, None)
         if message is not None:
             self._held_bytes -= message[1]
@@ -312,12 +312,12 @@ class WriterProxy:
             self._nack_soon()
 
     def _gap_end(self) -> int:
-        """Return the end of the gap that begins at `next`; 0 if there is none."""
+        """Return the end of the gap that starts at `next`; 0 if there is none."""
         self._gaps = [gap for gap in self._gaps if gap[1] >= self.next]
         return max((last for first, last in self._gaps if first <= self.next), default=0)
 
     def used(self, size: int) -> None:
-        """Count the oldest message that waited for room; it is used now."""
+        """Count the oldest message that waited for room, which is now used."""
         self._waiting.popleft()
         self._update_expected()
         self._note_used(size)
@@ -328,17 +328,17 @@ class WriterProxy:
         Args:
             first: Messages before this one are not for this reader.
             last: The last message that was sent.
-            ask: Whether to ask for missing messages. Without it they may be here, unhandled.
+            ask: Whether to ask for missing messages. If not, they may have arrived unhandled.
         """
         self.heard_ns = self._now_ns()
         self._catch_up()
         claim, limit = self._claim, self._limit
-        if claim is not None and last < claim[2]:  # a writer has never sent less than before
+        if claim is not None and last < claim[2]:  # a writer never claims less than before
             self._claim = None
             self._output.refused(claim[2])
         if first > limit + 1 or last > limit:
             self._claim = 0, first - 1, max(first - 1, last)
-        if self._delivered <= last and last + 1 < self.next:  # nor did it say what moved `next`
+        if self._delivered <= last and last + 1 < self.next:  # nor did it claim what moved `next`
             self._start_at(max(self._delivered + 1, min(first, last + 1)))
         if first <= limit + 1:
             self._claimed = max(self._claimed, first)
@@ -352,7 +352,7 @@ class WriterProxy:
 
     @property
     def _limit(self) -> int:
-        """Up to which message a HEARTBEAT or GAP is believed."""
+        """The message up to which a HEARTBEAT or GAP is believed."""
         return self._reached + BELIEVED
 
     def gap(self, first: int, last: int) -> None:
@@ -366,7 +366,7 @@ class WriterProxy:
         self._update_expected()
 
     def _add_gap(self, first: int, last: int) -> None:
-        """Wait no longer for a range, if it is one and goes beyond `next`."""
+        """Stop waiting for a range, if it is valid and extends beyond `next`."""
         if first <= last and last >= self.next and len(self._gaps) < MAX_GAPS:
             self.last = max(self.last, last)
             self._claimed = max(self._claimed, last + 1)
@@ -380,7 +380,7 @@ class WriterProxy:
             self._release()
 
     def _pass(self, number: int) -> None:
-        """Accept what is held before `number`, which is next then."""
+        """Accept what is held before `number`, which becomes next."""
         for held in sorted(n for n in self._held if n < number):
             self.next = held + 1
             message = self._unhold(held)
@@ -394,11 +394,11 @@ class WriterProxy:
             self.acknowledge()
 
     def acknowledge(self, *, ask: bool = True, claimed: int = 0) -> None:
-        """Send an ACKNACK that names what is here and, with `ask`, what is missing.
+        """Send an ACKNACK that lists what has arrived and, with `ask`, what is missing.
 
         Args:
             ask: Whether to ask for what is missing.
-            claimed: The last message of a claim, to ask for as well; 0 for none.
+            claimed: The last message of a claim, to request as well; 0 for none.
         """
         self._unacked_bytes = 0
         missing: list[tuple[int, int]] = []
@@ -410,7 +410,7 @@ class WriterProxy:
         self._output.send(self.participant, pack(kind, self.gid, self._reader, first, 0, ranges))
 
     def _missing(self, claimed: int) -> list[tuple[int, int]]:
-        # The end of a claim first: it alone shows whether that is true.
+        # The end of a claim first: it alone shows whether the claim is true.
         ranges = [(claimed, claimed)] if claimed else []
         known = max(self.last, self._limit) if claimed else self.last
         begin = self.next
@@ -426,12 +426,12 @@ class WriterProxy:
         return ranges
 
     def remind(self) -> None:
-        """Ask again for missing messages, unless this was done a moment ago."""
+        """Ask again for missing messages, unless that was done a moment ago."""
         if self._now_ns() - self._nacked_ns >= QUIET_NS:
             self.acknowledge()
 
     def give_up(self) -> None:
-        """Accept what is held, with its gaps: the writer is gone."""
+        """Accept what is held despite its gaps, as the writer is gone."""
         self._catch_up()
         self._skip(self.last + 1)
         self._update_expected()

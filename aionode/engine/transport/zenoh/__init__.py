@@ -1,8 +1,7 @@
-"""Between processes and machines: messages travel through Zenoh, as rmw_zenoh_cpp sends them.
+"""The transport between processes and machines over Zenoh, compatible with rmw_zenoh_cpp.
 
-Zenoh's threads only append what arrives to a queue and wake the event loop (`_loop_waker`);
-everything else happens on the loop. What may block while sending goes through a thread
-(`_send_thread`).
+Zenoh's threads only append arriving data to a queue and wake the event loop (`loop_waker`);
+everything else happens on the loop. Sends that may block go through a thread (`send_thread`).
 """
 
 from aionode.engine.transport.zenoh._transport import ZenohTransport

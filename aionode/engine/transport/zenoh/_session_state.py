@@ -1,4 +1,4 @@
-"""The state that all entities of one context share: session, declarations, threads and queues."""
+"""The state shared by all entities of a context: session, declarations, threads and queues."""
 
 from __future__ import annotations
 
@@ -45,26 +45,26 @@ logger = logging.getLogger("aionode.transport.zenoh")
 
 BURST_BYTES: Final = 256 * 1024
 BURST_NS: Final = 10_000_000
-"""So much in so many nanoseconds reaches every peer that is alive: a quarter of the queue."""
+"""Number of bytes in this time that reach every live peer: a quarter of the queue."""
 
 CALM_S: Final = 5.0
-"""Time for which threads go on putting instead of the loop after a crowd has gone, in seconds."""
+"""How long threads keep sending instead of the loop after a crowd has gone, in seconds."""
 
 BULK_FLUSH_S: Final = 0.15
-"""Time for which `flush` waits for large messages, which may be dropped, and for single contexts,
-in seconds."""
+"""How long `flush` waits for large messages, which may be dropped, and for single contexts, in
+seconds."""
 
 
 class ReaderListener(Protocol):
     """Called when subscriptions of other contexts have changed."""
 
-    # By position, as every publisher is called for every one of them.
+    # Positional, as every publisher is called for every one of them.
     def __call__(self, reader: EndpointInfo | None = None, present: bool = True) -> None:
-        """Take one that has appeared or vanished; None if all may have changed."""
+        """Handle a reader that has appeared or vanished; None if all may have changed."""
 
 
 class LingeringWriter(Protocol):
-    """A destroyed publisher with messages that are not acknowledged."""
+    """A destroyed publisher with unacknowledged messages."""
 
     def finish(self) -> None:
         """Undeclare it now, and count the messages that were not delivered."""
@@ -76,7 +76,7 @@ class EndpointNames(NamedTuple):
     Attributes:
         key: The key of its messages or requests.
         token: Its liveliness token; an empty one hides it from other contexts.
-        gid: What it is called in attachments.
+        gid: Its gid in attachments.
     """
 
     key: str
@@ -90,7 +90,7 @@ class SessionState:
     Args:
         participant: Id of the context, and of its session.
         domain_id: The ROS domain.
-        time_base: The time of the context; by default that of the machine.
+        time_base: The time of the context; defaults to that of the machine.
         waker: Wakes the event loop; by default one of its own.
 
     Attributes:
@@ -99,25 +99,26 @@ class SessionState:
         session: The session while it is open, else None.
         graph: The graph of the context while the session is open, else None.
         waker: Wakes the event loop from Zenoh's threads.
-        connections: The sessions that it is connected with.
+        connections: The sessions to which it is connected.
         bulk: The thread that sends large messages.
-        send_threads: All threads that send messages, `bulk` included.
-        control_messages: Puts acknowledgements, assertions and cancellations.
+        send_threads: All threads that send messages, including `bulk`.
+        control_messages: Sends acknowledgements, assertions and cancellations.
         peer_senders: Send requests and replies.
-        burst: Limits what the loop puts at once for readers that do not acknowledge.
+        burst: Limits what the loop sends at once to readers that do not acknowledge.
         acknowledgements: The acknowledgements between contexts of aionode.
-        lingering: Destroyed publishers with messages that are not acknowledged; an ordered set.
-        drops: What is dropped of what others send.
+        lingering: Destroyed publishers with unacknowledged messages; an ordered set.
+        drops: Counts what is dropped of what others send.
         own_gids: The gids of this context's publishers, lingering ones included.
-        cancellations: The requests that clients have given up.
+        cancellations: Requests that clients have given up.
         assertions: The liveliness that publishers assert.
         time_base: The time of the context.
         now_ns: Returns the time of the context, in nanoseconds since 1970.
         queue_bytes: How many bytes of messages may wait in one queue.
-        request_room: Limits the requests that are here.
-        announced: Limits what is kept of what others announce.
-        on_reader: Called when a remote subscription appears or vanishes, by topic, with it and
-            whether it exists, or without arguments when all may have changed; ordered sets.
+        request_room: Limits the requests that are held.
+        announced: Limits what is kept of others' announcements.
+        on_reader: Called when a remote subscription appears or vanishes, by topic, with the
+            subscription and whether it exists, or without arguments when all may have changed;
+            ordered sets.
     """
 
     def __init__(
@@ -134,7 +135,7 @@ class SessionState:
         self.drops = Drops(logger)
         self.participant = participant
         self.domain_id = domain_id
-        # Threads that send read it, and only the loop sets it: each of them takes it once, and
+        # Read by threads that send, and set only by the loop: each of them reads it once, and
         # expects that Zenoh refuses, as the session may be closed by then.
         self.session: zenoh.Session | None = None
         self.graph: Graph | None = None
@@ -166,12 +167,12 @@ class SessionState:
         self._declarations: dict[Declaration, None] = {}
         self._graph_is_known = False
 
-    # The names of endpoints, and the endpoints that they reach: here as in rmw_zenoh.
+    # The names of endpoints, and the endpoints that they reach; here as in rmw_zenoh.
 
     def names_of(self, endpoint: EndpointInfo, backends: str = "") -> EndpointNames:
         """Return the names of one of our endpoints.
 
-        Without a type hash it matches every definition of the type; ROS has no token for that.
+        Without a type hash it matches every definition of the type; ROS has no such token.
         """
         key = data_key(self.domain_id, endpoint.name, endpoint.type_name, endpoint.type_hash)
         visible = bool(endpoint.type_hash)
@@ -179,11 +180,11 @@ class SessionState:
         return EndpointNames(key, token, gid_of(token))
 
     def reaches(self, node: NodeInfo) -> bool:
-        """Return whether messages go to the endpoints of `node` through this."""
+        """Return whether messages to the endpoints of `node` go through this transport."""
         return node.participant != self.participant and not node.bridged
 
     def declare_token(self, session: zenoh.Session, token: str) -> Any:
-        """Declare a token, and return what undeclares it."""
+        """Declare a token, and return an object to undeclare it."""
         return session.liveliness().declare_token(token)
 
     def queue(self, handle: Callable[[T], None], limit: int | None = None) -> ThreadsafeQueue[T]:
@@ -196,7 +197,7 @@ class SessionState:
         limit: int,
         on_dropped: Callable[[int], None],
     ) -> MessageArrivals[zenoh.Sample]:
-        """Return such a queue for messages, bounded in bytes as well."""
+        """Return a queue for messages that is also bounded in bytes."""
         return MessageArrivals(self.waker, handle, limit, self.queue_bytes, size_of, on_dropped)
 
     def add(self, declaration: Declaration) -> None:
@@ -214,7 +215,7 @@ class SessionState:
         self._declarations.pop(declaration, None)
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
-        """Declare everything in `session` that does not need to know its peers."""
+        """Declare everything in `session` that does not depend on its peers."""
         self.session = session
         self.graph = graph
         self.request_room = RequestRoom(self.queue_bytes)  # what was here before has ended
@@ -224,21 +225,21 @@ class SessionState:
                 declaration.declare(session)
 
     def _start_submessages(self, session: zenoh.Session) -> None:
-        """Begin to talk to the other contexts of aionode."""
+        """Start communicating with the other aionode contexts."""
         self.control_messages.start(session)
         self.acknowledgements.start(session)
         self.cancellations.start(session)
         self.assertions.start(session)
 
     def graph_is_known(self) -> None:
-        """Declare what needs the graph: by now, it has the endpoints of all connected peers."""
+        """Declare what needs the graph, which now contains the endpoints of all connected peers."""
         self._graph_is_known = True
         for declaration in list(self._declarations):
             if declaration.needs_graph and self.session is not None:
                 declaration.declare(self.session)
 
     def _send_progress(self, participant: str) -> tuple[bool, int] | None:
-        """Return the progress of the sends to a participant; called in a thread."""
+        """Return the progress of sends to a participant; called in a thread."""
         session = self.session
         if session is None:
             return None
@@ -248,9 +249,9 @@ class SessionState:
             return None
 
     async def flush(self) -> None:
-        """Wait until all messages were sent and acknowledged, for `FLUSH_S` at most.
+        """Wait until all messages were sent and acknowledged, for at most `FLUSH_S`.
 
-        Lingering publishers end the wait early when their readers make no progress.
+        Lingering publishers end the wait early if their readers make no progress.
         """
         for declaration in list(self._declarations):
             declaration.linger()
@@ -268,13 +269,13 @@ class SessionState:
                     await send_thread.flush()
 
     def has_lingered(self, writer: LingeringWriter) -> None:
-        """Remove a publisher that does not linger any more."""
+        """Remove a publisher that no longer lingers."""
         self.lingering.pop(writer, None)
         if self._lingered is not None and not self._lingered.done():
             self._lingered.set_result(None)
 
     def disconnect(self) -> zenoh.Session | None:
-        """Undeclare everything, the newest first; return the session, which the caller closes."""
+        """Undeclare everything, newest first; return the session, which the caller closes."""
         session, self.session = self.session, None
         self._graph_is_known = False
         if session is not None:
@@ -307,9 +308,10 @@ class SessionState:
                     self.tell_writers(reader, present=True)
 
     def note_crowd(self) -> None:
-        """Leave what may wait for Zenoh to threads while others have announced so much.
+        """Leave sends that may block on Zenoh to threads while others have announced too much.
 
-        And for a while after that: it tells of the first that it drops long before the last.
+        Also for a while after that: Zenoh reports the first token that it drops long before the
+        last.
         """
         self._calm.cancel()
         if self.announced.is_crowded or self.session is None:
@@ -327,25 +329,25 @@ class SessionState:
         self.drops.note(Drop.MALFORMED, key, problem)
 
     def note_lie(self, subject: str, problem: str) -> None:
-        """Count what was said in the name of another, and log it as `Drops` does."""
+        """Count an impersonation attempt, and log it as `Drops` does."""
         self.drops.note(Drop.FALSE_NAME, subject, problem)
 
 
 def size_of(arriving: zenoh.Sample | zenoh.Query) -> int:
-    """Return how many bytes the payload of a message or request has."""
+    """Return the payload size of a message or request in bytes."""
     payload = arriving.payload
     return 0 if payload is None else len(payload)
 
 
 class Burst:
-    """Limits what the loop puts into Zenoh at once to what fits into its queue."""
+    """Limits what the loop sends to Zenoh at once to what fits into its queue."""
 
     def __init__(self) -> None:
         self._left = BURST_BYTES
         self._since_ns = 0
 
     def spend(self, size_bytes: int) -> bool:
-        """Return whether so much more may be put now, and count it if so."""
+        """Return whether this much more may be sent now, and count it if so."""
         self._left -= size_bytes + 128
         if self._left < 0:
             now_ns = perf_ns()
@@ -357,15 +359,15 @@ class Burst:
 
 
 class Declaration(Registration):
-    """A registration that is declared in the session while that is open.
+    """A registration that is declared in the session while it is open.
 
     Args:
         state: The state of the session.
         token: Its liveliness token; an empty one hides it from other contexts.
-        gid: What it is called in attachments; by default what its token says.
+        gid: Its gid in attachments; by default derived from its token.
 
     Attributes:
-        needs_graph: Whether it is declared only when the endpoints of connected peers are known.
+        needs_graph: Whether to declare it only once the endpoints of connected peers are known.
         is_declared: Whether it is declared now.
     """
 
@@ -390,7 +392,7 @@ class Declaration(Registration):
                 self._declared_token = self.state.declare_token(session, self.token)
 
     def undeclare(self) -> None:
-        """Undeclare it, in the opposite order."""
+        """Undeclare it, in reverse order."""
         token, self._declared_token = self._declared_token, None
         declared, self.is_declared = self.is_declared, False
         with translated(self.token):
@@ -400,10 +402,10 @@ class Declaration(Registration):
                 self.undeclare_data()
 
     def linger(self) -> None:
-        """Begin to linger, if messages are not acknowledged: the context is about to close."""
+        """Start to linger if messages are unacknowledged, as the context is about to close."""
 
     def note_crowd(self) -> None:
-        """Take note of whether others have announced so much that Zenoh may stand still."""
+        """Handle whether others have announced so much that Zenoh may block."""
 
     @abstractmethod
     def declare_data(self, session: zenoh.Session) -> None:
@@ -414,6 +416,6 @@ class Declaration(Registration):
         """Undeclare what `declare_data` has declared."""
 
     def close(self) -> None:
-        """Undeclare it for good. Closing it again has no effect."""
+        """Undeclare it for good. Repeating it has no effect."""
         self.state.remove(self)
         self.undeclare()

@@ -1,9 +1,9 @@
-"""The numbers of messages from publishers that count each target of a message: ROS 2 Lyrical.
+"""Sequence numbers of publishers that number each target of a message, as in ROS 2 Lyrical.
 
-A publisher of sequences of bytes sends a message once to the key of all subscriptions that take
-bytes from the CPU, and once to the key of each other subscription that it has ever discovered. Each
-of these sends takes one of its numbers, so that the numbers on one key rise by the number of
-targets, though nothing is lost.
+A publisher of byte sequences sends a message once to the key of all subscriptions that accept bytes
+from the CPU, and once to the key of each other subscription that it has ever discovered. Each of
+these sends uses one of its numbers, so the numbers on one key rise by the number of targets, though
+nothing is lost.
 """
 
 from __future__ import annotations
@@ -19,21 +19,22 @@ if TYPE_CHECKING:
 __all__ = ["TargetNumbers"]
 
 STEADY: Final = 5
-"""After so many equal rises, what looks like losses was the number of targets: one came and went
-unseen."""
+"""After this many equal increments, apparent losses were due to the number of targets: one came and
+went unseen."""
 
 
 class Numbers:
     """The numbers of one publisher.
 
     Attributes:
-        taken: The last one that it took for this topic.
-        given: The number of that message here.
-        rise: By how much they rose with that message.
-        repeats: With how many messages in a row they rose by that.
-        targets: By how much they rise with each message, if that is known from rises; else 0.
-        doubtful: How many messages before that are missing, unless the rise repeats itself.
-        by_target: Whether that message came on the key of those that take bytes from the CPU.
+        taken: The last one that it used for this topic.
+        given: The number assigned to that message here.
+        rise: The increment with that message.
+        repeats: Number of consecutive messages with that increment.
+        targets: The increment per message, if known from increments; otherwise 0.
+        doubtful: Number of messages missing before that one, unless the increment repeats.
+        by_target: Whether that message came on the key of subscriptions that accept bytes from the
+            CPU.
     """
 
     __slots__ = ("by_target", "doubtful", "given", "repeats", "rise", "taken", "targets")
@@ -45,12 +46,12 @@ class Numbers:
 
 
 class TargetNumbers:
-    """Numbers the messages of such publishers from 1 and rising by 1, with gaps for lost ones.
+    """Numbers the messages of such publishers consecutively from 1, with gaps for lost ones.
 
     Args:
-        others: Returns how many subscriptions of the topic are known that are targets of their own.
-            Those that went before they were known here are targets for ever, too; the rise shows
-            them when it repeats itself.
+        others: Returns the number of known subscriptions of the topic that are targets of their
+            own. Those that left before they were known here also stay targets forever; the
+            increment reveals them when it repeats.
     """
 
     def __init__(self, others: Callable[[], int]) -> None:
@@ -63,8 +64,8 @@ class TargetNumbers:
         Args:
             gid: Its publisher.
             taken: The publisher's number.
-            by_target: Whether it came on the key of those that take bytes from the CPU. Then the
-                publisher numbers each target, and else each message.
+            by_target: Whether it came on the key of subscriptions that accept bytes from the CPU.
+                If so, the publisher numbers each target, otherwise each message.
         """
         known = self._of.get(gid)
         if known is None:
@@ -72,7 +73,7 @@ class TargetNumbers:
                 self._of.put(gid, Numbers(taken, by_target=True))
             return taken
         rise = taken - known.taken
-        if rise <= 0:  # late, or again
+        if rise <= 0:  # late, or a repetition
             return known.given + rise
         known.given += 1 + self._missing(known, rise, by_target=by_target)
         known.taken = taken
@@ -80,7 +81,7 @@ class TargetNumbers:
         return known.given
 
     def _missing(self, known: Numbers, rise: int, *, by_target: bool) -> int:
-        """Return how many messages are missing before one with which the numbers rose so much."""
+        """Return the number of messages missing before one with this increment."""
         if not by_target:
             last = max(known.targets, 1 + self._others()) if known.by_target else 1
             return max(rise - last, 0)

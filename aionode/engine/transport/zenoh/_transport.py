@@ -1,4 +1,4 @@
-"""The contract of transports, on Zenoh."""
+"""Implements the transport contract on Zenoh."""
 
 from __future__ import annotations
 
@@ -58,30 +58,29 @@ if TYPE_CHECKING:
 __all__ = ["ZenohTransport"]
 
 KNOWN_S = 0.3
-"""Time for which `open` waits for the graph of connected peers, in seconds; it takes a
-millisecond."""
+"""How long `open` waits for the graph of connected peers, in seconds; it takes a millisecond."""
 
 ASK_AGAIN_S = 0.2
-"""The interval at which expected nodes and arriving bytes are looked at, in seconds."""
+"""The interval at which expected nodes and arriving bytes are checked, in seconds."""
 
 TOKEN_BYTES = 100
-"""About the least that announces an endpoint; signs that a peer is alive are a few bytes."""
+"""Approximate minimum size of an endpoint's announcement; keep-alives are a few bytes."""
 
 NAMED_NS = 10_000_000_000
-"""Time for which a peer that others name is waited for while more tokens arrive, in nanoseconds."""
+"""How long to wait for a peer named by others while more tokens arrive, in nanoseconds."""
 
 
 class ZenohTransport(Transport):
-    """Reaches other processes and machines, and ROS 2 nodes that run rmw_zenoh_cpp.
+    """Reaches other processes and machines, including ROS 2 nodes that use rmw_zenoh_cpp.
 
     Args:
         participant: Id of the context and of its Zenoh session: hexadecimal, no leading zeros.
         network: Domain, discovery and peers.
-        time_base: The time of the context; by default that of the machine.
+        time_base: The time of the context; defaults to that of the machine.
 
     Attributes:
-        peer_directory: The other contexts, for links beside this transport.
-        session_state: Its connection, for the transport of bridges beside this one.
+        peer_directory: The other contexts, for links next to this transport.
+        session_state: Its connection, for the bridge transport next to this one.
     """
 
     def __init__(
@@ -121,12 +120,12 @@ class ZenohTransport(Transport):
 
     @property
     def malformed(self) -> Counter[str]:
-        """Number of samples in no known form that came from the network, for each key."""
+        """The number of malformed samples from the network, by key."""
         return self.drops.of(Drop.MALFORMED)
 
     @property
     def drops(self) -> Drops:
-        """What is dropped of what others send."""
+        """Counts what is dropped of what others send."""
         return self._state.drops
 
     async def other_domains(self) -> frozenset[int]:
@@ -155,7 +154,7 @@ class ZenohTransport(Transport):
         return await self.peer_directory.link_status()
 
     async def open(self, graph: Graph) -> None:
-        """Connect; return when the running peers are known, as far as that can be determined."""
+        """Connect; return when the running peers are known, as far as can be determined."""
         refuse_scarcity()
         async with connecting(self.network):
             await self._open(graph)
@@ -170,7 +169,7 @@ class ZenohTransport(Transport):
             await asyncio.shield(self._local_router.close())
             raise
         self._state.waker.open(asyncio.get_running_loop())
-        # Before waiting for others, so that peers that connect meanwhile see everything. After a
+        # Before waiting for others, so that peers connecting meanwhile see everything. After a
         # failure from here on, `close` closes the session.
         self._state.connect(session, graph)
         self._state.connections.start(session)
@@ -199,8 +198,8 @@ class ZenohTransport(Transport):
             self._ask(session)
         if not await self._has_answers(session, quiet_s):
             return False
-        # Peers that a router, or another peer, has named may not be connected yet: nothing but what
-        # that sees tells of them.
+        # Peers named by a router or another peer may not be connected yet: only what the latter
+        # sees reveals them.
         missing = await self._missing_nodes(session, quiet_s)
         if not missing:
             return missing is not None and self._is_connected()
@@ -213,7 +212,7 @@ class ZenohTransport(Transport):
             left = await self._missing_nodes(session, quiet_s)
             if left is None:
                 return False
-            left &= missing  # not what has come meanwhile
+            left &= missing  # not what has arrived meanwhile
             now_ns = perf_ns()
             if left == missing and now_ns > min(self._watcher.newest_ns + quiet_ns, ends_ns):
                 return False

@@ -1,7 +1,7 @@
-"""Encodes and decodes messages in the encoding of ROS 2 (XCDR1).
+"""Encodes and decodes messages in ROS 2's encoding (XCDR1).
 
 The functions are generated when a type is first encoded or decoded, which takes about a
-millisecond. Slower code handles unusual values, and raises the errors. How a field is written:
+millisecond. Slower code handles unusual values, and raises the errors. How a field is encoded:
 `_encoder.py`.
 """
 
@@ -41,10 +41,10 @@ Data: TypeAlias = bytes | bytearray | memoryview
 
 
 def encode(msg: Message) -> bytes:
-    """Return a message encoded: little-endian, zeros as padding, nothing after the last field.
+    """Return an encoded message: little-endian, zero padding, nothing after the last field.
 
     Raises:
-        MessageError: A value does not fit its field.
+        MessageError: a value does not fit its field.
         TypeError: `msg` is not a message.
     """
     try:
@@ -57,8 +57,8 @@ def encode(msg: Message) -> bytes:
 def decode(msg_type: type[MessageT], data: Data) -> MessageT:
     """Return the message of this type in `data`; bytes after it are ignored.
 
-    Arrays of numbers and sequences of bytes are read-only views of `data`: no copy is made, and
-    `data` lives as long as they do. It must not change while they are in use.
+    Arrays of numbers and sequences of bytes are read-only views of `data`: they are not copied, and
+    they keep `data` alive. It must not change while they are in use.
 
     Raises:
         DecodeError: `data` does not hold such a message: it is truncated, corrupt, or of another
@@ -75,9 +75,8 @@ def decode(msg_type: type[MessageT], data: Data) -> MessageT:
 def encoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[MessageT], bytes]:
     """Return the function that encodes messages of one class, as `encode` does.
 
-    Args:
-        cls: A message class of aionode.
-        family: Whose objects the function takes; aionode's own without it.
+    cls: An aionode message class.
+    family: The family of the messages; aionode's own by default.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -91,13 +90,13 @@ def parts_encoder(
     """Return the function that encodes messages of one class into a list of parts.
 
     Joined, the parts are what `encode` returns. Large arrays and byte sequences of the message are
-    read-only views of its own memory, as single bytes: no copy is made, and a view shows the
-    current content of the message, so use the parts before the message may change. This pays off
-    for classes for which `has_views` is true; other classes have no such views.
+    read-only views of its own memory, as bytes: they are not copied and show the current content of
+    the message, so use the parts before the message may change. This pays off for classes for which
+    `has_views` is true; other classes have no such views.
 
     Args:
-        cls: A message class of aionode.
-        family: Whose objects the function takes; aionode's own without it.
+        cls: An aionode message class.
+        family: The family of the messages; aionode's own by default.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -109,8 +108,8 @@ def decoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[Data]
     """Return the function that decodes messages of one class, as `decode` does.
 
     Args:
-        cls: A message class of aionode.
-        family: Whose objects the function makes; aionode's own without it.
+        cls: An aionode message class.
+        family: The family of the messages; aionode's own by default.
 
     Raises:
         TypeError: `cls` is not a message class.
@@ -120,14 +119,14 @@ def decoder(cls: type[MessageT], family: MessageFamily = OWN) -> Callable[[Data]
 
 ENCODERS: dict[type[Message], Callable[[Any], bytes]] = {}
 DECODERS: dict[type[Message], Callable[[Any], Any]] = {}
-"""What `encode` and `decode` have used: a dictionary is faster than the caches."""
+"""Functions that `encode` and `decode` have used: a dict is faster than the caches."""
 
 
 @cache
 def encoder_of(
     cls: Any, finish: Callable[[Sequence[Any]], Any], family: MessageFamily
 ) -> Callable[[Any], Any]:
-    """Return the encoder of a class; arguments as for `generate_encoder`."""
+    """Return the encoder of a class; the arguments are those of `generate_encoder`."""
     fields(cls)  # raises TypeError for a service class
     if unserialized(cls) is not cls:
         return attrgetter("data") if finish is JOIN else lambda msg: finish((msg.data,))
@@ -143,7 +142,7 @@ def encoder_of(
         except struct.error as error:
             raise MessageError(type_name(cls), f"too large to encode ({error})") from None
         except FALLBACK_ERRORS:
-            # Arrays that are not contiguous, which a snapshot may share with the message.
+            # Non-contiguous arrays, which a snapshot may share with the message.
             return fast(copy.deepcopy(taken), True)
 
     fast = generate_encoder(cls, encode_unusual, finish)
@@ -152,7 +151,7 @@ def encoder_of(
 
 @cache
 def decoder_of(cls: Any, family: MessageFamily) -> Callable[[Any], Any]:
-    """Return the decoder of a class that makes objects of `family`."""
+    """Return the decoder of a class that creates objects of `family`."""
     fields(cls)  # raises TypeError for a service class
     if unserialized(cls) is not cls:
         constructor: Callable[[Any], Any] = cls
@@ -178,7 +177,7 @@ def view_decoder(cls: Any, family: MessageFamily) -> Callable[[memoryview], Any]
 
 
 def read_only(data: Any) -> memoryview:
-    """Return `data` as a read-only view of single bytes."""
+    """Return `data` as a read-only view of bytes."""
     view = memoryview(data)
     if not view.nbytes or not view.c_contiguous:
         view = memoryview(bytes(view))

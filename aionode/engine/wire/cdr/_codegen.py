@@ -1,4 +1,4 @@
-"""Builds the source of functions that are generated once for each message type.
+"""Builds the source of functions that are generated once per message type.
 
 The source consists only of numbers, names chosen by this package, and field names that
 `aionode.message` has validated as identifiers. All other values are passed in by name.
@@ -104,7 +104,7 @@ class CodeBuilder:
         """Return the compiled function; `subject` is shown in tracebacks."""
         name = head.removeprefix("def ").partition("(")[0]
         code = compile(self.text(head), f"<{name} {subject}>", "exec")
-        # The source holds validated field names and numbers only: see the module's docstring.
+        # The source contains only validated field names and numbers: see the module's docstring.
         exec(code, self.namespace)  # noqa: S102
         function: Callable[..., Any] = self.namespace.pop(name)
         return function

@@ -1,7 +1,7 @@
 """Checks of values that are not of the usual Python and numpy classes.
 
-A generated encoder calls these functions for unusual values. They accept what can be packed as it
-is, and raise `NeedsFallback` otherwise: the encoder then encodes a snapshot of the message.
+Generated encoders call these functions for unusual values. They accept what can be packed directly,
+and otherwise raise `NeedsFallback`: the encoder then encodes a snapshot of the message.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CLASSES: dict[str, set[type]] = {"b": {bool}, "i": {int}, "u": {int}, "f": {floa
 
 
 def octets(value: object) -> Any:
-    """Return `value`, or a view of it, if its memory can be sent as it is."""
+    """Return `value`, or a view of it, if its memory can be sent directly."""
     if isinstance(value, bytes | bytearray):
         return value
     try:
@@ -33,15 +33,15 @@ def octets(value: object) -> Any:
 
 
 def whole_numbers(*values: object) -> None:
-    """Raise NeedsFallback for a bool: `struct` accepts it, but refuses all other non-integers."""
+    """Raise NeedsFallback for a bool: `struct` accepts it, but rejects all other non-integers."""
     if any(isinstance(value, bool) for value in values):
         raise NeedsFallback
 
 
 def real_numbers(*values: object) -> None:
-    """Raise NeedsFallback for what `struct` accepts though it is not a real number.
+    """Raise NeedsFallback for values that `struct` accepts although they are not real numbers.
 
-    A bool, a Decimal or an array converts to a float too.
+    A bool, a Decimal or an array would also convert to a float.
     """
     for value in values:
         # The first test is the fast one; numpy's float64 is a float.
@@ -52,7 +52,7 @@ def real_numbers(*values: object) -> None:
 
 
 def coerce_array(value: object, dtype: Any, code: str) -> Any:
-    """Return a list of numbers, an `array.array`, or an array of a subclass of ndarray as ndarray.
+    """Return a list of numbers, an `array.array` or an ndarray subclass as an ndarray.
 
     Args:
         value: The value of an array field.

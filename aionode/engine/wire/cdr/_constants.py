@@ -1,4 +1,4 @@
-"""Constants of the encoding that need no knowledge of message types."""
+"""Constants of the encoding that do not depend on message types."""
 
 from __future__ import annotations
 

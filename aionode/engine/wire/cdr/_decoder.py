@@ -1,7 +1,7 @@
 """Generates one decoder function for each message type.
 
-The generated function assumes little-endian data as ROS writes it and validates little: invalid
-data raises an exception somewhere, and the fallback decoder then decodes the data again and either
+The generated function assumes little-endian data as ROS writes it, and validates little: invalid
+data raises an exception somewhere, and the fallback decoder then decodes the data again. It either
 reports the exact position of the error or succeeds, as it is more lenient.
 """
 
@@ -49,7 +49,7 @@ SKIPPED = 31
 """Number of messages after a cache miss for which the cached text is not compared."""
 
 LONGEST_KEPT = 256
-"""Largest string, in bytes, that is cached in case that the next message has the same one."""
+"""Maximum size of a string that is cached in case the next message has the same one, in bytes."""
 
 
 def generate_decoder(
@@ -64,9 +64,9 @@ def generate_decoder(
     Args:
         cls: A message class.
         fallback: Decodes data that the function cannot decode, or raises the error.
-        other: Decodes data that is not a bytes object. Without it, the function accepts
-            memoryviews only.
-        family: Whose objects it makes.
+        other: Decodes data that is not a bytes object. Without it, the function only accepts
+            memoryviews.
+        family: The family of the messages it creates.
     """
     return DecoderGenerator(cls, family, of_bytes=other is not None).whole(fallback, other)
 
@@ -75,7 +75,7 @@ def generate_decoder(
 def element_decoder(
     cls: Any, family: MessageFamily, *, of_bytes: bool
 ) -> Callable[[Any, memoryview, int], tuple[Any, int]]:
-    """Return the function that decodes a nested message: it returns the message and its end."""
+    """Return a function that decodes a nested message, and returns the message and its end."""
     return DecoderGenerator(cls, family, of_bytes=of_bytes).element()
 
 
@@ -94,7 +94,7 @@ class DecoderGenerator:
 
     Adjacent values of fixed size are collected into a run, and each run is unpacked in one step.
     `_offset` is the value of the variable `pos` at the start of the current run, or None if that
-    depends on the data. In both cases that position, not counting the header, is `_residue` modulo
+    depends on the data. In both cases, that position, not counting the header, is `_residue` modulo
     `_modulus`, so the generator knows which alignments need no padding.
     """
 
@@ -148,12 +148,12 @@ class DecoderGenerator:
         described = fields(cls)
         if not described:
             self._value("x", 1)
-        # Positional arguments, as keyword arguments would cost twice as much.
+        # Positional, as keyword arguments would cost twice as much.
         values = [self._field(field.type, field.name) for field in described]
         return f"{self._class(cls)}({', '.join(values)})"
 
     def _class(self, cls: Any) -> str:
-        """Return the name of what makes a message, derived from its validated type name."""
+        """Return the name of a message's constructor, derived from its validated type name."""
         make = self._family.constructor(cls)
         return self._source.constant(type_name(cls).rpartition("/")[2], make)
 
@@ -194,7 +194,7 @@ class DecoderGenerator:
         """Decode a text that is probably the same as in the last message, such as a frame id.
 
         A text that equals the cached one need not be validated or created again. It is compared
-        together with its length, and at the start of a message with the header too, so truncated
+        together with its length, and at the start of a message also with the header, so truncated
         data never matches. After a cache miss the comparison is skipped for `SKIPPED` messages, so
         texts that change every time cost little more.
         """
@@ -340,7 +340,7 @@ class DecoderGenerator:
         return offset
 
     def _flush(self) -> None:
-        """Unpack the current run and begin a new one."""
+        """Unpack the current run and start a new one."""
         packed = struct.Struct(self._layout)
         source = self._source
         if self._targets:
@@ -392,7 +392,7 @@ class DecoderGenerator:
 
         Args:
             size: Expression of its size.
-            alignment: A number that the size is always a multiple of.
+            alignment: A number of which the size is always a multiple.
         """
         source = self._source
         if self._offset is not None:
@@ -435,7 +435,7 @@ class DecoderGenerator:
         return f"{make}(data, {dtype}, {count}, {place})"
 
     def _run_arrays(self) -> None:
-        """Create the arrays of the run; slices of one array for each element type are cheaper."""
+        """Create the arrays of the run; slicing one array per element type is cheaper."""
         source = self._source
         for kind in dict.fromkeys(array.kind for array in self._arrays):
             arrays = [array for array in self._arrays if array.kind == kind]

@@ -3,8 +3,8 @@
 Nested messages are inlined, so runs of values of fixed size are packed by one `struct.Struct` even
 across nesting levels. A run after a value of variable size has one Struct for each of the eight
 start positions that differ in alignment. The generated function handles messages in their usual
-form (ndarrays of the field's dtype, lists of str) and leaves all others to a slower fallback, which
-also raises the errors.
+form (ndarrays with the field's dtype, lists of str) and leaves all others to a slower fallback,
+which also raises the errors.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ Encoded = TypeVar("Encoded")
 JOIN: Final = b"".join
 
 LARGE: Final = 1 << 12
-"""Parts of at least this many elements stay separate; smaller ones are cheaper to join."""
+"""Parts with at least this many elements stay separate; smaller ones are cheaper to join."""
 
 FALLBACK_ERRORS = (
     NeedsFallback,
@@ -71,16 +71,16 @@ def generate_encoder(
     Args:
         cls: A message class.
         fallback: Encodes a message that is not in the usual form, or raises the error. It may call
-            the function again with True as second argument, which then raises what went wrong.
-        finish: Makes the result from the parts, which are bytes and the message's own arrays:
+            the function again with True as the second argument, which then raises what went wrong.
+        finish: Creates the result from the parts, which are bytes and the message's own arrays:
             `JOIN` or `views`.
-        family: Whose objects it encodes.
+        family: The family of the messages it encodes.
     """
     return EncoderGenerator(cls, family).whole(fallback, finish)
 
 
 def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
-    """Return `parts` with small ones joined to bytes, large ones as read-only byte views."""
+    """Return `parts` with small ones joined, and large ones as read-only byte views."""
     chunks: list[bytes | memoryview] = []
     begin = 0
     for place in [number for number, part in enumerate(parts) if len(part) >= LARGE]:
@@ -96,7 +96,7 @@ def views(parts: Sequence[Any]) -> list[bytes | memoryview]:
 
 @cache
 def element_encoder(cls: Any, family: MessageFamily) -> Callable[[list[bytes], int, Any], int]:
-    """Return the function that encodes a nested message: it appends parts and returns `pos`."""
+    """Return a function that encodes a nested message: it appends parts and returns `pos`."""
     return EncoderGenerator(cls, family).element()
 
 
@@ -106,7 +106,7 @@ class EncoderGenerator:
     Adjacent values of fixed size are collected into a run, and each run is packed in one step; the
     runs, and the values of variable size between them, are the parts of the encoded message.
     `_offset` is the value of the variable `pos` after the parts so far, or None if that depends on
-    the message. In both cases that position is `_residue` modulo `_modulus`.
+    the message. In both cases, that position is `_residue` modulo `_modulus`.
     """
 
     def __init__(self, cls: Any, family: MessageFamily) -> None:
@@ -163,7 +163,7 @@ class EncoderGenerator:
         return self._source.function("def write(out, pos, msg):", type_name(self._cls))
 
     def _message(self, cls: Any, owner: str, after: int) -> None:
-        """Encode all fields; the next value after them is aligned to `after`."""
+        """Encode all fields; the value that follows is aligned to `after`."""
         class_ = self._source.constant("T", self._family.class_of(cls))
         self._source.require(f"{owner}.__class__ is {class_}")
         described = fields(cls)
@@ -214,7 +214,8 @@ class EncoderGenerator:
         source = self._source
         local = source.local(name)
         source.line(f"{local} = {value}")
-        # struct checks ranges, but accepts any object as a bool and whatever converts to a number.
+        # struct checks ranges, but accepts any object as a bool and anything convertible as a
+        # number.
         if kind == "bool":
             source.require(f"{local} is True or {local} is False")
         elif kind.startswith("float"):
@@ -225,7 +226,7 @@ class EncoderGenerator:
         self._run.append(Item(primitive.code, primitive.size, local))
 
     def _check_scalars(self) -> None:
-        """Check the classes of all numbers so far in one statement."""
+        """Check the classes of all numbers so far in a single statement."""
         for name, look in (("int", whole_numbers), ("float", real_numbers)):
             values = self._ints if name == "int" else self._floats
             if values:
@@ -333,7 +334,7 @@ class EncoderGenerator:
                 self._element(cls, element)
 
     def _element(self, cls: Any, local: str) -> None:
-        """Encode a nested message by the function of its class."""
+        """Encode a nested message with the function of its class."""
         source = self._source
         write = source.constant("write", element_encoder(cls, self._family))
         source.line(f"pos = {write}(out, pos, {local})")
@@ -392,12 +393,12 @@ class EncoderGenerator:
         else:
             self._source.position(f"pos = {self._offset} + {size}")
             self._offset = None
-        # The value started aligned, as far as that is known.
+        # The value was aligned at its start, as far as that is known.
         self._modulus = min(alignment, self._modulus)
         self._residue = len(HEADER) % self._modulus
 
     def _flush(self) -> None:
-        """Pack the current run and begin a new one."""
+        """Pack the current run and start a new one."""
         if not self._run:
             return
         run, self._run = self._run, []

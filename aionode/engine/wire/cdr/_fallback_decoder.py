@@ -1,9 +1,9 @@
 """Decodes any message field by field: slower than the generated functions, but more lenient.
 
 It accepts both byte orders and the output of writers that are less strict than ROS, and its errors
-name the field and the offset. Text that is no Unicode is decoded here only, with U+FFFD for what is
-wrong in it, as rclpy decodes it. Lengths are checked against the remaining bytes before anything is
-allocated, so a corrupt length cannot make the result much larger than the data.
+name the field and the offset. Invalid Unicode is only decoded here, with U+FFFD for the invalid
+parts, as in rclpy. Lengths are checked against the remaining bytes before anything is allocated, so
+a corrupt length cannot make the result much larger than the data.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def decode_slowly(cls: type[Message], data: memoryview, family: MessageFamily = 
     """Return the message in `data`, an object of `family`.
 
     Raises:
-        DecodeError: The data does not hold a message of this class.
+        DecodeError: the data does not hold a message of this class.
     """
     return FallbackDecoder(cls, data, family).whole()
 
@@ -51,14 +51,16 @@ class FallbackDecoder:
         self._path = ""
         self._order = "<"
         self._replaced: tuple[str, bytes] | None = None
-        """Where the first text is that is no Unicode, and its bytes."""
+        """Location and bytes of the first text with invalid Unicode."""
 
     def whole(self) -> Any:
         """Decode the header and the message after it."""
         start = bytes(self._take(len(HEADER), "the encapsulation header")[:2])
         if start not in ORDERS:
             self._pos = 0
-            self._fail(f"starts with {start.hex(' ')}, needs 00 01 (CDR, little endian) or 00 00")
+            self._fail(
+                f"starts with {start.hex(' ')}, expected 00 01 (CDR, little endian) or 00 00"
+            )
         self._order = ORDERS[start]
         message = self._message(self._cls)
         if self._replaced is not None:
@@ -80,7 +82,7 @@ class FallbackDecoder:
             return self._element(kind)
         count = kind.size if kind.container == "array" else self._count("elements")
         if kind.container == "bounded" and count > kind.size:
-            self._fail(f"{count} elements, at most {kind.size} fit")
+            self._fail(f"{count} elements, at most {kind.size} are allowed")
         if kind.form == "bytes":
             data = self._take(count, f"{count} elements")
             # As in the generated functions: arrays are copied, sequences are views.
@@ -105,13 +107,13 @@ class FallbackDecoder:
             return struct.unpack(self._order + primitive.code, data)[0]
         text = self._wide_text() if kind.kind == "wstring" else self._text()
         if kind.string_bound is not None and len(text) > kind.string_bound:
-            self._fail(f"{len(text)} characters, at most {kind.string_bound} fit")
+            self._fail(f"{len(text)} characters, at most {kind.string_bound} are allowed")
         return text
 
     def _text(self) -> str:
         size = self._count("bytes of text")
         data = bytes(self._take(size, f"{size} bytes of text"))
-        # Some writers leave out the NUL, or write a length of 0 for an empty string.
+        # Some writers omit the NUL, or write a length of 0 for an empty string.
         data = data.removesuffix(b"\0")
         try:
             return data.decode()
@@ -139,7 +141,7 @@ class FallbackDecoder:
             array = np.frombuffer(data, np.uint8) != 0
         else:
             array = np.frombuffer(data, f"{self._order}{primitive.dtype}")
-            # Subscribers get arrays in the machine's byte order.
+            # Subscribers get arrays in native byte order.
             array = array.astype(array.dtype.newbyteorder("="), copy=False)
         array.flags.writeable = False
         return array
@@ -165,7 +167,7 @@ class FallbackDecoder:
 
     @contextmanager
     def _inside(self, step: str) -> Iterator[None]:
-        """Add `step` to the path in error texts."""
+        """Add `step` to the path shown in errors."""
         before = self._path
         self._path += step
         yield

@@ -1,4 +1,4 @@
-"""Families of classes that hold messages: aionode's own, and others for the same ROS types."""
+"""Families of message classes: aionode's own, and other classes for the same ROS types."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ __all__ = ["OWN", "MessageFamily"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MessageFamily:
-    """Other Python classes for the messages that aionode's classes describe.
+    """Other Python classes for the messages described by aionode's classes.
 
-    The codec takes names and types of the fields from aionode's class, and reads and makes objects
-    of the family's class.
+    The codec takes the names and types of the fields from aionode's class, and reads and creates
+    objects of the family's class.
 
     Attributes:
-        class_of: Returns the family's class for a class of aionode.
-        constructor: Returns what makes an object of the family's class for a class of aionode. It
-            is called with the values of all fields, in their order and in the form in which
-            `decode` gives them: arrays and sequences of bytes are views of the data.
-        adopt: Returns an object of the family as a message of aionode. It is called for values in
-            an unusual form; what aionode cannot encode either is refused with aionode's errors.
-        prefix: What stands before the name of a field in the name of its attribute.
+        class_of: Returns the family's class for an aionode class.
+        constructor: Returns the function that creates an object of the family's class for an
+            aionode class. It is called with the values of all fields, in order and in the form
+            produced by `decode`: arrays and sequences of bytes are views of the data.
+        adopt: Returns an object of the family as an aionode message. It is called for values in an
+            unusual form; aionode's errors are raised for what aionode cannot encode either.
+        prefix: The prefix of a field's name in the name of its attribute.
     """
 
     class_of: Callable[[type[Message]], type[Any]]
@@ -36,7 +36,7 @@ class MessageFamily:
 
 
 def itself(value: Any) -> Any:
-    """Return the value."""
+    """Return the value unchanged."""
     return value
 
 

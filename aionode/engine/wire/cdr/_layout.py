@@ -1,8 +1,8 @@
-"""Sizes and alignments of XCDR1, the encoding of ROS 2, and runs of values packed in one step.
+"""Sizes and alignments of XCDR1, ROS 2's encoding, and runs of values packed in one step.
 
 A value is aligned to its own size, counted from the end of the four-byte header of each message.
-Only values are aligned, not structures: where a structure starts depends on its first field alone.
-Offsets in this package include the header, so they are positions in the data as it is sent.
+Only values are aligned, not structures: the start of a structure depends only on its first field.
+Offsets in this package include the header, so they are positions in the data as sent.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ __all__ = [
 ]
 
 MOST_LEAVES = 64
-"""Largest number of fields, nested ones included, of a message whose code is inlined."""
+"""Maximum number of fields, including nested ones, of a message whose code is inlined."""
 
 DEEPEST = 16
-"""Largest nesting depth of a message whose code is inlined."""
+"""Maximum nesting depth of a message whose code is inlined."""
 
 PHASES = 8
 """Number of start positions that differ in alignment: the largest alignment is 8."""
@@ -52,7 +52,7 @@ TEXT = "text"
 """Code of an item whose size is that of a string."""
 
 LONGEST_PACKED = 64
-"""Largest size in bytes of a string that is packed together with the values around it."""
+"""Maximum size of a string that is packed together with the values around it, in bytes."""
 
 Pack: TypeAlias = Callable[..., bytes]
 
@@ -107,9 +107,9 @@ def first_alignment(kind: FieldType) -> int:
 
 
 def minimum_size(cls: Any) -> int:
-    """Return the smallest encoded size of a message class in bytes, without padding.
+    """Return the minimum encoded size of a message class in bytes, without padding.
 
-    It is never 0, so a sequence that claims more elements than there are bytes is refused early.
+    It is never 0, so a sequence that claims more elements than there are bytes is rejected early.
     """
     return totals(cls)[0]
 
@@ -117,7 +117,7 @@ def minimum_size(cls: Any) -> int:
 def is_small(cls: Any) -> bool:
     """Return whether the code for a nested message may be inlined.
 
-    Larger messages get a function of their own, so that the generated code stays bounded.
+    Larger messages get a function of their own, which bounds the size of the generated code.
     """
     _, leaves, depth = totals(cls)
     return leaves <= MOST_LEAVES and depth <= DEEPEST
@@ -132,9 +132,9 @@ def has_views(cls: Any) -> bool:
 
 
 def has_buffers(cls: Any) -> bool:
-    """Return whether messages contain such sequences without a bound.
+    """Return whether messages contain unbounded sequences of this kind.
 
-    From ROS 2 Lyrical on, their publishers use a second key.
+    Since ROS 2 Lyrical, their publishers use a second key.
     """
     return holds_numbers_in(cls, ("unbounded",))
 
@@ -152,7 +152,7 @@ def holds_numbers_in(cls: Any, containers: tuple[str, ...]) -> bool:
 
 @cache
 def totals(cls: Any) -> tuple[int, int, int]:
-    """Return the smallest size, the number of flattened fields, and the nesting depth."""
+    """Return the minimum size, the number of flattened fields, and the nesting depth."""
     size = leaves = depth = 0
     for field in fields(cls):
         kind = field.type
@@ -175,9 +175,9 @@ def totals(cls: Any) -> tuple[int, int, int]:
 
 @cache
 def uniform_alignment(cls: Any) -> int | None:
-    """Return the common alignment of all values of a fixed-size message, None if they differ.
+    """Return the common alignment of all values of a fixed-size message; None if they differ.
 
-    Messages of such a class follow each other without padding once the first is aligned.
+    Messages of such a class follow each other without padding once the first one is aligned.
     """
     alignments: set[int | None] = set()
     for field in fields(cls):
@@ -209,7 +209,7 @@ class Item:
 
 
 def lay_out(run: list[Item], start: int, text_size: int = 0) -> str:
-    """Return the `struct` format, padding included, of a run that starts at offset `start`."""
+    """Return the `struct` format, including padding, of a run that starts at offset `start`."""
     layout = "<"
     for item in run:
         gap = padding(start + struct.calcsize(layout), item.alignment)
@@ -226,7 +226,7 @@ def phase_structs(run: list[Item], phases: range) -> dict[int, struct.Struct]:
 class TextPacking:
     """Packs a run that contains one string and starts at a known offset.
 
-    Most messages with a string begin with a header whose frame id is short and rarely changes its
+    Most messages with a string start with a header whose frame id is short and rarely changes its
     length. There is one Struct for each length that occurs, which packs the run in one step.
     """
 
@@ -238,7 +238,7 @@ class TextPacking:
         self._before = struct.Struct(lay_out(run[:place], start))
         self._after = phase_structs(run[place + 1 :], range(PHASES))
         self.known: dict[int, tuple[Pack, int]] = {}
-        """Earlier results for short strings, by size of the string in bytes."""
+        """Earlier results for short strings, by the string's size in bytes."""
 
     def __call__(self, size: int) -> tuple[Pack, int]:
         """Return the packing function for a string of `size` bytes, and the run's end offset."""

@@ -21,7 +21,7 @@ __all__ = [
 COUNT = struct.Struct("<I")
 
 LARGEST_KEPT = 4096
-"""Largest block of strings, in bytes, that is cached; longer ones rarely repeat."""
+"""Maximum size of a block of strings that is cached, in bytes; longer ones rarely repeat."""
 
 
 def gap_after(size: int) -> int:
@@ -30,7 +30,7 @@ def gap_after(size: int) -> int:
 
 
 PACKS = [struct.Struct(f"<I{size}s{gap_after(size)}x").pack for size in range(64)]
-"""Packs a short string with its length, NUL and padding; indexed by its size with the NUL."""
+"""Functions that pack a short string with length, NUL and padding, by size with the NUL."""
 
 
 class StringsWriter:
@@ -46,7 +46,7 @@ class StringsWriter:
     def __call__(self, strings: list[str]) -> bytes:
         """Return the encoded strings, each padded to the alignment of the next.
 
-        The first starts aligned. The last one has no padding if `exact` was given.
+        The first one starts aligned. The last one has no padding if `exact` was given.
         """
         known, block = self._last
         if strings == known:
@@ -74,7 +74,7 @@ class StringsReader:
         self._last: tuple[int, bytes, list[str]] = (0, b"", [])
 
     def __call__(self, data: Any, pos: int, count: int) -> tuple[list[str], int]:
-        """Return `count` strings from the aligned offset `pos`, and the offset of their end."""
+        """Decode `count` strings from the aligned offset `pos`; also return their end offset."""
         known_count, block, known = self._last
         if count == known_count and data[pos : pos + len(block)] == block:
             return known.copy(), pos + len(block)
@@ -97,7 +97,7 @@ class StringsReader:
 
 
 def wide_bytes(text: str) -> bytes:
-    """Return a wide string encoded.
+    """Encode a wide string.
 
     ROS holds it as UTF-16 and encodes each half of a surrogate pair as a separate character.
     """
@@ -109,16 +109,16 @@ def wide_bytes(text: str) -> bytes:
 
 
 def wide_strings(strings: list[str]) -> bytes:
-    """Return a sequence of wide strings encoded."""
+    """Encode a sequence of wide strings."""
     encoded = map(wide_bytes, strings)
     return b"".join([COUNT.pack(len(data) // 4) + data for data in encoded])
 
 
 def wide_string(data: Any, order: str = "<") -> str:
-    """Return a decoded wide string, whether it was written as UTF-16 units or as UTF-32.
+    """Decode a wide string, whether written as UTF-16 units or as UTF-32.
 
     Raises:
-        ValueError: A character is invalid, or half of a surrogate pair is missing.
+        ValueError: a character is invalid, or half of a surrogate pair is missing.
     """
     units = struct.unpack(f"{order}{len(data) // 4}I", data)
     if not any(0xD800 <= unit < 0xE000 for unit in units):
@@ -131,7 +131,7 @@ def wide_string(data: Any, order: str = "<") -> str:
 
 
 def repaired_wide_string(data: Any, order: str) -> str:
-    """Return a wide string in which U+FFFD stands for whatever is neither UTF-16 nor UTF-32."""
+    """Decode a wide string, with U+FFFD for whatever is neither UTF-16 nor UTF-32."""
     units = struct.unpack(f"{order}{len(data) // 4}I", data)
     octets = b"".join(
         struct.pack("<H", unit)
@@ -143,7 +143,7 @@ def repaired_wide_string(data: Any, order: str) -> str:
 
 
 def read_wide_strings(data: Any, pos: int, count: int) -> tuple[list[str], int]:
-    """Return `count` wide strings from the aligned offset `pos`, and the offset of their end."""
+    """Decode `count` wide strings from the aligned offset `pos`; also return their end offset."""
     if COUNT_SIZE * count > len(data) - pos:
         raise NeedsFallback
     strings = []

@@ -95,7 +95,7 @@ def test_the_environment_chooses_the_transport(monkeypatch: pytest.MonkeyPatch) 
 def test_the_hint_names_the_middleware_that_is_not_heard() -> None:
     """And none for rmw_zenoh."""
     assert unheard_middleware({"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}) == (
-        "RMW_IMPLEMENTATION=rmw_fastrtps_cpp: nodes over DDS are not heard; "
+        "RMW_IMPLEMENTATION=rmw_fastrtps_cpp: nodes on DDS are not reachable; "
         "AIONODE_TRANSPORT=rcl reaches them"
     )
     assert unheard_middleware({"RMW_IMPLEMENTATION": "rmw_zenoh_cpp"}) is None

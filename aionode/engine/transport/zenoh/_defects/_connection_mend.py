@@ -1,4 +1,4 @@
-"""The common part of mends that act when a connection was lost or made."""
+"""The common part of workarounds that act when a connection is lost or made."""
 
 from __future__ import annotations
 
@@ -20,24 +20,24 @@ if TYPE_CHECKING:
 __all__ = ["ATTEMPTS", "POSTPONED_S", "ConnectionMend"]
 
 POSTPONED_S: Final = 3.0
-"""Time for which connections that go on being made or lost may postpone the mend, in seconds."""
+"""How long a continuing stream of connection changes may postpone the action, in seconds."""
 
 ATTEMPTS: Final = 4
-"""Number of cuts for one participant; some participants are visible, but not reachable."""
+"""Maximum number of cuts per participant, as some are visible but not reachable."""
 
 
 class ConnectionMend(ABC):
-    """Mends a defect after connections were lost or made, while a session is open.
+    """Works around a defect after connections are lost or made, while a session is open.
 
-    It does nothing where the session dials no endpoint again and again: a connection that is cut
-    would not be made anew. All of it belongs to the event loop, unless a method says otherwise.
+    It does nothing if the session does not keep dialling endpoints, as a connection that is cut
+    would not be re-established. Everything belongs to the event loop, unless stated otherwise.
 
     Args:
         state: The session state of the context.
         network: The settings of the context, with the endpoints that it dials.
 
     Attributes:
-        defect: The name of the defect, by which the mend is switched off.
+        defect: The name of the defect, by which the workaround is disabled.
     """
 
     defect: ClassVar[str]
@@ -55,12 +55,14 @@ class ConnectionMend(ABC):
             self._session = session
 
     def stop(self) -> None:
-        """Act no more; work that a thread has begun ends by itself."""
+        """Stop acting; work started in a thread ends by itself."""
         self._session = None
         self._later.cancel()
 
     def _hear(self, change: ConnectionChange) -> None:
-        if self._session is not None and change.kind != zenoh.WhatAmI.CLIENT:  # that dials itself
+        if (
+            self._session is not None and change.kind != zenoh.WhatAmI.CLIENT
+        ):  # clients reconnect themselves
             self._take_change(change, asyncio.get_running_loop().time())
 
     @abstractmethod

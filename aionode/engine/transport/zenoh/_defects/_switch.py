@@ -1,4 +1,4 @@
-"""The switch of the mends."""
+"""Disables workarounds."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from aionode.errors import ConfigurationError
 __all__ = ["is_mended"]
 
 VARIABLE: Final = "AIONODE_ZENOH_UNMENDED"
-"""The environment variable that names the defects whose mends are switched off."""
+"""The environment variable that lists the defects whose workarounds are disabled."""
 
 
 def is_mended(defect: str) -> bool:
-    """Return whether the mend of a defect is switched on.
+    """Return whether the workaround for a defect is enabled.
 
     Raises:
-        ConfigurationError: the environment names something else than a defect.
+        ConfigurationError: the environment names something that is not a defect.
     """
     unmended = set(os.environ.get(VARIABLE, "").replace(",", " ").split())
     for name in unmended and unmended - defects():
@@ -28,6 +28,6 @@ def is_mended(defect: str) -> bool:
 
 
 def defects() -> set[str]:
-    """Return the names of all defects: each has a module here."""
+    """Return the names of all defects; each has a module here."""
     names = {module.name for module in pkgutil.iter_modules([str(Path(__file__).parent)])}
     return {name for name in names if not name.startswith("_")}

@@ -1,4 +1,4 @@
-"""A send that waits for a peer keeps other sends waiting, and the end of the peer's lease too.
+"""A send that waits for a peer blocks other sends, and also the end of the peer's lease.
 
 Zenoh:
     Each peer and priority has a queue. A `put` with BLOCK that finds it full waits with the lock

@@ -42,14 +42,14 @@ if TYPE_CHECKING:
 __all__ = ["cut_stuck", "cut_unanswered"]
 
 INTERNET: Final = {socket.AF_INET, socket.AF_INET6}
-"""The families of connections between hosts."""
+"""The address families of connections between hosts."""
 
 STUCK_S: Final = 0.1
-"""Time in which a peer reads not one byte, while some wait, after which it is not waited for, in
+"""A peer that reads not a single byte for this long, while some are pending, is not waited for; in
 seconds."""
 
 RESET: Final = struct.pack("ii", 1, 0)
-"""SO_LINGER for a connection that is cut: bytes that the peer has not taken are dropped."""
+"""SO_LINGER for a connection that is cut: pending bytes are dropped."""
 
 ESTABLISHED: Final = 1
 """The first byte of ``struct tcp_info`` while both ends are connected."""
@@ -62,27 +62,27 @@ ZENOH_LINGER: Final = struct.pack("ii", 1, 10)
 
 
 def is_mended() -> bool:
-    """Return whether sockets can be found here, and the mend is switched on."""
+    """Return whether sockets can be found here, and the workaround is enabled."""
     return sys.platform.startswith("linux") and _switch.is_mended("closing")
 
 
 def waiting_bytes(session: zenoh.Session) -> dict[Descriptor, int]:
-    """Return how many bytes wait in each socket of a session; not those with none."""
+    """Return the number of pending bytes in each socket of a session, omitting zeros."""
     own = connections(session)
     waiting = {descriptor: queued_bytes(copy) for descriptor, copy in duplicates(own)}
     return {descriptor: size for descriptor, size in waiting.items() if size}
 
 
 def unanswered() -> set[Descriptor]:
-    """Return the sockets of connections that Zenoh is making with peers that do not answer.
+    """Return the sockets of connections being made with peers that do not answer.
 
-    Of all sessions of the process: the system does not tell them apart.
+    This covers all sessions of the process: the system does not distinguish them.
     """
     return {descriptor for descriptor, copy in duplicates(polled_by_zenoh()) if is_unanswered(copy)}
 
 
 def is_unanswered(copy: socket.socket) -> bool:
-    """Return whether a socket has the options of Zenoh, is connected, and has received nothing."""
+    """Return whether a socket has Zenoh's options, is connected, and has received nothing."""
     if copy.type != socket.SOCK_STREAM or copy.family not in INTERNET:
         return False
     if copy.getsockopt(socket.SOL_SOCKET, socket.SO_LINGER, 8) != ZENOH_LINGER:
@@ -93,10 +93,10 @@ def is_unanswered(copy: socket.socket) -> bool:
 
 
 def cut_unanswered(done: threading.Event) -> None:
-    """Cut connections that are being made with peers that do not answer, until `done` is set.
+    """Cut connections being made with peers that do not answer, until `done` is set.
 
-    A session that is being closed waits for each of them, for ten seconds, and dials those that it
-    has lost again meanwhile. Runs in a thread.
+    A session being closed waits ten seconds for each of them, and meanwhile redials those that it
+    has lost. Runs in a thread.
     """
     silent: set[Descriptor] = set()
     while is_mended() and not done.wait(STUCK_S):
@@ -107,8 +107,8 @@ def cut_unanswered(done: threading.Event) -> None:
 def cut_stuck(session: zenoh.Session) -> None:
     """Cut connections that a session about to be closed would wait for.
 
-    Those whose peers do not read, and those that are being made with peers that do not answer. Runs
-    in a thread.
+    These are connections whose peers do not read, and connections being made with peers that do not
+    answer. Runs in a thread.
     """
     if not is_mended():
         return

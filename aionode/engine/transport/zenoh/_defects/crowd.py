@@ -1,4 +1,4 @@
-"""Nothing can be put while Zenoh drops what a lost connection has announced.
+"""Nothing can be sent while Zenoh drops what a lost connection has announced.
 
 Zenoh:
     When a connection ends, Zenoh drops all tokens that came over it in one piece, with a lock that
@@ -24,9 +24,9 @@ from aionode.engine.transport.zenoh._defects._switch import is_mended
 __all__ = ["is_crowd"]
 
 CROWDED: Final = 2_000
-"""Of more tokens than that Zenoh's lock may be held for long."""
+"""Number of tokens beyond which Zenoh's lock may be held for long."""
 
 
 def is_crowd(tokens: int) -> bool:
-    """Return whether others have announced so many tokens that the event loop is to put nothing."""
+    """Return whether others have announced so many tokens that the event loop must not put."""
     return tokens > CROWDED and is_mended("crowd")

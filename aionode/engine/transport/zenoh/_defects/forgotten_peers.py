@@ -1,4 +1,4 @@
-"""A peer that gossip has named once is dialled once: a lost connection to it is not made anew.
+"""A peer named once by gossip is dialled once: a lost connection to it is not re-established.
 
 Zenoh:
     Zenoh keeps dialling the endpoints of its configuration, but a peer that gossip has named only
@@ -66,17 +66,18 @@ FIRST_S: Final = 0.5
 milliseconds."""
 
 AGAIN_S: Final = 3.0
-"""The interval of further comparisons, in seconds: a process that was frozen returns without a
-sign."""
+"""The interval of further comparisons, in seconds: a process that was frozen returns without any
+notification."""
 
 WATCH_S: Final = 120.0
-"""Time for which comparisons are repeated after the last loss of a connection, in seconds."""
+"""How long comparisons are repeated after the last loss of a connection, in seconds."""
 
 SURE_S: Final = 0.3
-"""Time for which a participant must be missing, in seconds; a starting one is for milliseconds."""
+"""How long a participant must be missing, in seconds; a starting one is missing for
+milliseconds."""
 
 NODES_S: Final = 3.0
-"""The limit for an answer; on a busy machine with 300 nodes one takes a second."""
+"""Timeout for an answer, in seconds; with 300 nodes on a busy machine one takes a second."""
 
 CHECKS: Final = 3
 """Number of comparisons of the graph after connections have come or gone."""
@@ -95,7 +96,7 @@ class GossipSource(NamedTuple):
 
 
 class Recovery(ConnectionMend):
-    """Finds processes that are alive, but not connected any more.
+    """Finds processes that are alive, but no longer connected.
 
     Args:
         state: The session state of the context.
@@ -124,12 +125,12 @@ class Recovery(ConnectionMend):
         self._changing_since_s = 0.0  # when the first change was seen after the last comparison
         # Those that were missing in the last comparison; used by its thread only.
         self._suspected: set[str] = set()
-        # Number of cuts for each missing participant. The thread of a comparison reads this, and
-        # the loop replaces it when that thread has ended.
+        # Number of cuts per missing participant. The thread of a comparison reads this, and the
+        # loop replaces it when that thread has ended.
         self._attempts: dict[str, int] = {}
 
     def stop(self) -> None:
-        """Act no more; a comparison that is under way ends by itself."""
+        """Stop acting; a running comparison ends by itself."""
         super().stop()
         self._comparisons.clear()
         self._is_comparing = False
@@ -149,14 +150,14 @@ class Recovery(ConnectionMend):
             self._compare_in(FIRST_S)
 
     def _compare_in(self, delay_s: float) -> None:
-        """Compare in a while; processes that saw the same end do not all do so at once."""
+        """Compare after a random delay, so that not all processes do so at once."""
         spread = 1 + int(self._state.participant[-4:], 16) / 0x10000
         self._later.call(delay_s * spread, self._compare)
 
     def _compare(self) -> None:
         session = self._session
         if session is None or self._state.announced.left_out:
-            return  # what was left out would pass for lost
+            return  # ignored announcements would seem lost
         if self._is_comparing:
             self._compare_in(FIRST_S)
             return
@@ -199,10 +200,10 @@ class Recovery(ConnectionMend):
     def _reconnect(
         self, session: zenoh.Session, connection: GossipSource, lost: set[str], known: set[str]
     ) -> set[str]:
-        """Cut what has to be made anew, and return the participants for which that was done."""
+        """Cut what has to be re-established, and return the participants concerned."""
         apart, is_sure = self._missing(session, connection, lost, known)
-        # Where many start at once, connecting takes seconds, and a cut makes it take longer: one
-        # that was never connected has to be missing in two comparisons in a row.
+        # Where many start at once, connecting takes seconds, and a cut prolongs it: a participant
+        # that was never connected must be missing in two consecutive comparisons.
         missing = apart & (lost | self._suspected)
         if is_sure:
             missing |= apart & {self._state.participant}

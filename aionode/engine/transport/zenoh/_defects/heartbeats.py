@@ -22,7 +22,7 @@ from aionode.engine.transport.zenoh._defects._switch import is_mended
 __all__ = ["miss_detection"]
 
 HEARTBEAT_S = 0.5
-"""The interval of heartbeats while this is not mended, in seconds."""
+"""The interval of heartbeats without this workaround, in seconds."""
 
 
 def miss_detection() -> ext.MissDetectionConfig:

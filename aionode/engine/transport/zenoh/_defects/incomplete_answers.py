@@ -32,10 +32,10 @@ ANSWER_S: Final = 1.0
 """Timeout of a query for tokens, in seconds; it takes a millisecond."""
 
 ANSWERS: Final = 20
-"""Number of queries at most while answers lack known tokens."""
+"""Maximum number of queries while answers lack known tokens."""
 
 ANSWERS_S: Final = 0.2
-"""Time for which a session is asked again, in seconds; each answer takes a millisecond or two."""
+"""How long a session is queried again, in seconds; each answer takes a millisecond or two."""
 
 
 def tokens(
@@ -46,14 +46,14 @@ def tokens(
 ) -> set[str]:
     """Return the tokens that match `keys` and that a session sees.
 
-    The session is asked again while `expected` are missing, and each token that any answer names
-    counts.
+    The session is queried again while `expected` tokens are missing, and tokens from all answers
+    count.
 
     Args:
         session: The session.
-        *keys: What is asked for.
-        expected: Tokens that a complete answer has; some may still be missing in what is returned.
-        timeout_s: How long each answer may take.
+        *keys: The key expressions to query.
+        expected: Tokens in a complete answer; some may still be missing from the result.
+        timeout_s: Timeout for each answer, in seconds.
 
     Raises:
         TimeoutError: an answer was not complete in time; tokens that it lacks may exist.

@@ -41,7 +41,7 @@ UNREACHABLE_MS: Final = 5_000
 lost, in milliseconds."""
 
 SETTLE_S: Final = 0.5
-"""Delay of the search for sockets after a new connection, in seconds; several are made at once."""
+"""Delay before looking for sockets after a new connection, in seconds; several come at once."""
 
 
 class SocketOptions:
@@ -50,8 +50,8 @@ class SocketOptions:
     Closing one never waits for its peer. One whose peer reads nothing for `unread_ms` is lost
     before the lease ends, as Zenoh could not end it while a thread waits for that peer. One to
     another machine is lost when nothing has arrived there for `UNREACHABLE_MS`: otherwise, TCP
-    sends again after 0.2, 0.4, 0.8 … s, and when a network was gone for 30 s, and is back, it is
-    silent for up to 30 s more. A new connection finds the network at once.
+    retransmits after 0.2, 0.4, 0.8 … s, and after a network outage of 30 s it is silent for up to
+    30 s more. A new connection finds the network immediately.
 
     It works until the session is closed. The connections of a burst are looked for at once.
 
@@ -59,17 +59,17 @@ class SocketOptions:
         session: The session.
     """
 
-    # Of all sessions: those of one process are often connected with each other at the same time.
-    # Zenoh's threads, that of the timer and the loop hold it to use `_new`, `_timer` and `_closed`;
-    # nothing that may wait is done meanwhile.
+    # Shared by all sessions, as those of one process are often connected with each other. Zenoh's
+    # threads, the timer's and the loop hold it to use `_new`, `_timer` and `_closed`; nothing
+    # blocks meanwhile.
     _lock: ClassVar = threading.Lock()
-    # The connections whose options are not set yet, and what Zenoh has named their peers.
+    # Connections whose options are not set yet, and Zenoh's names of their peers.
     _new: ClassVar[dict[Pair, str]] = {}
 
     def __init__(self, session: zenoh.Session) -> None:
         self._timer: threading.Timer | None = None
         self._closed = not sys.platform.startswith("linux")
-        # It exists as long as this does, which its callback holds until the session is closed.
+        # It exists as long as this object, which its callback holds until the session is closed.
         self._listener = session.info.declare_link_events_listener(
             direct(self._on_event), history=True
         )
@@ -83,7 +83,7 @@ class SocketOptions:
         self._listener.undeclare()
 
     def _on_event(self, event: zenoh.LinkEvent) -> None:
-        """Handle a connection that was made or lost; in a thread of Zenoh."""
+        """Handle a connection that was made or lost, in a Zenoh thread."""
         if event.kind != zenoh.SampleKind.PUT:
             return
         with self._lock:
@@ -98,7 +98,7 @@ class SocketOptions:
                 start_thread(self._timer)
 
     def _set(self) -> None:
-        """Set the options of all new connections; in the thread of the timer."""
+        """Set the options of all new connections, in the timer's thread."""
         with self._lock:
             self._timer = None
             new = self._new.copy()

@@ -27,20 +27,20 @@ DESCRIPTORS: Final = Path("/proc/self/fd")
 PIDS_MAX: Final = Path("/sys/fs/cgroup/pids.max")
 
 NEEDED_DESCRIPTORS: Final = 24
-"""Number of descriptors that a session opens, with some for its first connections."""
+"""Number of descriptors that a session opens, including some for its first connections."""
 
 NEEDED_THREADS: Final = 16
-"""Number of threads that a session starts, with some for sending."""
+"""Number of threads that a session starts, including some for sending."""
 
 MANY: Final = 4096
-"""Limit from which on one process of a usual system does not meet it."""
+"""A limit that one process of a usual system does not reach."""
 
 
 def refuse_scarcity() -> None:
-    """Refuse to open a session where descriptors or threads are too few for it.
+    """Refuse to open a session if there are too few descriptors or threads for it.
 
     Raises:
-        TransportError: the text names the limit, and how to raise it.
+        TransportError: the message names the limit, and how to raise it.
     """
     if not is_mended("scarcity"):
         return
@@ -69,7 +69,7 @@ def refuse_scarcity() -> None:
 
 
 def open_descriptors() -> int:
-    """Return how many descriptors are open; as if there were none where nothing lists them."""
+    """Return the number of open descriptors; 0 if they cannot be listed."""
     try:
         return len(os.listdir(DESCRIPTORS))  # noqa: PTH208  # in half the time
     except FileNotFoundError:  # no Linux
@@ -79,7 +79,7 @@ def open_descriptors() -> int:
 
 
 def of_container() -> int:
-    """Return how many threads the container may have; -1 if there is no limit."""
+    """Return the thread limit of the container; -1 if there is none."""
     try:
         text = PIDS_MAX.read_text("ascii").strip()
     except OSError:
@@ -88,7 +88,7 @@ def of_container() -> int:
 
 
 def can_start_threads(count: int) -> bool:
-    """Return whether so many threads can run at the same time."""
+    """Return whether this many threads can run at the same time."""
     stop = threading.Event()
     started: list[threading.Thread] = []
     try:

@@ -1,4 +1,4 @@
-"""A peer that reconnects to a process which has not noticed the loss is told nothing any more.
+"""A peer that reconnects to a process that has not noticed the loss receives no declarations.
 
 Zenoh:
     A process that was frozen may accept a new connection while it still reads what came over the
@@ -43,18 +43,17 @@ __all__ = ["StaleTransports"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 DECLARED_S: Final = 1.0
-"""Time for the tokens of a participant that has returned, in seconds; they take some
-milliseconds."""
+"""Timeout for the tokens of a participant that has returned, in seconds; they take milliseconds."""
 
 PEERS_PER_SECOND: Final = 20
-"""Number of connected peers for each of which tokens may take a second: all may have returned."""
+"""Number of connected peers whose tokens may take a second: all of them may have returned."""
 
 FEW: Final = 3
-"""Number of participants without tokens from which on they may be slow, and have more time."""
+"""Number of participants without tokens from which on they may be slow, and get more time."""
 
 
 class StaleTransports(ConnectionMend):
-    """Connects participants anew that have returned, but declare nothing.
+    """Reconnects participants that have returned, but declare nothing.
 
     Args:
         state: The session state of the context.
@@ -65,14 +64,14 @@ class StaleTransports(ConnectionMend):
 
     def __init__(self, state: SessionState, network: Network) -> None:
         super().__init__(state, network)
-        self._changed_s = 0.0  # when a connection was made or lost last
-        # Participants whose connection was made anew, until it is known that they have declared.
+        self._changed_s = 0.0  # when a connection was last made or lost
+        # Participants whose connection was re-established, until they are known to have declared.
         self._returned: set[str] = set()
         # Number of cuts of the connection to each participant that declared nothing.
         self._cuts: Counter[str] = Counter()
 
     def stop(self) -> None:
-        """Act no more."""
+        """Stop acting."""
         super().stop()
         self._cuts.clear()
         self._returned.clear()
@@ -102,15 +101,15 @@ class StaleTransports(ConnectionMend):
         if session is None:
             return
         self._returned &= acknowledgements.participants - acknowledgements.present
-        # Where many connect at once, tokens take longer, and a cut makes all take longer still.
+        # Where many connect at once, tokens take longer, and a cut slows down everything further.
         declared_s = self._declared_s()
         wait_s = declared_s / 2 if len(self._returned) <= FEW else max(POSTPONED_S, declared_s)
         if self._returned and asyncio.get_running_loop().time() - self._changed_s < wait_s:
             self._check_in(declared_s / 2)
             return
         silent = {zid for zid in self._returned if self._cuts[zid] < ATTEMPTS}
-        # Until they declare: if Zenoh takes their new connections for links of the old ones once
-        # more, no event tells of it.
+        # Until they declare: if Zenoh again treats their new connections as links of the old ones,
+        # there is no event for it.
         self._returned = silent
         if silent:
             if len(self._cuts) >= REMEMBERED:
