@@ -253,7 +253,7 @@ class LinkWriter(Writer):
         self._asked_at = -1
 
     def update(self) -> bool:
-        """Return whether a subscription needs Zenoh: one that has not switched, or is unannounced."""
+        """Return whether a subscription needs Zenoh: it has not switched, or is unannounced."""
         registry = self._registry
         if not self._send_queues:
             self._needs_zenoh = True

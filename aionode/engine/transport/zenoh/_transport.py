@@ -237,7 +237,7 @@ class ZenohTransport(Transport):
         return there - {pair.remote[1] for pair in pairs if pair is not None}
 
     def silent_processes(self) -> list[str]:
-        """Return who does not answer, as far as the system tells: processes of this machine."""
+        """Describe the processes on this machine that do not answer, as far as the system knows."""
         group = self.network.meeting_ports[0]
         unconnected, found = self._unconnected(), processes(group)
         silent = []
@@ -253,7 +253,7 @@ class ZenohTransport(Transport):
         return silent
 
     async def _missing_nodes(self, session: zenoh.Session, quiet_s: float) -> set[str] | None:
-        """Return the nodes that a gossip source sees and the graph has not; None without answer."""
+        """Return the nodes that a gossip source sees but the graph lacks; None if unanswered."""
         ends_ns = perf_ns() + int(quiet_s * 1e9)
         while True:
             known = self._watcher.node_tokens()
@@ -265,10 +265,10 @@ class ZenohTransport(Transport):
                 return None
 
     async def _has_answers(self, session: zenoh.Session, quiet_s: float) -> bool:
-        """Return whether all connected peers have told their tokens; wait while some arrive.
+        """Return whether all connected peers have sent their tokens; wait while some arrive.
 
-        On a busy machine Zenoh reads thousands of them for seconds, and then hands out all at once.
-        So it is waited as well while there is something to read.
+        On a busy machine, Zenoh reads thousands of them for seconds, and then delivers all at once.
+        So it also waits while there is something to read.
         """
         answered = self._answered
         before: dict[str, tuple[int, int]] = {}
@@ -286,7 +286,7 @@ class ZenohTransport(Transport):
         return True
 
     def _ask(self, session: zenoh.Session) -> asyncio.Future[bool]:
-        """Ask all connected peers for their tokens; return what is done when all have answered."""
+        """Ask all connected peers for their tokens; the future completes when all have answered."""
         self._answered = answered = asyncio.get_running_loop().create_future()
         self._watcher.ask(session, answered)
         return answered
@@ -295,7 +295,7 @@ class ZenohTransport(Transport):
         """Undeclare everything and disconnect, within a second after `SessionState.flush`."""
         state = self._state
         self._answered = None
-        self.abandon()  # nobody new dials this session
+        self.abandon()  # nobody dials this session any more
         await state.flush()
         if self._socket_options is not None:
             self._socket_options.close()
@@ -315,7 +315,7 @@ class ZenohTransport(Transport):
         state.waker.close()
 
     def abandon(self) -> None:
-        """Leave the place in the list of this machine's sessions."""
+        """Leave the list of this machine's sessions."""
         if self._presence is not None:
             self._presence.close()
             self._presence = None
@@ -346,5 +346,5 @@ class ZenohTransport(Transport):
 
 
 def known_all(watcher: Watcher, keys: set[str]) -> bool:
-    """Return whether all of some tokens are in the graph."""
+    """Return whether all of the given tokens are in the graph."""
     return all(map(watcher.knows, keys))

@@ -1,8 +1,8 @@
-"""The contract of transports, for nodes on DDS behind `zenoh-bridge-ros2dds`.
+"""A transport for nodes on DDS behind `zenoh-bridge-ros2dds`.
 
-A bridge announces itself, and has keys and tokens of its own (`aionode.engine.wire._bridge`). The
-endpoints here are those of `rmw_zenoh` with other names; `_placeholders` stand for them until the
-first bridge is seen.
+A bridge announces itself, and has its own keys and tokens (`aionode.engine.wire._bridge`). The
+endpoints here are those of `rmw_zenoh` with other names; `_placeholders` stand in for them until
+the first bridge is seen.
 """
 
 from __future__ import annotations
@@ -36,25 +36,24 @@ if TYPE_CHECKING:
 __all__ = ["BridgeTransport"]
 
 KNOWN_S = 0.3
-"""Time for which `open` waits for the graph of connected bridges, in seconds; it takes a
-millisecond."""
+"""How long `open` waits for the graph of connected bridges, in seconds; it takes a millisecond."""
 
 
 class Unannounced(Registration):
-    """A node: bridges know none of ours."""
+    """A node, which is not announced to bridges."""
 
     def close(self) -> None:
         """Do nothing."""
 
 
 class BridgeTransport(Transport):
-    """Reaches nodes on DDS through the bridges that the Zenoh session of a context is connected to.
+    """Reaches nodes on DDS through the bridges connected to the Zenoh session of a context.
 
     Until a bridge is seen, nothing is declared for it.
 
     Args:
-        session_state: The session state of the context, which is open while this is.
-        time_base: The time of the context; by default that of the machine.
+        session_state: The session state of the context, which must be open while this is.
+        time_base: The time of the context; defaults to that of the machine.
     """
 
     def __init__(self, session_state: SessionState, time_base: TimeBase | None = None) -> None:
@@ -98,9 +97,10 @@ class BridgeTransport(Transport):
         return Unannounced()
 
     def create_writer(self, endpoint: EndpointInfo, msg_type: type[Any]) -> Writer:
-        """Declare a publisher, once there is a bridge.
+        """Declare a publisher once there is a bridge.
 
-        One that keeps messages for late readers begins at once: the bridge may be such a reader.
+        One that keeps messages for late readers starts immediately: the bridge may be such a
+        reader.
         """
         make = partial(BridgeWriter, self._state, endpoint, msg_type)
         is_needed = self._state.session is not None or keeps_for_late_readers(endpoint.qos)
@@ -109,7 +109,7 @@ class BridgeTransport(Transport):
     def create_reader(
         self, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
     ) -> Registration:
-        """Declare a subscription, once there is a bridge."""
+        """Declare a subscription once there is a bridge."""
         make = partial(BridgeReader, self._state, endpoint, msg_type, reader)
         return (
             make()
@@ -120,7 +120,7 @@ class BridgeTransport(Transport):
     def create_server(
         self, endpoint: EndpointInfo, srv_type: type[Any], serve: Serve
     ) -> Registration:
-        """Declare a server, once there is a bridge."""
+        """Declare a server once there is a bridge."""
         make = partial(BridgeServer, self._state, endpoint, srv_type, serve)
         return (
             make()
@@ -129,7 +129,7 @@ class BridgeTransport(Transport):
         )
 
     def create_requester(self, endpoint: EndpointInfo, srv_type: type[Any]) -> Requester:
-        """Declare a client, once there is a bridge."""
+        """Declare a client once there is a bridge."""
         make = partial(BridgeRequester, self._state, endpoint, srv_type)
         return (
             make()

@@ -1,4 +1,4 @@
-"""The graph behind bridges, from their liveliness tokens."""
+"""The graph behind bridges, built from their liveliness tokens."""
 
 from __future__ import annotations
 
@@ -43,11 +43,11 @@ ANSWER_S: Final = 2.0
 task."""
 
 AGAIN_S: Final = (0.05, 0.1, 0.2, 0.5, 1.0, 1.0, 1.0, 1.0)
-"""After how long a bridge that did not answer is asked again: it announces itself before it has
-joined DDS, and answers only after that."""
+"""Delays before asking a bridge again that did not answer, in seconds: it announces itself before
+it has joined DDS, and answers only after that."""
 
 NODE_NAME: Final = "zenoh_bridge_ros2dds"
-"""The name of a bridge's own node on DDS, which stands for the nodes that are not known."""
+"""The name of a bridge's own node on DDS, which stands in for unknown nodes."""
 
 NODE_SERVICES: Final = frozenset(
     {
@@ -60,7 +60,7 @@ NODE_SERVICES: Final = frozenset(
         "get_type_description",
     }
 )
-"""Services whose names tell the node that has them."""
+"""Services whose names reveal the node that has them."""
 
 NODE_PACKAGES: Final = ("rcl_interfaces/srv/", "type_description_interfaces/srv/")
 
@@ -73,9 +73,9 @@ class Bridge:
     """One bridge, and the part of the graph that it has announced.
 
     Attributes:
-        prefix: What its keys begin with.
+        prefix: The prefix of its keys.
         node: Its own node.
-        nodes: The nodes behind it, if it was asked for them.
+        nodes: The nodes behind it, if it was queried.
         endpoints: The endpoints in the graph, by token.
     """
 
@@ -91,7 +91,7 @@ class BridgeWatcher:
 
     Args:
         session_state: The session state of the context.
-        bridges: The connection with bridges, which begins with the first of them.
+        bridges: The connection to bridges, which starts with the first one.
     """
 
     def __init__(self, session_state: SessionState, bridges: BridgeState) -> None:
@@ -104,9 +104,9 @@ class BridgeWatcher:
         self._subscriber: zenoh.Subscriber[None] | None = None
         self._tokens: dict[str, dict[str, BridgeToken]] = {}
         self._bridges: dict[str, Bridge] = {}
-        # Bridges that have not answered yet where their keys are.
+        # Bridges that have not yet told their key prefix.
         self._asked: dict[str, asyncio.Future[None]] = {}
-        # Number of endpoints of each node; a node without any is not known any more.
+        # Number of endpoints per node; a node without any is forgotten.
         self._users: dict[NodeInfo, int] = {}
         self._next_id = 0
 
@@ -117,7 +117,7 @@ class BridgeWatcher:
             self._subscriber = session.liveliness().declare_subscriber(
                 f"{BRIDGES}/**", direct(self._queue.put), history=True
             )
-        # Only their end is of interest: the subscriber gets the same tokens.
+        # Only its end matters: the subscriber gets the same tokens.
         await self._replies(session.liveliness().get, f"{BRIDGES}/**")
         await self.settled()
 
@@ -136,7 +136,7 @@ class BridgeWatcher:
         self._session = self._graph = None
 
     async def settled(self) -> None:
-        """Wait until each bridge has answered, or has not in time."""
+        """Wait until each bridge has answered, or failed to do so in time."""
         if self._asked:
             await asyncio.wait(list(self._asked.values()))
 
@@ -184,7 +184,7 @@ class BridgeWatcher:
     # Bridges
 
     def _ask(self, zid: str) -> None:
-        """Ask a new bridge where its keys are; until then it is not in the graph."""
+        """Ask a new bridge for its key prefix; until then it is not in the graph."""
         if self._session is not None and zid not in self._asked:
             asked = self._asked[zid] = asyncio.get_running_loop().create_future()
             self._ask_again(zid, asked, iter(AGAIN_S))
@@ -197,7 +197,7 @@ class BridgeWatcher:
     def _meet(
         self, zid: str, asked: asyncio.Future[None], delays_s: Iterator[float], replies: Replies
     ) -> None:
-        """Show a bridge when it has answered, or does not in time, unless it has gone meanwhile."""
+        """Show a bridge once it has answered, or timed out, unless it has gone meanwhile."""
         session, graph = self._session, self._graph
         if asked.done() or session is None or graph is None:
             return
@@ -238,7 +238,7 @@ class BridgeWatcher:
         self._state.remove_bridge(zid)
 
     def _note_vendor(self, zid: str) -> None:
-        """Note whether there are nodes on Fast DDS, which does not tell the history of topics."""
+        """Record whether there are nodes on Fast DDS, which does not transmit the history QoS."""
         tokens = self._tokens.get(zid, {}).values()
         nodes = self._bridges[zid].nodes
         if any(not token.has_history for token in tokens) or any(n.uses_fast_dds for n in nodes):
@@ -247,7 +247,7 @@ class BridgeWatcher:
             self._state.fast_dds.discard(zid)
 
     async def ask_for_nodes(self) -> None:
-        """Ask each bridge for its nodes, and show their endpoints as theirs. For tools."""
+        """Ask each bridge for its nodes, and assign endpoints to them. For tools."""
         await self.settled()
         session = self._session
         for zid, bridge in list(self._bridges.items()):
@@ -276,7 +276,7 @@ class BridgeWatcher:
         return await done
 
     def _query(self, get: Callable[..., Any], key: str, then: Callable[[Replies], object]) -> None:
-        """Call `then` with the replies to a query when all have come, soon."""
+        """Call `then` soon after all replies to a query have arrived."""
         replies: Replies = []
 
         def take(reply: zenoh.Reply | None) -> None:
@@ -309,7 +309,7 @@ class BridgeWatcher:
             self._state.tell_writers(endpoint, present=False)
 
     def _endpoints(self, bridge: Bridge, token: BridgeToken) -> Iterator[EndpointInfo]:
-        """Yield what a token stands for: for each node if they are known, else once."""
+        """Yield the endpoints of a token: one per node if the nodes are known, otherwise one."""
         zid = bridge.node.participant
         for announced in bridged_endpoints(token):
             for node in self._nodes_of(bridge, announced):
@@ -342,7 +342,7 @@ class BridgeWatcher:
         return [self._node(zid, name) for name in dict.fromkeys(names)]
 
     def _node(self, zid: str, full_name: str) -> NodeInfo:
-        """Return the entry of a node; the same as long as it has endpoints."""
+        """Return the entry of a node, which stays the same as long as it has endpoints."""
         namespace, _, name = full_name.rpartition("/")
         for known in self._users:
             if known.participant == zid and known.fully_qualified_name == full_name:

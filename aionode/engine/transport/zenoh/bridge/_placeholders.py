@@ -1,4 +1,4 @@
-"""Placeholders for our endpoints until the first bridge is seen, which cost nothing."""
+"""Placeholders, which cost nothing, for our endpoints until the first bridge is seen."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ EndpointT = TypeVar("EndpointT", bound=Registration)
 
 
 class Placeholder(Registration, Generic[EndpointT]):
-    """Stands for one endpoint, which is made when the first bridge is seen.
+    """Stands in for one endpoint, which is created when the first bridge is seen.
 
     Args:
-        placeholders: Where to be until the endpoint is made or closed; an ordered set.
-        make: Makes the endpoint.
+        placeholders: An ordered set that contains this until the endpoint is created or closed.
+        make: Creates the endpoint.
 
     Attributes:
-        endpoint: The endpoint, once it is made.
+        endpoint: The endpoint, once it is created.
     """
 
     def __init__(
@@ -37,18 +37,18 @@ class Placeholder(Registration, Generic[EndpointT]):
         placeholders[self] = None
 
     def replace(self) -> None:
-        """Make the endpoint: there is a bridge."""
+        """Create the endpoint, as there is a bridge now."""
         self.endpoint = self._make()
 
     def close(self) -> None:
-        """Withdraw the endpoint, or make none."""
+        """Withdraw the endpoint, or never create one."""
         self._placeholders.pop(self, None)
         if self.endpoint is not None:
             self.endpoint.close()
 
 
 class WriterPlaceholder(Placeholder[Writer], Writer):
-    """Stands for a publisher, which is not asked for each message until it is made."""
+    """Stands in for a publisher, and is not called for each message until that is created."""
 
     is_placeholder = True
 
@@ -59,14 +59,14 @@ class WriterPlaceholder(Placeholder[Writer], Writer):
         self._on_replaced: list[Callable[[], None]] = []
 
     def replace(self) -> None:
-        """Make the publisher, and have it used."""
+        """Create the publisher, and make it used."""
         super().replace()
         self.is_placeholder = False
         for call in self._on_replaced:
             call()
 
     def when_replaced(self, callback: Callable[[], None]) -> None:
-        """Call `callback` when there is a bridge."""
+        """Call `callback` once there is a bridge."""
         self._on_replaced.append(callback)
 
     @property
@@ -85,17 +85,17 @@ class WriterPlaceholder(Placeholder[Writer], Writer):
             self.endpoint.write(msg, sequence, source_ns)
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
-        """Return what sends the stop of a lease."""
+        """Return an object that sends the stop of a lease."""
         if self.endpoint is None:
             return super().prepare_stop(stop, is_last)
         return self.endpoint.prepare_stop(stop, is_last)
 
     def has_room(self) -> bool:
-        """Whether one more message can wait to be sent."""
+        """Whether another message can wait to be sent."""
         return self.endpoint is None or self.endpoint.has_room()
 
     async def drain(self) -> None:
-        """Wait until all messages were handed on."""
+        """Wait until all messages were passed on."""
         if self.endpoint is not None:
             await self.endpoint.drain()
 
@@ -110,7 +110,7 @@ class WriterPlaceholder(Placeholder[Writer], Writer):
 
 
 class RequesterPlaceholder(Placeholder[Requester], Requester):
-    """Stands for a client."""
+    """Stands in for a client."""
 
     @property
     def servers(self) -> int:

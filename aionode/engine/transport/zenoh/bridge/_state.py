@@ -1,4 +1,4 @@
-"""The state that our endpoints share on the keys of bridges: names, tokens, declarations."""
+"""The state shared by our endpoints on bridges' keys: names, tokens, declarations."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ __all__ = ["BridgeDeclaration", "BridgeState"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 MOST_NAMESPACES: Final = 100
-"""So many namespaces of bridges are served: each is compared with each name of this context."""
+"""Maximum number of bridge namespaces: each is compared with each name of this context."""
 
 
 class SharedToken:
-    """A token for as long as one of our endpoints needs it.
+    """A token that lasts as long as any of our endpoints needs it.
 
-    A bridge knows one token of each kind and key for each session: the end of a second one would
-    end the traffic of the first.
+    A bridge knows one token of each kind and key per session: the end of a second one would end the
+    traffic of the first.
     """
 
     def __init__(self, tokens: dict[str, SharedToken], name: str, declared: Any) -> None:
@@ -41,7 +41,7 @@ class SharedToken:
         self.users = 1
 
     def undeclare(self) -> None:
-        """Withdraw the token when its last user has gone."""
+        """Withdraw the token when its last user is gone."""
         self.users -= 1
         if not self.users:
             del self._tokens[self._name]
@@ -49,7 +49,7 @@ class SharedToken:
 
 
 class Unacknowledged(Acknowledgements):
-    """No acknowledgements: nothing behind a bridge sends any."""
+    """No acknowledgements, as nothing behind a bridge sends any."""
 
     def start(self, session: zenoh.Session) -> None:  # noqa: ARG002  # nothing is declared
         """Call `tick` of publishers from now on."""
@@ -57,7 +57,7 @@ class Unacknowledged(Acknowledgements):
 
 
 class BridgeState(SessionState):
-    """The connection of one context with the bridges it sees; open while there are any.
+    """The connection of one context to the bridges it sees; open while there are any.
 
     Args:
         participant: Id of the context, and of its session.
@@ -66,9 +66,9 @@ class BridgeState(SessionState):
         waker: Wakes the event loop; the session's.
 
     Attributes:
-        prefixes: What the keys of each bridge begin with, by its Zenoh id; empty in the root.
-        fast_dds: The bridges with nodes on Fast DDS behind them, whose services do not answer.
-        placeholders: What stands for endpoints from before the first bridge.
+        prefixes: The key prefix of each bridge, by its Zenoh id; empty for the root namespace.
+        fast_dds: The bridges with nodes on Fast DDS, whose services do not answer.
+        placeholders: Stand in for endpoints created before the first bridge.
     """
 
     def __init__(
@@ -87,17 +87,17 @@ class BridgeState(SessionState):
         self.prefixes: dict[str, str] = {}
         self.fast_dds: set[str] = set()
         self.placeholders: dict[Placeholder[Any], None] = {}
-        self._served: set[str] = set()  # all prefixes that there were; what is declared stays
+        self._served: set[str] = set()  # all prefixes ever seen; declarations stay
         self._tokens: dict[str, SharedToken] = {}
         self._warned_of: set[str] = set()
 
     def follow(self, announced: AnnouncedLimit) -> None:
-        """Count what others announce together with the other endpoints of the session."""
+        """Count bridges' announcements together with the session's other endpoints."""
         self.announced = announced
         announced.on_crowded.append(self.note_crowd)
 
     def connect(self, session: zenoh.Session, graph: Graph) -> None:
-        """Make all endpoints: this is the first bridge."""
+        """Create all endpoints, as this is the first bridge."""
         super().connect(session, graph)
         placeholders = list(self.placeholders)
         self.placeholders.clear()
@@ -114,7 +114,7 @@ class BridgeState(SessionState):
         return node.bridged
 
     def declare_token(self, session: zenoh.Session, token: str) -> Any:
-        """Declare a token, or use the one that there is of its kind and key."""
+        """Declare a token, or reuse the existing one of its kind and key."""
         name = "/".join(token.split("/")[:5])
         shared = self._tokens.get(name)
         if shared is not None:
@@ -135,19 +135,20 @@ class BridgeState(SessionState):
         return True
 
     def _warn_of_namespace(self, namespace: str, key: str) -> None:
-        """Log once for each namespace why names like `key` do not pass any bridge."""
+        """Log once per namespace why names like `key` do not pass any bridge."""
         if namespace not in self._warned_of:
             self._warned_of.add(namespace)
             logger.warning(
-                "/%s is not announced to any zenoh-bridge-ros2dds, nor is what else begins with "
-                "/%s but goes on without a slash: the bridge whose namespace that is takes it for "
-                "its own, and may end. Give that bridge a namespace that no other name begins with",
+                "/%s is not announced to any zenoh-bridge-ros2dds, nor are other names that "
+                "begin with /%s but continue without a slash: the bridge with that namespace "
+                "mistakes them for its own, and may crash. Give that bridge a namespace that no "
+                "other name begins with",
                 key,
                 namespace,
             )
 
     def add_bridge(self, zid: str, prefix: str) -> None:
-        """Note a bridge, and declare what passes it. The state is connected."""
+        """Add a bridge, and declare what passes it. The state is connected."""
         if prefix not in self._served and len(self._served) >= MOST_NAMESPACES:
             self.drops.note(Drop.BRIDGES, "bridges to DDS", str(MOST_NAMESPACES))
             return
@@ -157,19 +158,19 @@ class BridgeState(SessionState):
             self.declare_all()
 
     def declare_all(self) -> None:
-        """Declare what is not declared yet, and withdraw what a new bridge does not survive."""
+        """Declare what is not declared yet, and withdraw what a new bridge would not survive."""
         session = self.session
         if session is not None:
             for declaration in list(self._declarations):
                 declaration.declare(session)
 
     def remove_bridge(self, zid: str) -> None:
-        """Forget a bridge. What is declared stays, as a bridge that comes back expects it."""
+        """Forget a bridge. Declarations stay, as a bridge that comes back expects them."""
         self.prefixes.pop(zid, None)
         self.fast_dds.discard(zid)
 
     def disconnect(self) -> zenoh.Session | None:
-        """Undeclare everything, the newest first."""
+        """Undeclare everything, newest first."""
         session = super().disconnect()
         self.prefixes.clear()
         self.fast_dds.clear()
@@ -191,12 +192,12 @@ class BridgeDeclaration(Declaration):
 
     @property
     def bridges(self) -> BridgeState:
-        """The state of the connection with bridges."""
+        """The state of the connection to bridges."""
         assert isinstance(self.state, BridgeState)  # noqa: S101  # for the type checker
         return self.state
 
     def declare(self, session: zenoh.Session) -> None:
-        """Declare it if a bridge serves its key, else withdraw it; twice is the same as once."""
+        """Declare it if a bridge serves its key, otherwise withdraw it; idempotent."""
         if not self.bridges.serves(bridge_key(self.endpoint.name)):
             self.undeclare()
         elif not self.is_declared:

@@ -25,18 +25,18 @@ __all__ = ["BridgeReader", "BridgeWriter", "keeps_for_late_readers"]
 
 
 def keeps_for_late_readers(qos: QoSProfile) -> bool:
-    """Return whether what is published without a bridge is kept for the first one.
+    """Return whether messages published without a bridge are kept for the first one.
 
-    Not if it is valid for some time only, as the log is.
+    Not if they have a lifespan, like the log.
     """
     return is_transient(qos) and is_unlimited(qos.lifespan)
 
 
 class BridgeWriter(BridgeDeclaration, ZenohWriter):
-    """A publisher for the subscriptions behind bridges.
+    """A publisher for subscriptions behind bridges.
 
-    Its messages have the attachment of rmw_zenoh, which bridges ignore: by it, other contexts of
-    aionode know that they get the message on the other key as well.
+    Its messages have rmw_zenoh's attachment, which bridges ignore; it tells other aionode contexts
+    that they also get the message on the other key.
     """
 
     recovers: ClassVar[bool] = False
@@ -50,7 +50,7 @@ class BridgeWriter(BridgeDeclaration, ZenohWriter):
             )
 
     def assert_liveliness(self) -> None:
-        """Do nothing: a bridge does not carry it."""
+        """Do nothing: bridges do not transmit it."""
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``bridge`` for subscriptions behind one."""
@@ -58,13 +58,13 @@ class BridgeWriter(BridgeDeclaration, ZenohWriter):
 
 
 class BridgeReader(BridgeDeclaration, ZenohReader):
-    """A subscription to the publishers behind bridges."""
+    """A subscription to publishers behind bridges."""
 
     recovers: ClassVar[bool] = False
 
     def _receive(self, sample: zenoh.Sample) -> None:
         if sample.kind != zenoh.SampleKind.PUT or sample_info_of(sample.attachment) is not None:
-            return  # of a context of aionode, whose message comes on rmw_zenoh's key too
+            return  # from an aionode context, whose message also comes on rmw_zenoh's key
         payload = sample.payload.to_bytes()
         sample_info = SampleInfo(UNKNOWN_GID, 0, 0)
         if self._keep_all:

@@ -1,1 +1,1 @@
-"""What Zenoh and the system tell of connections: configurations, sockets, handlers."""
+"""Information about connections from Zenoh and the system: configurations, sockets, handlers."""

@@ -1,6 +1,6 @@
-"""The configuration of Zenoh's sessions, the endpoints that they dial, and probes.
+"""The configuration of Zenoh sessions, the endpoints that they dial, and probes.
 
-A probe is a session that is open for some milliseconds, to read the tokens that one endpoint sees.
+A probe is a short-lived session that reads the tokens seen by one endpoint.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ __all__ = [
 LOOPBACK: Final = "127.0.0.1"
 
 PROBE_IDS: Final = "a10de10c"
-"""The prefix of the ids of sessions that are open for one query only."""
+"""The id prefix of sessions that are only open for one query."""
 
 
 def near(network: Network) -> bool:
-    """Return whether a session looks for others of its machine by itself."""
+    """Return whether a session looks for others on its machine by itself."""
     return network.config_file is None and network.discovery_range in (
         DiscoveryRange.LOCALHOST,
         DiscoveryRange.SUBNET,
@@ -56,9 +56,9 @@ def probed_ports(network: Network) -> tuple[int, ...]:
 
 
 def gossip_endpoints(network: Network) -> tuple[str, ...]:
-    """Return the endpoints that a session dials again and again, as far as aionode knows.
+    """Return the endpoints that a session keeps dialling, as far as aionode knows.
 
-    A router or peer there is a gossip source: it names other sessions to this one.
+    A router or peer there is a gossip source: it tells this session about others.
     """
     if network.config_file is not None or network.discovery_range is DiscoveryRange.OFF:
         return ()
@@ -72,16 +72,16 @@ def load_config(
     participant: str | None = None,
     last: Mapping[str, Any] = MappingProxyType({}),
 ) -> zenoh.Config:
-    """Return Zenoh's own form of a configuration.
+    """Return a configuration in Zenoh's own form.
 
     Args:
-        network: The file and the overrides.
-        settings: What takes the place of Zenoh's defaults.
+        network: Provides the file and the overrides.
+        settings: Replaces Zenoh's defaults.
         participant: The id of the session.
-        last: What takes the place of everything else.
+        last: Overrides everything else.
 
     Raises:
-        ConfigurationError: the file or an override cannot be used; the text says why.
+        ConfigurationError: the file or an override cannot be used; the message says why.
     """
     config = zenoh.Config()
     if network.config_file is not None:
@@ -89,7 +89,7 @@ def load_config(
         try:
             config = zenoh.Config.from_file(path)
         except zenoh.ZError as error:
-            fits = f"the path of a Zenoh configuration (JSON5) fits: {reason(error)}"
+            fits = f"use the path of a Zenoh configuration (JSON5): {reason(error)}"
             raise ConfigurationError(network.config_source, path, fits) from error
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
@@ -97,7 +97,7 @@ def load_config(
         try:
             config.insert_json5(key, text)
         except zenoh.ZError as error:
-            fits = f"key paths and values of Zenoh's configuration fit: {reason(error)}"
+            fits = f"use key paths and values of Zenoh's configuration: {reason(error)}"
             raise ConfigurationError(network.override_source, f"{key}={text}", fits) from error
     for key, value in last.items():
         config.insert_json5(key, json.dumps(value))
@@ -107,12 +107,12 @@ def load_config(
 
 
 def is_probe(zid: str) -> bool:
-    """Return whether a session is open for one query only, and subscribes to nothing."""
+    """Return whether a session is only open for one query, and subscribes to nothing."""
     return zid.startswith(PROBE_IDS) and len(zid) == 32
 
 
 def open_probe(network: Network, endpoint: str, mode: str = "client") -> zenoh.Session:
-    """Open a session that is connected with one endpoint only.
+    """Open a session that is connected to one endpoint only.
 
     Raises:
         ConfigurationError: the settings of the context cannot be used.

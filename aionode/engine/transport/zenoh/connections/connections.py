@@ -1,7 +1,7 @@
 """The connections of a session: the routers, peers and clients at their other ends.
 
-Zenoh tells one listener of each connection that it makes or loses. The listener tells all parts of
-the context, on the event loop, in the order in which they were added.
+Zenoh reports each connection made or lost to one listener, which informs all parts of the context,
+on the event loop, in the order in which they were added.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 __all__ = ["ConnectionChange", "Connections"]
 
 FIRST_LINK_S: Final = 1.0
-"""Time for which `open` waits for the first peer that accepts connections, in seconds; a frozen
-peer never answers."""
+"""How long `open` waits for the first peer that accepts connections, in seconds; a frozen peer
+never answers."""
 
 NEXT_LINK_S: Final = 0.3
-"""Time for which `open` waits for each further peer, in seconds."""
+"""How long `open` waits for each further peer, in seconds."""
 
 QUIET_S: Final = 0.015
-"""All peers are taken to be connected after so long without a new one."""
+"""All peers are assumed to be connected after this long without a new one, in seconds."""
 
 MOMENT_NS: Final = 10_000_000_000
 """Time after the loss of a connection in which what was declared over it may return."""
 
 REMEMBERED: Final = 10_000
-"""Number of lost sessions that are remembered: others may open and close any number."""
+"""Number of lost sessions to remember: others may open and close any number."""
 
 
 class ConnectionChange(NamedTuple):
@@ -46,8 +46,8 @@ class ConnectionChange(NamedTuple):
     Attributes:
         zid: The id of the session at its other end.
         kind: The kind of that session: router, peer or client.
-        is_made: Whether it was made, else lost.
-        is_return: Whether it was made anew, after it was lost.
+        is_made: Whether it was made; otherwise it was lost.
+        is_return: Whether it was made again after being lost.
     """
 
     zid: str
@@ -57,18 +57,18 @@ class ConnectionChange(NamedTuple):
 
 
 class Connections:
-    """The connections of one session, which all parts of a context share.
+    """The connections of one session, shared by all parts of a context.
 
-    Zenoh's threads only append to the queue: all attributes belong to the event loop.
+    Zenoh's threads only append to the queue; all attributes belong to the event loop.
 
     Args:
         waker: Wakes the event loop from Zenoh's threads.
 
     Attributes:
         kinds: The kind of each connected session, by its id.
-        lost: The routers and peers whose connection was lost and not made anew; a client dials by
-            itself.
-        on_change: Called with each change, after it is in `kinds` and `lost`.
+        lost: The routers and peers whose connection was lost and not made again; clients reconnect
+            themselves.
+        on_change: Called with each change, after `kinds` and `lost` are updated.
     """
 
     def __init__(self, waker: LoopWaker) -> None:
@@ -76,21 +76,21 @@ class Connections:
         self.lost: set[str] = set()
         self.on_change: list[Callable[[ConnectionChange], None]] = []
         self._queue = ThreadsafeQueue(waker, self.take)
-        self._lost_ns: dict[str, int] = {}  # when the connection to each session was lost last
+        self._lost_ns: dict[str, int] = {}  # when the connection to each session was last lost
         self._changed = asyncio.Event()
         self._listener: zenoh.TransportEventsListener[None] | None = None
 
     def start(self, session: zenoh.Session) -> None:
-        """Begin with the connections that a session has, and listen to changes."""
+        """Start with a session's existing connections, and listen to changes."""
         self._changed = asyncio.Event()  # an event belongs to the loop that first waits for it
         with translated("connections"):
             self._listener = session.info.declare_transport_events_listener(direct(self._queue.put))
-        # After the listener: a connection between both is told of twice, which does no harm.
+        # After the listener: a connection in between is reported twice, which is harmless.
         for transport in session.info.transports():
             self._add(ConnectionChange(str(transport.zid), transport.whatami, is_made=True))
 
     def stop(self) -> None:
-        """Listen no more, and forget all connections."""
+        """Stop listening, and forget all connections."""
         listener, self._listener = self._listener, None
         if listener is not None:
             listener.undeclare()
@@ -100,15 +100,15 @@ class Connections:
         self._lost_ns.clear()
 
     def has_lost(self, zid: str) -> bool:
-        """Return whether a connection is lost, or was lost in the last seconds and made anew.
+        """Return whether a connection is lost, or was lost and made again in the last seconds.
 
-        What the other end had declared vanished with it, and may still have to return. Zenoh tells
-        of the loss later than of what vanishes with it.
+        What the other end had declared vanished with it, and may not have returned yet. Zenoh
+        reports the loss later than what vanishes with it.
         """
         return zid in self.lost or perf_ns() - self._lost_ns.get(zid, -MOMENT_NS) < MOMENT_NS
 
     def take(self, event: zenoh.TransportEvent) -> None:
-        """Take what Zenoh tells of one connection; on the event loop."""
+        """Handle Zenoh's event for one connection, on the event loop."""
         transport = event.transport
         zid = str(transport.zid)
         is_made = event.kind == zenoh.SampleKind.PUT
@@ -133,9 +133,9 @@ class Connections:
             self.lost.add(change.zid)
 
     async def wait_until_connected(self, expected: int) -> None:
-        """Wait until `expected` peers, and others that are dialled meanwhile, are connected.
+        """Wait until `expected` peers, and others dialled meanwhile, are connected.
 
-        Give up if they do not connect in time, after about a second.
+        Gives up if they do not connect in time, after about a second.
         """
         if expected == 0:
             return
@@ -151,7 +151,7 @@ class Connections:
             return
 
     async def wait_longer(self, is_enough: Callable[[], bool], limit_s: float) -> None:
-        """Wait until connections are enough, `limit_s` at most."""
+        """Wait until there are enough connections, for at most `limit_s`."""
         with suppress(TimeoutError):
             async with asyncio.timeout(limit_s):
                 while not is_enough():

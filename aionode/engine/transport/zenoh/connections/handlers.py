@@ -24,34 +24,34 @@ __all__ = [
     "translated",
 ]
 
-# Zenoh has a queue for each priority and peer, which is locked while a thread waits for room in it
+# Zenoh has a queue per priority and peer, which is locked while a thread waits for room in it
 # (`_defects.blocked_sends`). So messages from the event loop have a queue of their own, in which no
 # thread ever waits. Zenoh's default, DATA, is left to Zenoh's own messages and to replies to ROS 2
 # nodes; tokens and other declarations are CONTROL.
 
 LOOP_PRIORITY = zenoh.Priority.DATA_HIGH
-"""Of messages from the event loop: always with congestion control DROP."""
+"""For messages from the event loop, always with congestion control DROP."""
 
 RETRANSMIT_PRIORITY = zenoh.Priority.INTERACTIVE_HIGH
-"""Of what a broken link did not deliver, sent from a thread for each peer with BLOCK."""
+"""For what a broken link did not deliver, sent from a thread per peer with BLOCK."""
 
 CALL_PRIORITY = zenoh.Priority.INTERACTIVE_LOW
-"""Of requests and their replies, sent with BLOCK."""
+"""For requests and their replies, sent with BLOCK."""
 
 BULK_PRIORITY = zenoh.Priority.DATA_LOW
-"""Of large messages, sent from a thread with DROP; each fragment may wait."""
+"""For large messages, sent from a thread with DROP; each fragment may wait."""
 
 BULK_BYTES = 60_000
-"""From this size on a message is sent from a thread: it takes more than one packet of Zenoh's."""
+"""Size from which a message is sent from a thread: it takes more than one Zenoh packet."""
 
 BLOCKING_PRIORITY = zenoh.Priority.BACKGROUND
-"""Of reliable messages for readers that do not acknowledge, sent from threads with BLOCK."""
+"""For reliable messages to readers that do not acknowledge, sent from threads with BLOCK."""
 
 DROP = zenoh.CongestionControl.DROP
-"""Drops a message, after a moment at most, for which Zenoh's queue has no room."""
+"""Drops a message for which Zenoh's queue has no room, after a moment at most."""
 
 BLOCK = zenoh.CongestionControl.BLOCK
-"""Waits for room, with the queue locked: only threads may."""
+"""Waits for room with the queue locked: only threads may use it."""
 
 T = TypeVar("T")
 
@@ -63,7 +63,7 @@ def reason(error: zenoh.ZError) -> str:
 
 @contextmanager
 def translated(what: str) -> Iterator[None]:
-    """Raise `TransportError`, which names the subject, for Zenoh's errors."""
+    """Translate Zenoh's errors to `TransportError`, naming the subject."""
     try:
         yield
     except zenoh.ZError as error:
@@ -75,7 +75,7 @@ def direct(
 ) -> zenoh.handlers.Callback[T]:
     """Return a handler that runs in Zenoh's network thread.
 
-    Zenoh's other kind starts a thread for each subscriber and call. `callback` must only hand over:
+    Zenoh's other kind starts a thread for each subscriber and call. `callback` must only pass on:
     while it waits for Python, nothing else arrives.
     """
     return zenoh.handlers.Callback(callback, drop, indirect=False)

@@ -1,20 +1,22 @@
-"""Zenoh's sockets: finding them among the descriptors of the process, reading and cutting them.
+"""Zenoh's sockets: finds them among the process's descriptors, reads their state, cuts them.
 
-No other descriptor is touched. To cut a connection is to shut its socket down, as a network does.
+No other descriptor is touched. To cut a connection means to shut down its socket, as a network
+would.
 
-Zenoh names the two addresses of each connection, but not its socket. Duplicating every descriptor
-to ask for its addresses would do harm: closing a duplicate of a file drops the POSIX locks that the
-process has on it, and with them an exclusive transaction of SQLite. So the system is asked: a
-netlink socket, or ``/proc/self/net/tcp``, tells the inode of a connection, and ``/proc/self/fd``
-that of each descriptor. A duplicate is made only of a socket that was found so, and its inode is
-compared once more before the duplicate is used.
+Zenoh reveals the two addresses of each connection, but not its socket. Duplicating every descriptor
+to query its addresses would do harm: closing a duplicate of a file drops the process's POSIX locks
+on it, and with them an exclusive transaction of SQLite. So the system is asked: a netlink socket,
+or
+``/proc/self/net/tcp``, reveals the inode of a connection, and ``/proc/self/fd`` that of each
+descriptor. Only a socket found this way is duplicated, and its inode is compared again before the
+duplicate is used.
 
-Zenoh does not name a connection that is still being made. The system tells which sockets an epoll
-instance waits for, and how: Zenoh's runtime does that as Python's event loops do not.
+Zenoh does not reveal a connection that is still being made. The system reveals for which sockets an
+epoll instance waits, and how: Zenoh's runtime does so differently from Python's event loops.
 
-On Linux only: nothing is found elsewhere, or where ``/proc`` is hidden.
+Only on Linux: nothing is found elsewhere, or where ``/proc`` is hidden.
 
-A socket tells how many bytes its peer has taken, and how many have come. Zenoh says neither.
+A socket also reveals how many bytes its peer has accepted, and how many have arrived.
 """
 
 from __future__ import annotations
@@ -63,16 +65,16 @@ DETAILS: Final = "/proc/self/fdinfo"
 CONNECTIONS: Final = ("/proc/self/net/tcp", "/proc/self/net/tcp6")
 
 STREAMS: Final = {"tcp", "tls", "ws", "wss"}
-"""The protocols of Zenoh that have one TCP connection for each link."""
+"""The protocols of Zenoh that use one TCP connection per link."""
 
 EVENT_POLL: Final = "anon_inode:[eventpoll]"
 
 POLLED: Final = re.compile(r"^tfd: +(\d+) events: +8000201d .* ino:([0-9a-f]+) ", re.MULTILINE)
-"""A socket for which an epoll instance waits as the one of Zenoh's runtime does: for everything but
-urgent data (IN, OUT, ERR, HUP, RDHUP), and for changes only (ET)."""
+"""A socket for which an epoll instance waits like that of Zenoh's runtime: for everything but
+urgent data (IN, OUT, ERR, HUP, RDHUP), edge-triggered (ET)."""
 
 SOCK_DIAG: Final = 4
-"""The netlink protocol that tells about sockets; see sock_diag(7)."""
+"""The netlink protocol for information about sockets; see sock_diag(7)."""
 
 SOCK_DIAG_BY_FAMILY: Final = 20
 NLM_F_REQUEST: Final = 1
@@ -92,19 +94,19 @@ ANSWER: Final = struct.Struct("=4x36s12x16xI")
 """``struct inet_diag_msg``: its `ADDRESSES`, and the inode at its end."""
 
 ACKED: Final = slice(120, 128)
-"""Place in ``struct tcp_info`` of the number of bytes that the peer's system has acknowledged."""
+"""Place in ``struct tcp_info`` of the number of bytes acknowledged by the peer's system."""
 
 RECEIVED: Final = slice(128, 136)
-"""Place in ``struct tcp_info`` of the number of bytes that were received."""
+"""Place in ``struct tcp_info`` of the number of bytes received."""
 
 NO_LINGER: Final = struct.pack("ii", 0, 0)
-"""SO_LINGER for connections that are closed at once, while the system goes on sending."""
+"""SO_LINGER for connections that are closed immediately, while the system keeps sending."""
 
 Address = tuple[bytes, int]
 """An IP address of 4 or 16 bytes, and a port."""
 
 Descriptor = tuple[int, int]
-"""The number of a descriptor and that of its inode, as the first is used again."""
+"""The numbers of a descriptor and its inode, as the former is reused."""
 
 lock = threading.Lock()  # held to read and change `known`
 known: dict[Pair, Descriptor] = {}
@@ -119,25 +121,25 @@ class Pair(NamedTuple):
 
 
 def pair_of(link: zenoh.Link) -> Pair | None:
-    """Return the addresses of a connection; None if it is none of TCP."""
+    """Return the addresses of a connection; None if it is not TCP."""
     local, remote = address_in(str(link.src)), address_in(str(link.dst))
     return Pair(local, remote) if local and remote else None
 
 
 def address_in(locator: str) -> Address | None:
-    """Return the address in a locator of TCP such as ``tcp/127.0.0.1:7447?…``."""
+    """Return the address in a TCP locator such as ``tcp/127.0.0.1:7447?…``."""
     where = split_locator(locator)
     if where is None or locator.partition("/")[0] not in STREAMS:
         return None
     host, port = where
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    with suppress(OSError):  # it is a name: Zenoh has numbers in those of its connections
+    with suppress(OSError):  # a name; Zenoh's connections have numeric ones
         return socket.inet_pton(family, host), port
     return None
 
 
 def split_locator(locator: str) -> tuple[str, int] | None:
-    """Return host and port of a locator; None without a port."""
+    """Return host and port of a locator; None if there is no port."""
     text = re.split("[?#]", locator.partition("/")[2], maxsplit=1)[0]
     host, _, port = text.rpartition(":")
     return (host.strip("[]").partition("%")[0], int(port)) if host and port.isdigit() else None
@@ -146,14 +148,14 @@ def split_locator(locator: str) -> tuple[str, int] | None:
 def connections(
     session: zenoh.Session, participants: AbstractSet[str] | None = None
 ) -> dict[Descriptor, zenoh.Link]:
-    """Return the sockets of a session, with what Zenoh says of each; not those that are closed.
+    """Return a session's open sockets, each with Zenoh's information about it.
 
-    Nothing where the system does not tell. It may take some milliseconds, and is no work for the
+    Empty if the system does not reveal them. It may take some milliseconds, so it is not for the
     event loop.
 
     Args:
         session: The session.
-        participants: Only connections with these; with all if None.
+        participants: Only connections to these; None for all.
     """
     if not sys.platform.startswith("linux"):
         return {}
@@ -167,9 +169,9 @@ def connections(
 
 
 def find(pairs: Collection[Pair]) -> dict[Pair, Descriptor]:
-    """Return the sockets of some connections; not those that are closed.
+    """Return the open sockets of some connections.
 
-    It may take some milliseconds, and is no work for the event loop.
+    It may take some milliseconds, so it is not for the event loop.
     """
     with lock:
         result = {pair: known[pair] for pair in pairs if pair in known and is_open(known[pair])}
@@ -185,7 +187,7 @@ def find(pairs: Collection[Pair]) -> dict[Pair, Descriptor]:
 
 
 def is_open(descriptor: Descriptor) -> bool:
-    """Return whether a number still stands for the same socket."""
+    """Return whether a descriptor still refers to the same socket."""
     number, inode = descriptor
     with suppress(OSError):
         return target_of(number) == f"socket:[{inode}]"
@@ -193,13 +195,13 @@ def is_open(descriptor: Descriptor) -> bool:
 
 
 def inodes_of(pairs: Collection[Pair]) -> dict[Pair, int]:
-    """Return the inodes of some connections; not those of closed ones."""
-    # A sandbox may forbid to ask, and a kernel may lack the answers.
+    """Return the inodes of some connections, omitting closed ones."""
+    # A sandbox may forbid the query, and a kernel may not support it.
     return told_inodes(pairs) or listed_inodes(pairs)
 
 
 def told_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
-    """Ask the system for the inode of each connection; that takes microseconds."""
+    """Query the inode of each connection by netlink, which takes microseconds."""
     inodes = {}
     with suppress(OSError), socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, SOCK_DIAG) as system:
         for pair in pairs:
@@ -213,14 +215,14 @@ def told_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
             answer = system.recv(4096, socket.MSG_DONTWAIT)
             if HEADER.unpack_from(answer)[1] == SOCK_DIAG_BY_FAMILY:
                 told, inode = ANSWER.unpack_from(answer, HEADER.size)
-                # In place of one that is closed, the system names the socket that listens there.
+                # For a closed connection, the system returns the socket that listens there.
                 if told == addresses and inode:
                     inodes[pair] = inode
     return inodes
 
 
 def listed_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
-    """Look for the inode of each connection in the lists of all; that takes milliseconds."""
+    """Look up the inode of each connection in the lists of all, which takes milliseconds."""
     sought = {(listed_form(pair.local), listed_form(pair.remote)): pair for pair in pairs}
     inodes = {}
     for path in CONNECTIONS:
@@ -229,12 +231,12 @@ def listed_inodes(pairs: Iterable[Pair]) -> dict[Pair, int]:
                 _, local, remote, rest = line.split(maxsplit=3)
                 pair = sought.get((local, remote))
                 if pair is not None and (inode := int(rest.split(maxsplit=7)[6])):
-                    inodes[pair] = inode  # it is 0 for one that is closed
+                    inodes[pair] = inode  # 0 for a closed one
     return inodes
 
 
 def listed_form(address: Address) -> bytes:
-    """Return how these lists have an address: ``0100007F:1D17``, in words of this machine."""
+    """Return an address as in these lists: ``0100007F:1D17``, in native words."""
     packed, port = address
     words = (packed[at : at + 4] for at in range(0, len(packed), 4))
     text = "".join(f"{int.from_bytes(word, sys.byteorder):08X}" for word in words)
@@ -249,10 +251,10 @@ def sockets() -> Iterator[Descriptor]:
 
 
 def descriptors() -> Iterator[tuple[int, str]]:
-    """Yield the number of each descriptor of this process, and what it stands for."""
+    """Yield the number of each descriptor of this process, and its target."""
     try:
         names = os.listdir(DESCRIPTORS)  # noqa: PTH208 - in half the time
-    except OSError:  # the process has no descriptor left, or there is no /proc
+    except OSError:  # no descriptors are left, or there is no /proc
         return
     for name in names:
         with suppress(OSError):  # closed meanwhile
@@ -260,14 +262,14 @@ def descriptors() -> Iterator[tuple[int, str]]:
 
 
 def target_of(name: int | str) -> str:
-    """Return what a descriptor stands for; nothing is opened for that."""
+    """Return a descriptor's target, without opening anything."""
     return os.readlink(f"{DESCRIPTORS}/{name}")  # noqa: PTH115 - in half the time
 
 
 def polled_by_zenoh() -> set[Descriptor]:
-    """Return the sockets that an epoll instance waits for as those of Zenoh do.
+    """Return the sockets for which an epoll instance waits as Zenoh's does.
 
-    Those of other libraries in Rust may be among them, those of Python are not.
+    Those of other Rust libraries may be among them, those of Python are not.
     """
     polled: set[Descriptor] = set()
     for number, target in descriptors():
@@ -279,10 +281,10 @@ def polled_by_zenoh() -> set[Descriptor]:
 
 
 def duplicates(those: Iterable[Descriptor]) -> Iterator[tuple[Descriptor, socket.socket]]:
-    """Yield a duplicate of each of some sockets; not of those that are closed.
+    """Yield a duplicate of each open socket.
 
-    One duplicate is open at a time: several threads that duplicate all sockets soon have all
-    descriptors that a process may have.
+    One duplicate is open at a time: several threads duplicating all sockets would soon exhaust the
+    process's descriptors.
     """
     for descriptor in those:
         copy = duplicate(descriptor) if is_open(descriptor) else None
@@ -292,22 +294,22 @@ def duplicates(those: Iterable[Descriptor]) -> Iterator[tuple[Descriptor, socket
 
 
 def duplicate(descriptor: Descriptor) -> socket.socket | None:
-    """Return a duplicate of a socket; None if its number stands for something else by now."""
+    """Duplicate a socket; return None if its number refers to something else by now."""
     number, inode = descriptor
     with suppress(OSError):  # closed meanwhile
         copy = os.dup(number)
         status = os.fstat(copy)
         if status.st_ino == inode:
             return socket.socket(fileno=copy)
-        # It was closed, and its number given away, within microseconds. If a file has got it, the
-        # duplicate stays open: closing it would drop the locks that the process has on that file.
+        # It was closed and its number reused within microseconds. If by a file, the duplicate stays
+        # open: closing it would drop the process's locks on that file.
         if not S_ISREG(status.st_mode):
             os.close(copy)
     return None
 
 
 def info_of(copy: socket.socket) -> bytes:
-    """Return the beginning of the ``struct tcp_info`` of a connection."""
+    """Return the start of a connection's ``struct tcp_info``."""
     return copy.getsockopt(socket.IPPROTO_TCP, socket.TCP_INFO, RECEIVED.stop)
 
 
@@ -317,9 +319,9 @@ def number_in(info: bytes, field: slice) -> int:
 
 
 def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
-    """Return how many bytes have come from each peer, and how many of them Zenoh has not read yet.
+    """Return the bytes that arrived from each peer, and those that Zenoh has not read yet.
 
-    Nothing where the system does not tell.
+    Empty if the system does not reveal them.
     """
     own = connections(session)
     if not own:
@@ -340,7 +342,7 @@ def arrived_bytes(session: zenoh.Session) -> dict[str, tuple[int, int]]:
 def send_progress(session: zenoh.Session, participant: str) -> tuple[bool, int] | None:
     """Return whether the socket to a peer has room, and how many bytes were written to it so far.
 
-    None if there is no such socket, or the system does not tell.
+    None if there is no such socket, or the system does not reveal it.
     """
     for _, copy in duplicates(connections(session, {participant})):
         poll = select.poll()
@@ -350,14 +352,14 @@ def send_progress(session: zenoh.Session, participant: str) -> tuple[bool, int] 
 
 
 def cut(those: Iterable[Descriptor], linger: bytes = NO_LINGER) -> None:
-    """Cut connections, as the network would.
+    """Cut connections, as a network would.
 
     Args:
-        those: The sockets of Zenoh.
-        linger: SO_LINGER; another one if the peer is not to get what has been sent.
+        those: Zenoh's sockets.
+        linger: SO_LINGER; a different one if the peer must not receive what has been sent.
     """
     for _, copy in duplicates(those):
-        with suppress(OSError):  # it is lost already
+        with suppress(OSError):  # already lost
             logger.debug("%s: the connection is cut", copy.getpeername())
             copy.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, linger)
             copy.shutdown(socket.SHUT_RDWR)

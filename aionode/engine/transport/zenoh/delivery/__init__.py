@@ -1,1 +1,1 @@
-"""What carries messages between contexts: limits, acknowledgements, histories, cancellations."""
+"""Message delivery between contexts: limits, acknowledgements, histories, cancellations."""

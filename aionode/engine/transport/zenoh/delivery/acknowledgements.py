@@ -1,12 +1,12 @@
-"""Acknowledgements between contexts of aionode over Zenoh: their keys, and their timer.
+"""Acknowledgements between aionode contexts over Zenoh: their keys, and their timer.
 
-Zenoh's own reliable delivery, congestion control BLOCK, stalls the whole process behind one frozen
-reader. Reliable publishers and subscriptions of aionode use acknowledgements instead, on keys below
-that of their topic, which ROS nodes neither subscribe nor publish to. A context that supports them
-declares a token; readers in other contexts depend on Zenoh (`_publisher`).
+Zenoh's own reliable delivery, congestion control BLOCK, stalls the whole process because of one
+frozen reader. Reliable publishers and subscriptions of aionode use acknowledgements instead, on
+keys below their topic's, which ROS nodes neither subscribe nor publish to. A context that supports
+them declares a token; for readers in other contexts, Zenoh is relied on (`publisher`).
 
-A submessage counts only for endpoints of the topic on whose key it came: a process that may publish
-on one topic speaks for no other.
+A submessage only counts for endpoints of the topic on whose key it came: a process that may publish
+on one topic cannot speak for another.
 """
 
 from __future__ import annotations
@@ -39,25 +39,26 @@ __all__ = ["Acknowledgements", "submessage_key"]
 PREFIX: Final = "@aionode"
 
 TICK_S: Final = 0.05
-"""The interval of `tick` for publishers and subscriptions that wait for something."""
+"""The interval of `tick` for publishers and subscriptions that wait for something, in seconds."""
 
 PROBE_S: Final = 1.0
-"""The interval of `probe` for publishers that have to know whether their readers answer."""
+"""The interval of `probe` for publishers that must know whether their readers answer, in
+seconds."""
 
 LIMIT: Final = 20_000
-"""Number of submessages that wait for the loop; those that are dropped are repeated."""
+"""Number of submessages that may wait for the loop; dropped ones will be repeated."""
 
 
 GONE: Final = 1_000
-"""Contexts that have gone and are remembered: their endpoints have tokens of their own, which
-may still be there, and they may come back."""
+"""Number of contexts to remember after they left: their endpoints have separate tokens, which may
+still exist, and they may come back."""
 
 LONGEST_ID: Final = 32
-"""Number of characters that the id of a Zenoh session has at most."""
+"""Maximum length of a Zenoh session id, in characters."""
 
 
 Receive = Callable[[Submessage], None]
-"""Gives an endpoint a submessage."""
+"""Passes a submessage to an endpoint."""
 
 
 class Repeater:
@@ -88,7 +89,7 @@ class Repeater:
         self._go_on()
 
     def clear(self) -> None:
-        """Call nothing any more."""
+        """Stop calling anything."""
         self._calls.clear()
         self._later.cancel()
 
@@ -102,12 +103,12 @@ class Acknowledgements:
         waker: Wakes the event loop from Zenoh's threads.
         note_malformed: Called with the key of a malformed sample, and what it should be.
         on_participant: Called when another context is known to acknowledge.
-        announced: Limits how many contexts are kept; the others count as ones that do not.
-        control_messages: Puts submessages.
+        announced: Limits how many contexts are kept; others count as not acknowledging.
+        control_messages: Sends submessages.
 
     Attributes:
-        participants: The other contexts that acknowledge, the last `GONE` that have gone included.
-        present: Those of them whose tokens are there.
+        participants: The other contexts that acknowledge, including the last `GONE` that left.
+        present: Those of them whose tokens exist.
     """
 
     def __init__(
@@ -124,7 +125,8 @@ class Acknowledgements:
         self._gone: Recent[str, str] = Recent(GONE)
         self._announced = announced
         self.present: set[str] = set()
-        # By gid below the key of their topic: a submessage counts for no endpoint of another.
+        # By gid, below the key of their topic: a submessage counts for no endpoint of another
+        # topic.
         self._writers: ControlSubscribers[Receive] = ControlSubscribers(
             waker, self._receive_acknack, LIMIT
         )
@@ -144,7 +146,7 @@ class Acknowledgements:
         self._probes = Repeater(PROBE_S)
 
     def start(self, session: zenoh.Session) -> None:
-        """Declare the token. To be called before any endpoint is declared."""
+        """Declare the token. Must be called before any endpoint is declared."""
         self._is_open = True
         self._writers.start(session)
         self._readers.start(session)
@@ -182,30 +184,30 @@ class Acknowledgements:
         return self._prefix + participant + self._suffix
 
     def add_writer(self, key: str, gid: bytes, receive: Receive) -> None:
-        """Give a publisher of a topic the ACKNACKs of its readers; twice is the same as once."""
+        """Pass the ACKNACKs of its readers to a publisher; idempotent."""
         self._writers.listen(
             submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid, receive
         )
 
     def remove_writer(self, key: str, gid: bytes) -> None:
-        """Give a publisher no more ACKNACKs."""
+        """Stop passing ACKNACKs to a publisher."""
         self._writers.unlisten(submessage_key(key, Side.SUBSCRIPTIONS, self._participant), gid)
 
     def add_reader(self, key: str, gid: bytes, receive: Receive) -> None:
-        """Give a subscription the submessages of its writers; twice is the same as once."""
+        """Pass the submessages of its writers to a subscription; idempotent."""
         self._readers.listen(submessage_key(key, Side.PUBLISHERS, self._participant), gid, receive)
 
     def remove_reader(self, key: str, gid: bytes) -> None:
-        """Give a subscription no more submessages."""
+        """Stop passing submessages to a subscription."""
         self._readers.unlisten(submessage_key(key, Side.PUBLISHERS, self._participant), gid)
 
     def send(self, key: str, side: Side, participant: str, data: bytes) -> None:
-        """Send a submessage to a context; it may be lost. Any thread may call.
+        """Send a submessage to a context; it may be lost. Any thread may call it.
 
         Args:
-            key: That of the topic.
-            side: Which side of the topic sends it.
-            participant: The context that gets it.
+            key: The key of the topic.
+            side: The side of the topic that sends it.
+            participant: The context that receives it.
             data: The submessage.
         """
         self._control_messages.put(submessage_key(key, side, participant), data)
@@ -268,8 +270,8 @@ def submessage_key(key: str, side: Side, participant: str) -> str:
     """Return the key of submessages to one context.
 
     Args:
-        key: That of the topic.
-        side: Which side sends them: subscriptions send ACKNACK, publishers everything else.
-        participant: The context that gets them.
+        key: The key of the topic.
+        side: The side that sends them: subscriptions send ACKNACK, publishers everything else.
+        participant: The context that receives them.
     """
     return side_key(key, side, f"reliable/{VERSION}/{participant}")

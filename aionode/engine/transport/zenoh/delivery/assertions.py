@@ -1,8 +1,7 @@
-"""Telling the subscriptions of other contexts that a publisher is alive.
+"""Tells subscriptions of other contexts that a publisher is alive.
 
-rmw_zenoh has no message for this. So publishers put their assertions on a key below that of their
-topic, and contexts with a subscription that requests a lease subscribe to it. ROS nodes do not take
-part.
+rmw_zenoh has no message for this. So publishers send their assertions on a key below their topic's,
+to which contexts with a subscription that requests a lease subscribe. ROS nodes do not take part.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 __all__ = ["Assertions"]
 
 LIMIT = 10_000
-"""Number of assertions that wait for the loop; of more, the oldest are lost."""
+"""Number of assertions that may wait for the loop; beyond it, the oldest are lost."""
 
 GID_SIZE = 16
 
@@ -50,7 +49,7 @@ class Assertions:
         self._subscribers.listen(key_of(key), listener, listener)
 
     def unlisten(self, key: str, listener: Callable[[bytes], None]) -> None:
-        """Call `listener` no more, if it is known."""
+        """Stop calling `listener`, if it is known."""
         self._subscribers.unlisten(key_of(key), listener)
 
     def send(self, key: str, gid: bytes) -> None:

@@ -1,10 +1,10 @@
-"""Sending servers the cancellations of requests.
+"""Sends cancellations of requests to servers.
 
 ROS has no message for this, and a Zenoh query cannot be cancelled at its queryable. So each context
-subscribes to keys of its own, one for each service, and the context of the client publishes the
-sequence number of the request there. ROS nodes do not take part.
+subscribes to keys of its own, one per service, on which the client's context publishes the sequence
+number of the request. ROS nodes do not take part.
 
-The name of the service is a chunk of the key, as in the tokens of ROS, so that a rule can bind it.
+The name of the service is a chunk of the key, as in ROS tokens, so that access rules can cover it.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["Cancellations"]
 
 LIMIT = 1_000
-"""Number of cancellations that wait for the loop; they only save work, so the oldest may be
+"""Number of cancellations that may wait for the loop; they only save work, so the oldest may be
 lost."""
 
 
@@ -34,7 +34,7 @@ class Cancellations:
     """The cancellations that this context sends and receives.
 
     Attributes:
-        listeners: Called with the gid of a client and its number of a request, by service.
+        listeners: Called with a client's gid and its number for a request, by service.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Cancellations:
         self.listeners.setdefault(service, {})[listener] = None
 
     def unlisten(self, service: str, listener: Callable[[bytes, int], None]) -> None:
-        """Call `listener` no more, if it is known."""
+        """Stop calling `listener`, if it is known."""
         listeners = self.listeners.get(service, {})
         listeners.pop(listener, None)
         if not listeners:

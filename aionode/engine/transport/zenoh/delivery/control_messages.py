@@ -1,7 +1,7 @@
-"""Control messages: small messages between contexts of aionode, beside those of topics.
+"""Control messages: small messages between aionode contexts, apart from those of topics.
 
-Acknowledgements, assertions of liveliness and cancellations are control messages. Each may be lost,
-and lies on a key that ROS nodes neither subscribe nor publish to.
+These are acknowledgements, assertions of liveliness and cancellations. Each may be lost, and uses a
+key that ROS nodes neither subscribe nor publish to.
 """
 
 from __future__ import annotations
@@ -35,31 +35,31 @@ T = TypeVar("T")
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LIMIT: Final = 10_000
-"""Number of puts that wait for the thread; of each kind the newest count, so the oldest may be
-lost."""
+"""Number of messages that may wait for the thread; the newest of each kind count, so the oldest may
+be lost."""
 
 
 class ControlMessages:
-    """Puts control messages: at once, or from a thread while Zenoh may stand still.
+    """Sends control messages: immediately, or from a thread while Zenoh may block.
 
     Args:
         send_thread: The thread.
-        limit_bytes: How many bytes wait for it at most.
+        limit_bytes: Maximum number of bytes that wait for it.
 
     Attributes:
-        is_crowded: Whether others have announced so much that Zenoh may stand still: it drops what
-            a connection has announced in one piece, and no put goes on meanwhile.
+        is_crowded: Whether others have announced so much that Zenoh may block: it drops everything
+            that a connection has announced in one go, during which no send proceeds.
     """
 
     def __init__(self, send_thread: SendThread, limit_bytes: int) -> None:
-        self.is_crowded = False  # written by the loop only
+        self.is_crowded = False  # only written by the loop
         self._queue = send_thread.send_queue(LIMIT, limit_bytes, keep_all=False)
-        # Set by the loop only. Threads that put read it once, and a put after the session has
+        # Set only by the loop. Threads that send read it once, and sending after the session has
         # closed is an error that is logged.
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
-        """Put messages into a session from now on; before that, they are dropped."""
+        """Send messages through a session from now on; before that, they are dropped."""
         self._session = session
 
     def stop(self) -> None:
@@ -68,7 +68,7 @@ class ControlMessages:
         self._queue.abandon()
 
     def put(self, key: str, payload: bytes, extra: bytes | None = None) -> None:
-        """Put a message; from the thread if Zenoh sends it in fragments, each of which may wait."""
+        """Send a message; from the thread if Zenoh would fragment it, as each fragment may wait."""
         if self.is_crowded or len(payload) >= BULK_BYTES:
             size_bytes = len(payload) + len(extra or b"")
             self._queue.put(partial(self._put, key, payload, extra), size_bytes)
@@ -93,15 +93,15 @@ class ControlMessages:
 
 
 class ControlSubscribers(Generic[T]):
-    """Zenoh's subscribers for control messages: one for each key that has listeners.
+    """Zenoh subscribers for control messages: one for each key that has listeners.
 
-    Each is announced to every other process. One for all topics would be fewer, but a router's rule
-    for one topic would refuse it.
+    Each is announced to every other process. A single one for all topics would be cheaper, but a
+    router's access rule for one topic would refuse it.
 
     Args:
         waker: Wakes the event loop.
         handle: Called on the loop with each message and the listeners of its key, by name.
-        limit: How many messages wait for the loop at most; of more, the oldest are lost.
+        limit: Maximum number of messages that wait for the loop; beyond it, the oldest are lost.
     """
 
     def __init__(
@@ -117,7 +117,7 @@ class ControlSubscribers(Generic[T]):
         self._queue: ThreadsafeQueue[zenoh.Sample] = ThreadsafeQueue(waker, self._receive, limit)
 
     def start(self, session: zenoh.Session) -> None:
-        """Subscribe to all keys with listeners, and from now on to others as they get listeners."""
+        """Subscribe to all keys with listeners, and to further ones as they get listeners."""
         self._session = session
         for key in self._listeners:
             self._update(key)
@@ -130,7 +130,7 @@ class ControlSubscribers(Generic[T]):
         self._queue.clear()
 
     def listen(self, key: str, name: Hashable, listener: T) -> None:
-        """Add a listener of a key, or replace the one of the same name."""
+        """Add a listener for a key, or replace the one with the same name."""
         self._listeners.setdefault(key, {})[name] = listener
         self._update(key)
 
@@ -155,5 +155,5 @@ class ControlSubscribers(Generic[T]):
 
     def _receive(self, sample: zenoh.Sample) -> None:
         listeners = self._listeners.get(str(sample.key_expr))
-        if listeners is not None:  # else the last one has just gone
+        if listeners is not None:  # otherwise the last one has just gone
             self._handle(sample, listeners)

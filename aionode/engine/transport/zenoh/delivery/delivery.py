@@ -37,27 +37,27 @@ UNKNOWN_GID = bytes(16)
 """The gid of a message without a valid attachment."""
 
 FLUSH_NS = int(FLUSH_S * 1e9)
-"""Time for which a destroyed publisher waits for acknowledgements while there is progress."""
+"""How long a destroyed publisher waits for acknowledgements while there is progress."""
 
 STILL_NS = 500_000_000
-"""Time for which it waits without progress."""
+"""How long it waits without progress."""
 
 GIVEN_UP_NS = BLOCK_US * 900
-"""Duration from which on a send was given up by Zenoh."""
+"""Duration from which a send counts as given up by Zenoh."""
 
 
 def is_reliable(qos: QoSProfile) -> bool:
-    """Whether lost messages are sent again."""
+    """Return whether lost messages are resent."""
     return qos.resolved().reliability is ReliabilityPolicy.RELIABLE
 
 
 def is_transient(qos: QoSProfile) -> bool:
-    """Whether late subscriptions get what was published before."""
+    """Return whether late subscriptions get what was published before."""
     return qos.durability is DurabilityPolicy.TRANSIENT_LOCAL
 
 
 def sample_info_of(extra: zenoh.ZBytes | None) -> SampleInfo | None:
-    """Return the contents of an attachment; None without one in a known form."""
+    """Parse an attachment; return None if it is missing or its format is unknown."""
     if extra is None:
         return None
     fields = unpack_fields(extra.to_bytes())
@@ -72,7 +72,7 @@ def send_bulk(
 ) -> None:
     """Send a message from a thread, with the priority of large ones if the session is open.
 
-    No caller waits, so an error, after the session closed, is logged.
+    No caller waits, so an error (after the session was closed) is logged.
     """
     try:
         if isinstance(sender, zenoh.Session):
@@ -91,7 +91,7 @@ def send_bulk(
 
 
 def withdraw(publisher: zenoh.Publisher | ext.AdvancedPublisher) -> None:
-    """Undeclare a publisher, unless its session has been closed already."""
+    """Undeclare a publisher, unless its session has already been closed."""
     try:
         publisher.undeclare()  # type: ignore[no-untyped-call]  # the stub leaves out the result
     except zenoh.ZError as error:

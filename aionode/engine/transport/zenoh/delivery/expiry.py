@@ -1,4 +1,4 @@
-"""A message that has expired before it could be sent over Zenoh is not sent any more."""
+"""Skips messages that expire before they can be sent over Zenoh."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def unless_expired(
 ) -> Callable[[], None]:
     """Return a function that calls `send`, unless the message has expired by then.
 
-    Only readers of aionode look at the age of what arrives.
+    Only aionode readers check the age of what arrives.
 
     Args:
-        extra: The attachment of the message, which says when it was published.
-        lifespan_ns: How long it is valid; 0 for ever.
+        extra: The attachment of the message, with its publication time.
+        lifespan_ns: How long it is valid; 0 for no limit.
         now_ns: Returns nanoseconds since 1970.
         send: Sends the message.
     """

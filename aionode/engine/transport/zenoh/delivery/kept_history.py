@@ -34,12 +34,12 @@ def declare_keeping(
     waits: bool,
     numbered: bool,
 ) -> ext.AdvancedPublisher:
-    """Declare a publisher that keeps its last messages for late readers, expired or not.
+    """Declare a publisher that keeps its last messages, expired or not, for late readers.
 
     Args:
         session: The session.
         key: Its key expression.
-        depth: How many messages it keeps.
+        depth: Number of messages to keep.
         priority: The Zenoh priority of its messages.
         reliable: Whether no message may be lost on the way.
         waits: Whether it waits for slow readers instead of dropping messages.
@@ -54,6 +54,6 @@ def declare_keeping(
         allowed_destination=zenoh.Locality.REMOTE,
         cache=ext.CacheConfig(max_samples=depth),
         publisher_detection=True,
-        # Samples are numbered, so that readers ask again for what is missing between two.
+        # Samples are numbered, so that readers can request what is missing in between.
         sample_miss_detection=miss_detection() if reliable and numbered else None,
     )

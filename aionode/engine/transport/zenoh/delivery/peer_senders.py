@@ -1,11 +1,11 @@
-"""Sending requests and replies to other contexts, each of which may be frozen.
+"""Sends requests and replies to other contexts, any of which may be frozen.
 
-They are sent with congestion control BLOCK, since none may be lost, so sending one waits while the
-peer reads nothing. The event loop sends them itself while the peer has shown signs of life, or has
-been sent so little that the queues on the way hold it. Otherwise one thread for each such peer
-sends them.
+They are sent with congestion control BLOCK, since none may be lost, so a send waits while the peer
+reads nothing. The event loop sends them itself while the peer has shown signs of life, or has been
+sent so little that the queues on the way can hold it. Otherwise a thread per peer sends them.
 
-That thread waits for the peer before Zenoh would, for a reason of Zenoh (`_defects.blocked_sends`).
+That thread waits for the peer before Zenoh would, because of a Zenoh defect
+(`_defects.blocked_sends`).
 """
 
 from __future__ import annotations
@@ -23,42 +23,42 @@ if TYPE_CHECKING:
 __all__ = ["PeerSenders"]
 
 ALLOWANCE_BYTES: Final = 128 * 1024
-"""Bytes that the loop sends to a peer without a sign of life: fewer than Zenoh's queue holds."""
+"""Bytes that the loop sends to a peer without a sign of life: less than Zenoh's queue holds."""
 
 OVERHEAD_BYTES: Final = 512
-"""Bytes that a request or reply takes besides its payload, approximately: its key and headers."""
+"""Approximate overhead of a request or reply in bytes: its key and headers."""
 
 UNSEEN_BYTES: Final = 256 * 1024
-"""Bytes that a thread sends before it checks again whether the peer takes them; with those of the
-loop fewer than Zenoh's queue holds."""
+"""Bytes that a thread sends before it checks again whether the peer accepts them; together with
+those of the loop, less than Zenoh's queue holds."""
 
 CHECK_S: Final = 0.05
-"""The interval of checks while the peer takes nothing, in seconds."""
+"""The interval of checks while the peer accepts nothing, in seconds."""
 
 MOST_THREADS: Final = 200
-"""Number of peers that have a thread of their own at once; the others share `SHARED` threads. A
-process that announces thousands of contexts which read nothing starts no more."""
+"""Number of peers that may have a thread of their own; others share `SHARED` threads, so that a
+process that announces thousands of unresponsive contexts does not cause more."""
 
 SHARED: Final = 8
 
 REMEMBERED: Final = 1_000
-"""Number of peers that are remembered before idle ones are dropped."""
+"""Number of peers to remember before idle ones are dropped."""
 
 
 class PeerSender:
     """The sender of requests and replies to one other context.
 
     Attributes:
-        spent_bytes: How much was sent since its last sign of life.
-        unseen_bytes: How much the thread has sent since it saw that the peer takes it.
-        written_bytes: How much was written to the connection by then.
+        spent_bytes: Number of bytes sent since its last sign of life.
+        unseen_bytes: Number of bytes the thread has sent since it saw that the peer accepts them.
+        written_bytes: Number of bytes that had been written to the connection at that point.
         send_thread: The thread for it, once it was needed.
     """
 
     __slots__ = ("send_thread", "spent_bytes", "unseen_bytes", "written_bytes")
 
     def __init__(self) -> None:
-        # The loop alone uses `spent_bytes` and `send_thread`, and the thread the other two.
+        # Only the loop uses `spent_bytes` and `send_thread`, and only the thread the other two.
         self.spent_bytes = 0
         self.unseen_bytes = UNSEEN_BYTES
         self.written_bytes = 0
@@ -70,11 +70,11 @@ class PeerSenders:
 
     Args:
         waker: Wakes the event loop from threads.
-        progress: Tells in a thread whether the connection to a participant has room, and how many
-            bytes were written to it so far; None if that is not known.
+        progress: Returns, in a thread, whether the connection to a participant has room, and how
+            many bytes were written to it so far; None if unknown.
 
     Attributes:
-        is_crowded: Whether threads send everything, as `ControlMessages.is_crowded`.
+        is_crowded: Whether threads send everything; see `ControlMessages.is_crowded`.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class PeerSenders:
         self.is_crowded = False
         self._waker = waker
         self._progress = progress
-        # Set to end the waits of jobs, and then replaced: each job has the one of its time.
+        # Set to end the waits of jobs, and then replaced: each job has the current one.
         self._stopped = threading.Event()
         # By participant.
         self._peers: dict[str, PeerSender] = {}
@@ -98,7 +98,7 @@ class PeerSenders:
         return self._peers.setdefault(participant, PeerSender())
 
     def send(self, participants: Iterable[str], size_bytes: int, job: Callable[[], None]) -> None:
-        """Run `job`, which sends to some peers: at once if it cannot block, else in a thread."""
+        """Run `job`, which sends to some peers: now if it cannot block, otherwise in a thread."""
         slow = ""
         size_bytes += OVERHEAD_BYTES
         for participant in participants:
@@ -117,7 +117,7 @@ class PeerSenders:
             job()
 
     def submit(self, participant: str, size_bytes: int, job: Callable[[], None]) -> None:
-        """Run `job`, which sends to a peer, in the thread for it."""
+        """Run `job`, which sends to a peer, in that peer's thread."""
         peer = self._peer(participant)
         if peer.send_thread is None:
             self._tidy()
@@ -137,7 +137,7 @@ class PeerSenders:
         job: Callable[[], None],
         stopped: threading.Event,
     ) -> None:
-        """Run `job` as soon as the peer takes what was sent before; in its thread."""
+        """Run `job` once the peer accepts what was sent before, in its thread."""
         if peer.unseen_bytes + size_bytes > UNSEEN_BYTES:
             self._wait_for_room(participant, peer, stopped)
             peer.unseen_bytes = 0
@@ -148,8 +148,8 @@ class PeerSenders:
     def _wait_for_room(self, participant: str, peer: PeerSender, stopped: threading.Event) -> None:
         """Wait until Zenoh has sent what it has, and could send more.
 
-        A connection has room also if Zenoh had no time yet to fill it. So what was given to Zenoh
-        has to be written, or there has to be room twice in a row.
+        A connection also has room if Zenoh has not had time to fill it. So what was passed to Zenoh
+        must have been written, or there must be room twice in a row.
         """
         had_room = False
         while (seen := self._progress(participant)) is not None:
@@ -180,7 +180,7 @@ class PeerSenders:
         return [peer.send_thread for peer in self._peers.values() if peer.send_thread is not None]
 
     def clear(self) -> None:
-        """Forget all peers; jobs that wait in a thread are dropped."""
+        """Forget all peers; jobs waiting in threads are dropped."""
         self._stopped.set()
         self._stopped = threading.Event()
         for send_thread in self.send_threads():

@@ -1,4 +1,4 @@
-"""The graph of other contexts, from their liveliness tokens."""
+"""Builds the graph of other contexts from their liveliness tokens."""
 
 from __future__ import annotations
 
@@ -29,50 +29,50 @@ ATTEMPTS: Final = 5
 """Number of queries for tokens while answers lack those of this context."""
 
 ANSWER_S: Final = 60.0
-"""Time for which Zenoh waits for the tokens of all peers, in seconds; a frozen peer is cut long
+"""How long Zenoh waits for the tokens of all peers, in seconds; a frozen peer is cut long
 before."""
 
 FILL_S: Final = 5.0
-"""Longest time until tokens that were left out take the place of tokens that have gone."""
+"""Maximum delay until tokens that were ignored replace tokens that have gone, in seconds."""
 
 SHOWN: Final = 200
-"""Number of characters of an unknown text that are shown."""
+"""Maximum number of characters of an unknown text to show."""
 
 
 def participant_of(key: str) -> str:
-    """Return the participant that a liveliness token names; empty without one."""
+    """Return the participant in a liveliness token; empty if there is none."""
     return key.split("/", 3)[2] if key.count("/") > 1 else ""
 
 
 class NodeDeclaration(Declaration):
-    """A node: nothing but its token."""
+    """A node, which consists only of its token."""
 
     def __init__(self, state: SessionState, node: NodeInfo) -> None:
         super().__init__(state, node_token(state.domain_id, node))
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
-        """Nodes send and receive nothing themselves."""
+        """Do nothing: nodes do not send or receive anything themselves."""
 
     def undeclare_data(self) -> None:
-        """Nor is there anything to withdraw."""
+        """Do nothing: there is nothing to withdraw."""
 
 
 class Answer:
     """The end of a query for all tokens.
 
     Attributes:
-        answered: What waits for it.
+        answered: The future that waits for it.
         complete: Whether no reply is missing.
     """
 
     def __init__(self, answered: asyncio.Future[bool]) -> None:
         self.answered = answered
-        # Zenoh's thread sets it before it reports the end, and the loop reads it after that.
+        # Zenoh's thread sets it before it reports the end, after which the loop reads it.
         self.complete = True
 
     def take(self, reply: zenoh.Reply) -> None:
-        """Note a failure; in a thread of Zenoh, before the end is."""
+        """Record a failure, in a Zenoh thread, before the end is reported."""
         if reply.ok is None:
             self.complete = False
 
@@ -82,17 +82,17 @@ class Check:
 
     Attributes:
         tokens: The tokens in the replies.
-        changed: Tokens that were declared or undeclared meanwhile; replies may be older.
+        changed: Tokens declared or undeclared meanwhile; replies may be older.
         failed: Whether replies may be missing.
-        attempt: Which attempt it is, beginning with 1.
+        attempt: The number of the attempt, from 1.
     """
 
     def __init__(self, attempt: int) -> None:
         self.attempt = attempt
         self.tokens: set[str] = set()
         self.changed: set[str] = set()
-        # The thread that asks may set it, but only before it puts the check into the queue, from
-        # which the loop takes it: the two never use it at the same time.
+        # The querying thread may set it, but only before it puts the check into the queue from
+        # which the loop takes it, so the two never access it at the same time.
         self.failed = False
 
 
@@ -129,7 +129,7 @@ class Watcher:
         state.connections.on_change.append(self._take_change)
 
     def start(self, session: zenoh.Session) -> None:
-        """Subscribe to the tokens; existing ones arrive at once."""
+        """Subscribe to the tokens; existing ones arrive immediately."""
         with translated("the graph"):
             self._subscriber = session.liveliness().declare_subscriber(
                 self._tokens, direct(self._hand_over), history=True
@@ -149,14 +149,14 @@ class Watcher:
         self._known.clear()
 
     def ask(self, session: zenoh.Session, answered: asyncio.Future[bool]) -> None:
-        """Resolve `answered` when the tokens of all connected peers are in the graph.
+        """Resolve `answered` once the tokens of all connected peers are in the graph.
 
-        With false if some may be missing, as a peer has not answered in time.
+        The result is False if some may be missing because a peer has not answered in time.
         """
-        self.newest_ns = perf_ns()  # from now on it is waited for the first one as well
+        self.newest_ns = perf_ns()  # from now on the first one is waited for as well
         answer = Answer(answered)
-        # The subscriber gets the same tokens, and a reply may be older than an undeclaration that
-        # it has got since: only the end of the replies is of interest, and whether one failed.
+        # The subscriber gets the same tokens, and a reply may be older than an undeclaration
+        # received since: only the end of the replies matters, and whether one failed.
         session.liveliness().get(
             self._tokens,
             direct(answer.take, lambda: self._queue.put(answer)),
@@ -164,7 +164,7 @@ class Watcher:
         )
 
     def knows(self, key: str) -> bool:
-        """Return whether a token is in the graph, is one of this context, or may be left out."""
+        """Return whether a token is in the graph, is this context's own, or may be ignored."""
         return (
             key in self._known
             or participant_of(key) == self._state.participant
@@ -172,17 +172,17 @@ class Watcher:
         )
 
     def node_tokens(self) -> set[str]:
-        """Return the tokens of all nodes that are known, those of this context included."""
+        """Return the tokens of all known nodes, including those of this context."""
         own = {token for token in self._state.own_tokens() if is_node_token(token)}
         return own | {token for token, info in self._known.items() if isinstance(info, NodeInfo)}
 
     def check(self, attempt: int = 1) -> None:
-        """Compare the graph with the tokens that exist, and correct it.
+        """Compare the graph with the existing tokens, and correct it.
 
-        While connections break and are made anew, Zenoh may deliver the end of a token on the old
-        one after its declaration on the new one. At the same time its replies may lack existing
+        While connections break and are re-established, Zenoh may deliver the end of a token on the
+        old one after its declaration on the new one. At the same time its replies may lack existing
         tokens: one is removed if it is missing twice, and its context is not connected. Replies
-        without the tokens of this context count for nothing, and it is asked again.
+        without the tokens of this context are ignored, and the query is repeated.
         """
         session = self._state.session
         if session is None or self._check is not None:
@@ -191,7 +191,7 @@ class Watcher:
         self._asking.submit(partial(self._ask_all, session, check))
 
     def _ask_all(self, session: zenoh.Session, check: Check) -> None:
-        """Ask, in a thread: Zenoh takes 0.2 ms for each token that it knows, before it returns."""
+        """Query in a thread: Zenoh takes 0.2 ms per known token before it returns."""
         try:
             session.liveliness().get(
                 self._tokens,
@@ -294,6 +294,6 @@ class Watcher:
             self._state.tell_writers(info, present=False)
 
     def _fill(self) -> None:
-        """Ask for what was left out: there is room again."""
+        """Query for what was ignored, as there is room again."""
         self._state.announced.begin_to_fill()
         self.check()

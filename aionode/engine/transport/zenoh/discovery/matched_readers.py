@@ -1,4 +1,4 @@
-"""The readers that one publisher has in other contexts, and what they need."""
+"""The readers of one publisher in other contexts, and what they need."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ class MatchedReaders:
         state: The state of the session.
 
     Attributes:
-        participants: The context of each, by gid.
-        acknowledging: Those that acknowledge, each with its context.
-        others: Those of contexts that do not acknowledge, whatever their reliability, and those
-            that never have, though their contexts say that they do.
+        participants: The context of each reader, by gid.
+        acknowledging: Readers that acknowledge, each with its context.
+        others: Readers of contexts that do not acknowledge, whatever their reliability, and readers
+            that never have, though their contexts claim to.
     """
 
     def __init__(self, endpoint: EndpointInfo, state: SessionState) -> None:
@@ -41,7 +41,7 @@ class MatchedReaders:
         self._state = state
 
     def update(self, graph: Graph, reader: EndpointInfo | None, *, present: bool) -> None:
-        """Take a reader that has appeared or vanished, or find all of them if it is None."""
+        """Handle a reader that has appeared or vanished; None to find all of them."""
         if reader is None:
             self.participants.clear()
             self.others.clear()
@@ -71,7 +71,7 @@ class MatchedReaders:
     def note_mute(self, gid: bytes) -> bool:
         """Count a reader among the others, as it has never acknowledged anything.
 
-        Returns whether there never was such a reader before.
+        Returns whether this is the first such reader.
         """
         is_first, self._had_mute = not self._had_mute, True
         if self.acknowledging.pop(gid, None) is not None:
@@ -80,9 +80,9 @@ class MatchedReaders:
         return is_first
 
     def note_heard(self, gid: bytes) -> bool:
-        """Take note of an acknowledgement; return whether it is the first one of a mute reader.
+        """Record an acknowledgement; return whether it is the first one of a mute reader.
 
-        Then all readers are to be found anew.
+        If so, all readers have to be determined again.
         """
         if gid not in self._mute:
             return False

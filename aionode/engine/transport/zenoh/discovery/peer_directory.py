@@ -1,6 +1,6 @@
-"""The tokens of aionode contexts beside the ROS graph, and unannounced peers.
+"""The tokens of aionode contexts, apart from the ROS graph, and unannounced peers.
 
-An unannounced peer is a connected session that has no such token and no ROS node.
+An unannounced peer is a connected session with no such token and no ROS node.
 """
 
 from __future__ import annotations
@@ -40,27 +40,28 @@ logger = logging.getLogger("aionode.transport.zenoh")
 PREFIX: Final = "@aionode"
 
 LINKS: Final = "links"
-"""The end of the key on which a context tells which others it is linked with, one in each line."""
+"""The end of the key on which a context publishes its links, one per line."""
 
 LINKS_S: Final = 0.5
-"""Time for which `link_status` waits for replies, in seconds; they take a millisecond."""
+"""How long `link_status` waits for replies, in seconds; they take a millisecond."""
 
 
 class ZenohPeerDirectory:
-    """Tokens beside the ROS graph, connected sessions, and retransmissions between contexts.
+    """Tokens apart from the ROS graph, connected sessions, and retransmissions between contexts.
 
     A session is known once it has announced a node or an aionode context, in any domain: then it
-    announces its subscriptions as well. All others are unannounced peers, which may subscribe to
-    anything: a connected session that has not announced itself; and a router, as the sessions
-    behind it are not visible. What those subscribe to is known of single keys: `RouterMatching`.
+    also announces its subscriptions. All others are unannounced peers, which may subscribe to
+    anything: a connected session that has not announced itself, and a router, as the sessions
+    behind it are not visible. What those subscribe to is only known for single keys:
+    `RouterMatching`.
 
     Attributes:
-        advertisement: What this context announces, as chunks of a key that begin with the
+        advertisement: The announcement of this context, as chunks of a key starting with the
             participant; None to announce and look for nothing.
         on_advertisement: Called with the advertisement of another context, and whether it exists.
-        has_unannounced_peers: Whether a peer can be reached whose subscriptions are not announced.
-        on_unannounced_peers: Called with `has_unannounced_peers` when that has changed.
-        on_retransmit: Called with what other contexts have sent; in order for each of them.
+        has_unannounced_peers: Whether a reachable peer does not announce its subscriptions.
+        on_unannounced_peers: Called with `has_unannounced_peers` when it has changed.
+        on_retransmit: Called with what other contexts have sent, in order for each of them.
     """
 
     def __init__(self, state: SessionState, router_matching: RouterMatching) -> None:
@@ -71,7 +72,7 @@ class ZenohPeerDirectory:
         self.on_retransmit: Callable[[bytes], None] = ignore
         self._state = state
         self._router_matching = router_matching
-        # Whether there is an unannounced peer that is no router.
+        # Whether there is an unannounced peer that is not a router.
         self._has_plain_peers = False
         self._prefix = f"{PREFIX}/{state.domain_id}/"
         self._tokens = state.queue(self._take_token)
@@ -80,26 +81,26 @@ class ZenohPeerDirectory:
         state.connections.on_change.append(self._take_change)
         self._retransmits = state.queue(self._take_retransmit)
         # The tokens of each session that has announced itself. A connected session stays here
-        # without any: a context announces its subscriptions, with a node or without.
+        # without any: a context announces its subscriptions, with or without a node.
         self._known: dict[str, set[str]] = {}
-        # Contexts that have announced unannounced peers that only they see.
+        # Contexts that have announced unannounced peers seen only by them.
         self._hosts: set[str] = set()
-        # The connected routers, and the connected sessions that have announced nothing, as a
-        # router. To look for them at each token would be quadratic.
+        # The connected routers, and the connected sessions that have announced nothing. Searching
+        # for them at each token would be quadratic.
         self._routers: set[str] = set()
         self._unknown: set[str] = set()
         self._declared: list[Any] = []
         self._warning: zenoh.LivelinessToken | None = None
-        # The contexts that are linked with this one.
+        # The contexts linked with this one.
         self._linked: set[str] = set()
         self._queries = state.queue(self._take_query)
         self._answering = SendThread("aionode-links", state.waker)
         self._session: zenoh.Session | None = None
 
     def start(self, session: zenoh.Session) -> None:
-        """Declare the token, and subscribe to those of others; existing ones arrive at once.
+        """Declare the token, and subscribe to those of others; existing ones arrive immediately.
 
-        Without links there is nothing to announce, and nothing to look for.
+        Without links, there is nothing to announce or look for.
         """
         if self.advertisement is None:
             return
@@ -153,9 +154,9 @@ class ZenohPeerDirectory:
         }
 
     def retransmit(self, participant: str, data: bytes) -> None:
-        """Send `data` to another context from a thread; not dropped while both are open.
+        """Send `data` to another context from a thread; it is not dropped while both are open.
 
-        That context may be stalled, so the thread is one that sends to no other.
+        That context may be stalled, so the thread sends to no other.
         """
         session = self._session
         if session is not None:
@@ -165,7 +166,7 @@ class ZenohPeerDirectory:
             )
 
     def post(self, participant: str, data: bytes) -> None:
-        """Send `data` to another context at once, from any thread; it may be dropped."""
+        """Send `data` to another context immediately, from any thread; it may be dropped."""
         session = self._session
         if session is not None:
             send(session, self._retransmit_key(participant), data, waits=False)
@@ -173,7 +174,7 @@ class ZenohPeerDirectory:
     def note_link(self, participant: str, on: bool) -> None:
         """Record whether there is a link to another context, for those that ask.
 
-        A token for each link would reach every context: of 100 contexts, each would get 4950.
+        A token per link would reach every context: with 100 contexts, each would get 4950.
         """
         if on:
             self._linked.add(participant)
@@ -181,7 +182,7 @@ class ZenohPeerDirectory:
             self._linked.discard(participant)
 
     def _take_query(self, query: zenoh.Query) -> None:
-        """Tell a context that asks which links there are, from a thread: it may be stalled."""
+        """Tell a context which links there are, from a thread, as it may be stalled."""
         key = self._links_key(self._state.participant)
         links = "\n".join(sorted(self._linked))
 
@@ -195,7 +196,7 @@ class ZenohPeerDirectory:
         self._answering.submit(answer)
 
     async def link_status(self) -> LinkStatus:
-        """Ask all contexts which links they offer and have; empty without replies in time."""
+        """Ask all contexts which links they offer and have; empty if no replies arrive in time."""
         session = self._state.session
         advertisements: set[str] = set()
         pairs: set[frozenset[str]] = set()
@@ -231,15 +232,16 @@ class ZenohPeerDirectory:
         """Return whether an unannounced peer may subscribe to what a publisher sends.
 
         Args:
-            publisher: One of this context.
-            changed: Called when the answer may have changed, and `on_unannounced_peers` is not.
+            publisher: A publisher of this context.
+            changed: Called when the answer may have changed, but `on_unannounced_peers` is not
+                called.
         """
         if not self.has_unannounced_peers or self._has_plain_peers:
             return self.has_unannounced_peers
         return self._router_matching.may_match(self._state.names_of(publisher).key, changed)
 
     def forget(self, publisher: EndpointInfo, changed: Callable[[], None]) -> None:
-        """Do not call `changed` any more, as the publisher is closed."""
+        """Stop calling `changed`, as the publisher is closed."""
         self._router_matching.forget(self._state.names_of(publisher).key, changed)
 
     def _retransmit_key(self, participant: str) -> str:
@@ -271,7 +273,7 @@ class ZenohPeerDirectory:
         self._update()
 
     def _note(self, zid: str, key: str, *, present: bool) -> bool:
-        """Note a token of a session; return whether it counts, or is one too many."""
+        """Record a token of a session; return whether it counts, or is one too many."""
         keys = self._known.get(zid, set())
         if present and key not in keys:
             if not self._state.announced.admit(zid, key):
@@ -295,7 +297,7 @@ class ZenohPeerDirectory:
         self._classify(zid)
 
     def _classify(self, zid: str) -> None:
-        """Note whether a session is connected that has announced nothing."""
+        """Record whether a session is connected that has announced nothing."""
         if zid in self._connected and zid not in self._known and not is_probe(zid):
             self._unknown.add(zid)
         else:
@@ -329,7 +331,7 @@ class ZenohPeerDirectory:
             self.on_unannounced_peers(has_unannounced_peers)
 
     def _warn(self, *, needed: bool) -> None:
-        """Announce to other contexts that this one has unannounced peers, or no longer."""
+        """Announce whether this context has unannounced peers to other contexts."""
         if self._warning is not None and not needed:
             self._warning.undeclare()
             self._warning = None
@@ -341,7 +343,7 @@ class ZenohPeerDirectory:
 
 
 def send(session: zenoh.Session, key: str, data: bytes, *, waits: bool = True) -> None:
-    """Send `data`; runs in a thread."""
+    """Send `data`, in a thread."""
     try:
         session.put(
             key,

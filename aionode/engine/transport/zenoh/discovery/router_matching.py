@@ -1,13 +1,13 @@
-"""Whether sessions behind a router subscribe to what our publishers send.
+"""Detects whether sessions behind a router subscribe to our publishers' topics.
 
-A publisher's own matching status does not tell, since linked subscriptions match too: they stay
-subscribed over Zenoh, for publishers without a link. But a router tells a peer nothing about other
-peers, as these are expected to be connected to each other. So there is one more session for each
-router, a peer that is connected to nothing else, and takes no part in gossip. The matching status
-of its publishers is about the clients of that router, and about what other routers announce.
+A publisher's own matching status does not reveal it, since linked subscriptions match too: they
+stay subscribed over Zenoh, for publishers without a link. But a router tells a peer nothing about
+other peers, as these are expected to be connected to each other. So there is an additional session
+per router, a peer that is connected to nothing else and takes no part in gossip. The matching
+status of its publishers covers the clients of that router, and what other routers announce.
 
-Nothing but declarations is asked for. The router's admin space would tell as well, but must not be
-asked (`_defects.admin_space`).
+Only declarations are used. The router's admin space would reveal it as well, but must not be
+queried (`_defects.admin_space`).
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ __all__ = ["RouterMatching"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 SETTLE_S: Final = 1.0
-"""Delay of the session after the first question, in seconds.
+"""Delay of the session after the first query, in seconds.
 
 A process that ends sooner, such as a command, costs the router nothing.
 """
@@ -53,11 +53,11 @@ ANSWER_S: Final = 2.0
 """Timeout for the router's answer that it has handled all declarations, in seconds."""
 
 FENCE: Final = "@aionode/fence"
-"""A token that does not exist. The answer that there is none comes after those before it."""
+"""A token that does not exist. The answer that there is none follows everything before it."""
 
 
 class KeyMatching:
-    """A publisher whose matching status tells about one key, and what listens to its changes."""
+    """A publisher whose matching status concerns one key, and the listener to its changes."""
 
     def __init__(self, session: zenoh.Session, key: str, changed: Callable[[str], None]) -> None:
         self._key = key
@@ -71,29 +71,29 @@ class KeyMatching:
 
     @property
     def excluded(self) -> bool:
-        """Whether it is certain that there is no subscriber."""
+        """Whether there certainly is no subscriber."""
         try:
             return not self._publisher.matching_status.matching  # type: ignore[attr-defined]  # no bool, as the stub says
         except zenoh.ZError:  # the session was closed meanwhile
             return False
 
     def undeclare(self) -> None:
-        """Undeclare both; in a thread, as Zenoh may have to wait."""
+        """Undeclare both, in a thread, as Zenoh may have to wait."""
         with suppress(zenoh.ZError):
             self._listener.undeclare()
             self._publisher.undeclare()
 
 
 class RouterSession:
-    """The session with one router. A new object takes its place when its connection is lost.
+    """The session with one router, replaced by a new object when its connection is lost.
 
     Attributes:
         zid: The id of the router.
-        failures: How many attempts have failed in a row.
-        known: What is known of each key; used on the loop only.
-        declared: The keys that are known, or will be; used on the loop only.
-        session: The session while it is open; used in the thread only.
-        listener: Listens to the end of its connection; used in the thread only.
+        failures: Number of consecutive failed attempts.
+        known: What is known about each key; only used on the loop.
+        declared: The keys that are known, or will be; only used on the loop.
+        session: The session while it is open; only used in the thread.
+        listener: Listens to the end of its connection; only used in the thread.
     """
 
     def __init__(self, zid: str, failures: int = 0) -> None:
@@ -101,18 +101,18 @@ class RouterSession:
         self.failures = failures
         self.known: dict[str, KeyMatching] = {}
         self.declared: set[str] = set()
-        # The thread of `RouterMatching` does everything with a session in order, so that none of it
-        # is used after `close`.
+        # The thread of `RouterMatching` does everything with a session in order, so nothing is used
+        # after `close`.
         self.session: zenoh.Session | None = None
         self.listener: zenoh.TransportEventsListener[None] | None = None
 
     def excludes(self, key: str) -> bool:
-        """Return whether it is certain that no session behind the router subscribes to `key`."""
+        """Return whether certainly no session behind the router subscribes to `key`."""
         matching = self.known.get(key)
         return matching is not None and matching.excluded
 
     def close(self, known: list[KeyMatching]) -> None:
-        """Close the session; in the thread, where the last references to `known` end as well."""
+        """Close the session, in the thread, where the last references to `known` also end."""
         session, self.session = self.session, None
         if session is not None:
             try:
@@ -135,7 +135,7 @@ class RouterMatching:
         self._state = state
         self._network = network
         self._routers: dict[str, RouterSession] = {}
-        # Functions to call when an answer for a key may have changed; ordered sets.
+        # Functions to call when the answer for a key may have changed; ordered sets.
         self._asked: dict[str, dict[Callable[[], None], None]] = {}
         self._changes = state.queue(self._take_change)
         self._declared = state.queue(self._take_declared)
@@ -144,7 +144,7 @@ class RouterMatching:
         self._later = Later()
 
     def set_routers(self, zids: Iterable[str]) -> None:
-        """Take the ids of the routers that the context is connected to."""
+        """Set the ids of the routers to which the context is connected."""
         zids = set(zids)
         for zid in self._routers.keys() - zids:
             self._end(self._routers.pop(zid))
@@ -166,7 +166,7 @@ class RouterMatching:
         return not all(router.excludes(key) for router in self._routers.values())
 
     def forget(self, key: str, changed: Callable[[], None]) -> None:
-        """Do not call `changed` any more."""
+        """Stop calling `changed`."""
         asked = self._asked.get(key)
         if asked is None:
             return
@@ -178,7 +178,7 @@ class RouterMatching:
 
     def _drop(self, router: RouterSession, key: str) -> None:
         matching = router.known.pop(key, None)
-        if matching is not None:  # otherwise it is being declared, and dropped when it is known
+        if matching is not None:  # otherwise it is being declared, and dropped once known
             router.declared.discard(key)
             self._thread.submit(matching.undeclare)
 
@@ -202,7 +202,7 @@ class RouterMatching:
             self._later.call(delay_s, self._declare_all)
 
     def _declare_all(self) -> None:
-        """Declare a publisher for each key that was asked for, and has none yet."""
+        """Declare a publisher for each requested key that has none yet."""
         session = self._state.session
         if session is None:
             return
@@ -213,13 +213,13 @@ class RouterMatching:
                 self._thread.submit(partial(self._declare, router, session, keys))
 
     def _end(self, router: RouterSession) -> None:
-        """Forget what a router has told, and close the session with it."""
+        """Forget what a router has reported, and close the session with it."""
         known = list(router.known.values())
         router.known.clear()
         self._thread.submit(partial(router.close, known))
 
     def _take_declared(self, item: tuple[RouterSession, dict[str, KeyMatching]]) -> None:
-        """Take what is known of some keys from now on."""
+        """Record what is known about some keys from now on."""
         router, known = item
         if self._routers.get(router.zid) is not router:
             return  # its session is closed
@@ -232,7 +232,7 @@ class RouterMatching:
                 self._drop(router, key)
 
     def _take_lost(self, router: RouterSession) -> None:
-        """Start again with a router that its session has lost, if the context has it still."""
+        """Start over with a router whose session was lost, if it is still connected."""
         if self._routers.get(router.zid) is not router:
             return
         self._end(router)
@@ -248,7 +248,7 @@ class RouterMatching:
     # In the thread
 
     def _declare(self, router: RouterSession, session: zenoh.Session, keys: set[str]) -> None:
-        """Declare publishers, and wait until the router has told what they match."""
+        """Declare publishers, and wait until the router has reported what they match."""
         try:
             if router.session is None:
                 router.session = self._open(router, session)
@@ -278,7 +278,7 @@ class RouterMatching:
 
 
 def wait_for_answer(session: zenoh.Session) -> None:
-    """Wait until a router has told all that it was asked before.
+    """Wait until a router has reported everything requested so far.
 
     Raises:
         TimeoutError: it has not.

@@ -50,23 +50,23 @@ __all__ = ["ZenohWriter"]
 
 logger = logging.getLogger("aionode.transport.zenoh")
 
-MORE_DEPTH = "A greater depth keeps more of them, KEEP_ALL and `await drain()` all"
-DRAIN = "`await drain()` before the end waits for readers that still take them"
+MORE_DEPTH = "A greater depth keeps more of them; KEEP_ALL with `await drain()` keeps all"
+DRAIN = "`await drain()` before exiting waits for readers that still accept them"
 
 
 class ZenohWriter(Declaration, Writer):
-    """A publisher for the subscriptions of other contexts.
+    """A publisher for subscriptions of other contexts.
 
-    Its `sender` decides whether the event loop or a thread puts a message.
+    Its `sender` decides whether the event loop or a thread sends a message.
 
     Attributes:
-        sender: Puts the messages into Zenoh.
-        history: What readers that acknowledge lack. None for a transient local KEEP_LAST publisher:
-            Zenoh repeats its lost messages, if no connection is lost meanwhile.
+        sender: Passes the messages to Zenoh.
+        history: Messages that acknowledging readers lack. None for a transient local KEEP_LAST
+            publisher: Zenoh resends its lost messages, unless a connection is lost meanwhile.
     """
 
     recovers: ClassVar[bool] = True  # whether its readers ask again for what they miss
-    _stop: ZenohStop | None = None  # of a lease, while it is put again
+    _stop: ZenohStop | None = None  # of a lease, while it is being repeated
 
     def __init__(self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any]) -> None:
         self._key, token, gid = state.names_of(endpoint)
@@ -74,11 +74,11 @@ class ZenohWriter(Declaration, Writer):
         self.endpoint = endpoint
         qos = endpoint.qos
         self._msg_type = msg_type
-        # None until it is needed, as it takes a while to make; `_update` does that, so that no
-        # callback has to.
+        # None until needed, as creating it takes a while; `_update` does that, so that no callback
+        # has to.
         self._encode: Callable[[Any], bytes] | None = None
         self._matching: zenoh.MatchingListener[None] | None = None
-        # Whether Zenoh has subscribers, those without a token included; its listener tells.
+        # Whether Zenoh has subscribers, including those without a token; set by its listener.
         self._is_matching = False
         self._matching_changed = state.queue(self._update_with, limit=1)
         self._matched = MatchedReaders(endpoint, state)
@@ -92,7 +92,7 @@ class ZenohWriter(Declaration, Writer):
             self.sender.expiry = SilenceAlarm(
                 state.time_base, qos.lifespan.nanoseconds, self._forget_expired
             )
-        # Messages for late readers that were published before the session is open.
+        # Messages for late readers that were published before the session was open.
         self._early: deque[tuple[int, bytes, bytes]] = deque(maxlen=self._depth)
         self.active = self._transient
         self.bounded = keeps_all(qos)
@@ -132,11 +132,11 @@ class ZenohWriter(Declaration, Writer):
             self.sender.publisher = declare_plain(
                 session, self._key, LOOP_PRIORITY, reliable=self._reliable, waits=False
             )
-            if self.recovers:  # else a bridge has announced every reader
+            if self.recovers:  # otherwise a bridge has announced every reader
                 self._matching = self.sender.publisher.declare_matching_listener(
                     direct(self._matching_changed.put)
                 )
-                # Here only: Zenoh looks through all subscribers of all topics for an answer.
+                # Only here: Zenoh searches all subscribers of all topics for an answer.
                 self._is_matching = bool(self.sender.publisher.matching_status.matching)  # type: ignore[attr-defined]  # no bool, as the stub says
         self._update()
 
@@ -152,10 +152,10 @@ class ZenohWriter(Declaration, Writer):
         )
 
     def _forget_expired(self, periods: int) -> bool:  # noqa: ARG002  # one lifespan is enough
-        """Replace the publisher by a new one: all that Zenoh keeps of it has expired."""
+        """Replace the publisher by a new one, as everything that Zenoh keeps for it has expired."""
         if self.state.session is not None and self.sender.publisher is not None:
             if not self.is_done():
-                return True  # once more, after another lifespan
+                return True  # again, after another lifespan
             self.sender.replace(self._declare_keeping(self.state.session))
         return False
 
@@ -220,8 +220,8 @@ class ZenohWriter(Declaration, Writer):
         self.active = self._transient
         if graph is not None and self.sender.publisher is not None:
             self._matched.update(graph, reader, present=present)
-            # The token of a reader can arrive before Zenoh has told of a match, or has a route to
-            # it; what is lost until then is sent again.
+            # The token of a reader can arrive before Zenoh has reported a match, or has a route to
+            # it; what is lost until then is resent.
             self.active = self.active or self._is_matching or bool(self._matched.participants)
             if history is not None:
                 self._update_readers(history, None if reader is None else reader.gid)
@@ -247,10 +247,10 @@ class ZenohWriter(Declaration, Writer):
                     history.add(known, acknowledging[known])
         if self.bounded and history.readers:
             self.state.acknowledgements.probe(history.probe)
-        if not self._is_watched and history.readers:  # one that is away may be to be given up
+        if not self._is_watched and history.readers:  # an absent one may have to be given up
             self._watch()
         self._progress()
-        # Subscribers without a token may match; beside readers that acknowledge, none is known.
+        # Subscribers without a token may match; besides acknowledging readers, none is known.
         self.active = self.active or bool(history.readers)
         history.has_other_readers = bool(self._matched.others) or not history.readers
         self._note_others()
@@ -280,11 +280,11 @@ class ZenohWriter(Declaration, Writer):
             self._early.append((sequence, payload, extra))
 
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
-        """Return what sends the stop of a lease."""
+        """Return an object that sends the stop of a lease."""
         return ZenohStop(self, stop, is_last)
 
     def _has_unacknowledging(self) -> bool:
-        """Return whether there may be readers for which nothing lost is sent again."""
+        """Return whether there may be readers for which nothing lost is resent."""
         known, acknowledging = self._matched.participants, self._matched.acknowledging
         return self.history is None or not known or not known.keys() <= acknowledging.keys()
 
@@ -303,7 +303,7 @@ class ZenohWriter(Declaration, Writer):
         self.sender.note_others(present=history is None or history.has_other_readers)
 
     def note_crowd(self) -> None:
-        """Have the thread for large messages send all while Zenoh may stand still."""
+        """Let the thread for large messages send everything while Zenoh may block."""
         self.sender.update()
 
     def assert_liveliness(self) -> None:
@@ -311,13 +311,13 @@ class ZenohWriter(Declaration, Writer):
         self.state.assertions.send(self._key, self.gid)
 
     def has_room(self) -> bool:
-        """Return whether one more message can wait to be sent."""
+        """Return whether another message can wait to be sent."""
         if not self.bounded:
             return True
         return (self.history is None or self.history.has_room()) and self.sender.has_room()
 
     async def drain(self) -> None:
-        """Wait until there is room and all messages were handed to Zenoh."""
+        """Wait until there is room and all messages were passed to Zenoh."""
         while self.history is not None and (self.history.unsent or not self.has_room()):
             self._drained.clear()
             self._watch()
@@ -333,7 +333,7 @@ class ZenohWriter(Declaration, Writer):
     # Submessages
 
     def send(self, participant: str, submessage: bytes) -> None:
-        """Send a submessage to the context of a reader; any thread may."""
+        """Send a submessage to the context of a reader, from any thread."""
         self.state.acknowledgements.send(self._key, Side.PUBLISHERS, participant, submessage)
 
     def source_ns(self, extra: bytes) -> int:
@@ -352,16 +352,16 @@ class ZenohWriter(Declaration, Writer):
                 self.finish()
 
     def mute(self, reader: ReaderProxy) -> None:
-        """Leave a reader that has never answered to Zenoh, as one of a ROS node, until it does."""
+        """Leave a reader that has never answered to Zenoh, like a ROS node's, until it does."""
         if self._matched.note_mute(reader.gid):
-            text = "%s: a reader in context %s has acknowledged nothing for %.3g s, and is left out"
+            text = "%s: a reader in context %s has acknowledged nothing for %.3g s, and is ignored"
             logger.warning(text, self.endpoint.name, reader.participant, MUTE_TICKS * TICK_S)
         if self.history is not None:
             self.history.has_other_readers = True
             self._note_others()
 
     def tick(self) -> bool:
-        """Send heartbeats, and give up in the end; return whether to call again."""
+        """Send heartbeats, and eventually give up; return whether to call again."""
         self._is_watched = self._tick()
         return self._is_watched
 
@@ -393,11 +393,11 @@ class ZenohWriter(Declaration, Writer):
         return again
 
     def lost(self, count: int) -> None:
-        """Count dropped messages; the first of a reliable publisher are logged."""
+        """Count dropped messages, and log the first ones of a reliable publisher."""
         if self._reliable and not self._dropped:
             logger.warning(
-                "%s: %d of the messages published here were dropped before every reader had them: "
-                "one is too slow, hangs or has gone; more of them are only counted, in the "
+                "%s: dropped %d of the messages published here before every reader had them: "
+                "a reader is too slow, frozen or gone; further ones are only counted, in the "
                 "publisher's stats.dropped. %s",
                 *(self.endpoint.name, count, DRAIN if self.bounded else MORE_DEPTH),
             )
@@ -405,7 +405,7 @@ class ZenohWriter(Declaration, Writer):
 
     @property
     def dropped(self) -> int:
-        """Number of messages that are known to have been dropped on the way."""
+        """Number of messages known to have been dropped on the way."""
         return self._dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:

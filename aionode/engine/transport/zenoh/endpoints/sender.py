@@ -1,4 +1,4 @@
-"""Who puts the messages of one publisher into Zenoh: the event loop, or a thread."""
+"""Decides who passes the messages of one publisher to Zenoh: the event loop, or a thread."""
 
 from __future__ import annotations
 
@@ -45,19 +45,18 @@ __all__ = ["SentBy", "ZenohSender"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 LATE: Final = 1_000
-"""Messages of a KEEP_LAST publisher, or its depth if that is more, that wait for Zenoh while Zenoh
-answers a late reader, or in a crowd; else none wait."""
+"""Number of messages of a KEEP_LAST publisher (or its depth, if greater) that may wait for Zenoh
+while it answers a late reader, or in a crowd; otherwise none wait."""
 
 
 class SentBy(Enum):
-    """Who puts a message into Zenoh, each with a priority and so a queue of its own there.
+    """Who passes a message to Zenoh, each with a priority and so a queue of its own there.
 
     Attributes:
-        LOOP: The event loop puts it, which never waits; Zenoh may drop it.
-        BULK: The thread for large messages puts it.
-        BLOCKING: A thread of this publisher puts it, and waits: for readers that do not acknowledge
-            and must not lose it, or, of a transient local publisher, for Zenoh, which answers a
-            late reader with the history locked.
+        LOOP: The event loop, which never waits; Zenoh may drop the message. BULK: The thread for
+            large messages. BLOCKING: A thread of this publisher, which waits: for readers that do
+            not acknowledge and must not lose the message, or, for a transient local publisher, for
+            Zenoh, which answers a late reader with the history locked.
     """
 
     LOOP = 0
@@ -66,25 +65,25 @@ class SentBy(Enum):
 
 
 class ZenohSender:
-    """Puts the messages of one publisher into Zenoh.
+    """Passes the messages of one publisher to Zenoh.
 
     Args:
         state: The state of the session.
         key: The key of the topic.
         qos: The profile of the publisher.
-        lost: Called with how many messages were dropped.
+        lost: Called with the number of messages dropped.
 
     Attributes:
-        publisher: The publisher that Zenoh has declared; None while it has none. Set by the loop
-            only. A thread puts into the one that its job was given, and the same thread undeclares
-            that after its last job (`withdraw`).
+        publisher: The publisher declared by Zenoh; None if there is none. Set only by the loop. A
+            thread uses the one that its job was given, and the same thread undeclares it after its
+            last job (`withdraw`).
         large: Large messages, and small ones after them to keep the order.
-        blocking: Messages that a thread of this publisher sends. None until there is one; from then
-            on it sends all, to keep the order.
+        blocking: Messages sent by a thread of this publisher. None until there is one; from then on
+            it sends everything, to keep the order.
         transient: Whether Zenoh keeps messages for late readers.
-        expiry: Told of each message that Zenoh keeps, if they expire.
-        used_bulk: Whether a large message was put since a lease began.
-        puts_small_at_once: Whether `choose` is known to answer LOOP for small messages.
+        expiry: Informed of each message that Zenoh keeps, if they expire.
+        used_bulk: Whether a large message was sent since a lease began.
+        puts_small_at_once: Whether `choose` is known to return LOOP for small messages.
     """
 
     def __init__(
@@ -118,11 +117,11 @@ class ZenohSender:
     # Who sends
 
     def choose(self, size_bytes: int) -> SentBy:
-        """Return who puts the next message, which has this size.
+        """Return who sends the next message, given its size.
 
-        A reader that may lose none and does not acknowledge has a thread that waits for it, always
-        for KEEP_ALL, and otherwise when messages are many. While Zenoh may stand still, or a large
-        message waits, the loop puts nothing.
+        A reader that must not lose any and does not acknowledge has a thread that waits for it,
+        always with KEEP_ALL, and otherwise if there are many messages. While Zenoh may block, or a
+        large message waits, the loop sends nothing.
         """
         large, is_crowded = self.large, self._state.control_messages.is_crowded
         is_large, large_waits = size_bytes >= BULK_BYTES, bool(len(large))
@@ -143,12 +142,12 @@ class ZenohSender:
         return SentBy.LOOP
 
     def note_others(self, *, present: bool) -> None:
-        """Note whether there are readers that do not acknowledge."""
+        """Record whether there are readers that do not acknowledge."""
         self._may_not_drop = self._reliable and present
         self.update()
 
     def update(self) -> None:
-        """Find out whether small messages need no `choose`: the loop puts them."""
+        """Determine whether small messages need no `choose`, as the loop sends them."""
         self.puts_small_at_once = not (
             self.blocking is not None
             or self._needs_thread
@@ -203,7 +202,7 @@ class ZenohSender:
         return unless_expired(extra, self._lifespan_ns, self._state.now_ns, send)
 
     def _send_blocking(self, publisher: ZenohPublisher, payload: bytes, extra: bytes) -> None:
-        """Send in the thread. Zenoh gives up after a while without an error, so time tells."""
+        """Send in the thread. Zenoh gives up after a while without an error, so time reveals it."""
         began_ns = perf_ns()
         try:
             publisher.put(payload, attachment=extra)
@@ -220,7 +219,7 @@ class ZenohSender:
     # The stop of a lease
 
     def put_stop(self, payload: bytes, extra: bytes) -> None:
-        """Put a message where the last one was put."""
+        """Send a message the same way as the last one."""
         publisher, blocking = self.publisher, self.blocking
         if publisher is None:
             return
@@ -234,7 +233,7 @@ class ZenohSender:
             self.put_now(payload, extra)
 
     def put_now(self, payload: bytes, extra: bytes) -> None:
-        """Put a message at once, with the priority of those before it; in any thread."""
+        """Send a message immediately, with the priority of those before it; from any thread."""
         publisher = self.publisher
         if publisher is None:
             return
@@ -247,7 +246,7 @@ class ZenohSender:
             logger.debug("%s: not sent: %s", self._key, reason(error))
 
     def keep_past_loop(self, payload: bytes, extra: bytes) -> None:
-        """Have Zenoh keep a message for late readers; from any thread, past the loop."""
+        """Make Zenoh keep a message for late readers; any thread, while the loop is blocked."""
         if self.transient and self.publisher is not None:
             keep = partial(self._send_blocking, self.publisher, payload, extra)
             self._blocking_thread.submit_past_loop(keep)
@@ -261,20 +260,20 @@ class ZenohSender:
                 send_queue.abandon()
 
     def is_done(self) -> bool:
-        """Return whether all was handed to Zenoh."""
+        """Return whether everything was passed to Zenoh."""
         return not len(self.large) and (self.blocking is None or not len(self.blocking))
 
     @property
     def sent(self) -> tuple[int, int]:
-        """How many messages threads have sent: those for large ones, and the one that waits."""
+        """The numbers of messages sent by threads: the one for large ones, and the blocking one."""
         return self.large.sent, 0 if self.blocking is None else self.blocking.sent
 
     def has_room(self) -> bool:
-        """Return whether one more message can wait to be sent."""
+        """Return whether another message can wait to be sent."""
         return self.blocking is None or self.blocking.has_room()
 
     async def drain(self) -> None:
-        """Wait until all was handed to Zenoh."""
+        """Wait until everything was passed to Zenoh."""
         if self.blocking is not None:
             await self.blocking.drain()
         await self.large.drain()
@@ -282,13 +281,13 @@ class ZenohSender:
     # Its publisher
 
     def replace(self, publisher: ZenohPublisher) -> None:
-        """Send by another publisher of Zenoh from now on; what it has kept is forgotten."""
+        """Send through another Zenoh publisher from now on; what the old one kept is forgotten."""
         before, self.publisher = self.publisher, publisher
         if before is not None:
             self._blocking_thread.submit(partial(withdraw, before))
 
     def withdraw(self) -> None:
-        """Undeclare, in the thread that may be using the publisher: Zenoh locks it meanwhile."""
+        """Undeclare it in the thread that may be using it, as Zenoh locks it meanwhile."""
         publisher, self.publisher = self.publisher, None
         blocking, self._blocking_publisher = self._blocking_publisher, None
         if self.blocking is not None:
@@ -296,7 +295,7 @@ class ZenohSender:
             self.update()
             if blocking is not None:
                 self._blocking_thread.submit(partial(withdraw, blocking))
-            elif publisher is not None:  # it is the thread's own
+            elif publisher is not None:  # it belongs to the thread
                 self._blocking_thread.submit(partial(withdraw, publisher))
                 publisher = None
         self._state.send_threads.discard(self._blocking_thread)

@@ -39,27 +39,28 @@ LONG_S = 600.0
 """Timeout of a request, as in ROS; the effective limit is the caller's, which cancels the call."""
 
 SHORT_S = 30.0
-"""Timeout of the requests of a client that calls often."""
+"""Timeout of the requests of a client that calls frequently."""
 
 OFTEN = 1_000
-"""So many calls in `LONG_S` are often. Zenoh remembers a query until its timeout, answered or not:
-some 700 bytes each."""
+"""Number of calls within `LONG_S` that counts as frequent. Zenoh remembers a query until its
+timeout, answered or not: some 700 bytes each."""
 
 AGAIN_S = (0.005, 0.03, 0.15)
-"""When a request is sent again that found no server though there is one.
+"""Delays before a request is resent that found no server although there is one, in seconds.
 
-The token of a server can be seen shortly before requests find their way to it. What ends later than
-`AT_ONCE_NS` was received, and is not sent again.
+The token of a server can be visible shortly before requests find their way to it. A request that
+ends later than `AT_ONCE_NS` was received, and is not resent.
 """
 
 AT_ONCE_NS = 50_000_000
 
 ARRIVING_REQUESTS = 50_000
-"""Number of requests that wait for the loop at most, before the service counts and refuses them.
+"""Maximum number of requests waiting for the loop, before the service counts and refuses them.
 """
 
 UNANNOUNCED = 8
-"""So many threads at most send answers to clients without a token, which have any ids they like."""
+"""Maximum number of threads that send answers to clients without a token, whose ids are
+arbitrary."""
 
 TOO_MANY = (
     "other requests are waiting already in this process, of all clients or of this one, which take "
@@ -67,16 +68,16 @@ TOO_MANY = (
 )
 
 FRESH_NS = 100_000_000
-"""A request that is no older, by its stamp, shows that its client lives."""
+"""A request that is no older than this, by its stamp, shows that its client is alive."""
 
 
 def error_payload(error_type: str, error_text: str) -> bytes:
-    """Return an error as it goes to a client."""
+    """Return an error in the form that is sent to clients."""
     return json.dumps({"type": error_type, "text": error_text}).encode()
 
 
 def parse_error(payload: bytes, service: str) -> ServiceError:
-    """Return the error that a server sent: with its type, if the server runs aionode."""
+    """Parse an error from a server; it has a type if the server runs aionode."""
     text = payload.decode(errors="replace")
     try:
         fields = json.loads(text)
@@ -91,7 +92,7 @@ def parse_error(payload: bytes, service: str) -> ServiceError:
 
 
 class ZenohServer(Declaration):
-    """A server as the clients of others see it."""
+    """A server as seen by clients of other contexts."""
 
     def __init__(
         self,
@@ -109,8 +110,8 @@ class ZenohServer(Declaration):
         self._queue = state.queue(self._receive)
         self._note_refused = state.queue(self._report_refused, limit=ARRIVING_REQUESTS)
         self.unanswered: dict[tuple[bytes, int], ZenohRequest] = {}
-        # The context of each client that has a token. The loop writes, and Zenoh's threads look a
-        # client up: a request of one that has just come or gone counts as one without a token.
+        # The context of each client that has a token. The loop writes it, and Zenoh's threads read
+        # it: a request of a client that has just come or gone counts as one without a token.
         self._clients: dict[bytes, str] = {}
         self._unwatch: Callable[[], None] | None = None
         state.cancellations.listen(endpoint.name, self.cancel)
@@ -130,7 +131,7 @@ class ZenohServer(Declaration):
         )
 
     def undeclare_data(self) -> None:
-        """Withdraw it, and end the calls that were not answered."""
+        """Withdraw it, and end unanswered calls."""
         queryable, self._queryable = self._queryable, None
         if queryable is not None:
             queryable.undeclare()
@@ -161,10 +162,10 @@ class ZenohServer(Declaration):
             request.cancelled = True
 
     def _arrive(self, query: zenoh.Query) -> None:
-        """Hand a request to the loop; in a thread of Zenoh.
+        """Pass a request to the loop; in a Zenoh thread.
 
-        One for which there is no room is refused here, in the thread that reads what its client
-        sends: if that one reads no answers, it alone waits.
+        A request for which there is no room is refused here, in the thread that reads what its
+        client sends: if the client does not read answers, only that thread waits.
         """
         room = self.state.request_room
         client = self._clients.get(gid_in(query.attachment), "")
@@ -205,7 +206,7 @@ class ZenohServer(Declaration):
             )
 
     def attachment_of(self, sample_info: SampleInfo) -> bytes | None:
-        """Return what goes with the response to a request."""
+        """Return the attachment for the response to a request."""
         return attachment.pack(sample_info.sequence, self.state.now_ns(), sample_info.gid)
 
     def participant_of(self, client: bytes) -> str:
@@ -242,7 +243,7 @@ def gid_in(extra: zenoh.ZBytes | None) -> bytes:
 
 
 def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:
-    """End `query`, with a reply or without; nothing happens if its client has gone."""
+    """End `query`, with or without a reply; does nothing if its client has gone."""
     try:
         if reply is not None:
             reply()
@@ -252,7 +253,7 @@ def answer(query: zenoh.Query, reply: Callable[[], None] | None = None) -> None:
 
 
 class ZenohRequest(Request):
-    """One request from another process."""
+    """A request from another process."""
 
     def __init__(
         self, message: Any, sample_info: SampleInfo, query: zenoh.Query, server: ZenohServer
@@ -262,13 +263,13 @@ class ZenohRequest(Request):
         self._query = query
         self._server = server
         self._id = (sample_info.gid, sample_info.sequence)
-        # A request without an attachment has no number either; then the object itself is unique.
+        # A request without an attachment has no number either; then the object itself is the id.
         if self._id in server.unanswered or sample_info.gid == UNKNOWN_GID:
             self._id = (sample_info.gid, id(self))
         server.unanswered[self._id] = self
 
     def _finish(self) -> bool:
-        """Mark the request as answered; return whether this is the first time."""
+        """Mark the request as answered; return whether it was not answered before."""
         return self._server.unanswered.pop(self._id, None) is not None
 
     def reply(self, response: Any) -> None:
@@ -286,13 +287,13 @@ class ZenohRequest(Request):
         )
 
     def fail(self, error_type: str, error_text: str) -> None:
-        """Send an error; a ROS client logs it and goes on waiting."""
+        """Send an error; ROS clients log it and keep waiting."""
         if self._finish():
             payload = error_payload(error_type, error_text)
             self._server.refuse(self._query, self.sample_info, payload)
 
     def drop(self) -> None:
-        """End the query, which tells the client that nothing will come."""
+        """End the query, which tells the client that no response will come."""
         if self._finish():
             self._server.answer(self._query, self.sample_info, None, 0)
 
@@ -301,7 +302,7 @@ class ZenohRequest(Request):
 
 
 class ZenohRequester(Declaration, Requester):
-    """A client as the servers of others see it."""
+    """A client as seen by servers of other contexts."""
 
     target: ClassVar[zenoh.QueryTarget] = zenoh.QueryTarget.ALL_COMPLETE
 
@@ -318,10 +319,10 @@ class ZenohRequester(Declaration, Requester):
         state.add(self)
 
     def declare_data(self, session: zenoh.Session) -> None:
-        """A client declares nothing but its token."""
+        """Do nothing: a client declares only its token."""
 
     def undeclare_data(self) -> None:
-        """End the calls under way: nothing can answer them any more."""
+        """End pending calls, as nothing can answer them any more."""
         for call in list(self.unanswered):
             call.end()
 
@@ -354,7 +355,7 @@ class ZenohRequester(Declaration, Requester):
 
     @property
     def servers(self) -> int:
-        """Number of matched servers of other contexts."""
+        """Number of matched servers in other contexts."""
         return len(self._matched())
 
     def tell_cancelled(self, sequence: int) -> None:
@@ -377,24 +378,24 @@ class ZenohRequester(Declaration, Requester):
 
 
 class ZenohCall:
-    """One call under way."""
+    """A pending call."""
 
     def __init__(self, requester: ZenohRequester, reply_to: ReplyTo, sequence: int) -> None:
         self._requester = requester
-        # None once the call has ended, and never set again. The loop writes; a thread that sends
+        # None once the call has ended, and never set again. The loop writes it; a thread that sends
         # reads it, so that no request is sent for a call that has ended.
         self._reply_to: ReplyTo | None = reply_to
         self._sequence = sequence
         self._token = zenoh.CancellationToken()
         self._unreadable: ServiceError | None = None
         self._send_again: Callable[[], None] | None = None
-        self._sent_ns = 0  # written by the thread that sends, before the loop can get a reply
+        self._sent_ns = 0  # written by the sending thread, before the loop can get a reply
         self._attempts = 0
         self._queue = requester.state.queue(self._receive)
         requester.unanswered.add(self)
 
     def send(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
-        """Send the request without waiting for a server that hangs; on the loop."""
+        """Send the request without waiting for a server that hangs, on the loop."""
         self._send_again = partial(self.send, session, payload, extra, timeout_s)
         requester = self._requester
         requester.state.peer_senders.send(
@@ -404,7 +405,7 @@ class ZenohCall:
         )
 
     def _get(self, session: zenoh.Session, payload: bytes, extra: bytes, timeout_s: float) -> None:
-        """Send the request, unless it was given up meanwhile; on any thread."""
+        """Send the request, unless it was given up meanwhile, on any thread."""
         if self._reply_to is None:
             return
         self._sent_ns = perf_ns()
@@ -439,7 +440,7 @@ class ZenohCall:
                 self.end()
             return
         servers = self._requester.participants()
-        if len(servers) == 1:  # else it is not known which of them lives
+        if len(servers) == 1:  # otherwise it is unknown which of them is alive
             self._requester.state.peer_senders.heard(servers.pop())
         sample = reply.ok
         if sample is None:
@@ -455,7 +456,7 @@ class ZenohCall:
         try:
             response = cdr.decode(self._requester.srv_type.Response, sample.payload.to_bytes())
         except DecodeError as decode_error:
-            # Another server may answer in a better form; else the caller gets to know this.
+            # Another server may answer in a better form; otherwise the caller is told.
             self._requester.state.note_malformed(self._requester.key, str(decode_error))
             self._unreadable = ServiceError(
                 self._requester.endpoint.name, f"the response is unreadable: {decode_error}"
@@ -465,7 +466,7 @@ class ZenohCall:
         reply_to.reply(response, sample_info_of(sample.attachment) or SampleInfo(UNKNOWN_GID, 0, 0))
 
     def _try_again(self) -> bool:
-        """Send the request again if no server had it though there is one; return whether."""
+        """Resend the request if no server received it though there is one; return whether."""
         if (
             self._send_again is None
             or self._unreadable is not None
@@ -503,7 +504,7 @@ class ZenohCall:
         self._requester.unanswered.discard(self)
 
     def cancel(self) -> None:
-        """Forget the call, and send a cancellation to those servers that run aionode."""
+        """Forget the call, and send a cancellation to the servers that run aionode."""
         if self._reply_to is None:
             return
         self._finish()

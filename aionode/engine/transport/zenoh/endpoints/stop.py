@@ -22,13 +22,13 @@ __all__ = ["ZenohStop"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 REPEAT_NS: Final = 200_000_000
-"""Time for which a stop is put again, with the same number, for readers that do not
-acknowledge: Zenoh drops messages that do not fit into its queue, and tells nobody.
+"""How long a stop is repeated, with the same number, for readers that do not acknowledge: Zenoh
+silently drops messages that do not fit into its queue.
 """
 
 
 class StoppableWriter(Protocol):
-    """The members of a `ZenohWriter` that the stop of a lease needs."""
+    """The members of a `ZenohWriter` used by the stop of a lease."""
 
     gid: bytes
     active: bool
@@ -45,33 +45,33 @@ class StoppableWriter(Protocol):
 class ZenohStop(StopSender):
     """Sends the stop of a lease to the readers of other contexts.
 
-    Small messages are put at once, as the commands before it were; large ones by the thread for
-    them, which has a priority of its own. A reader that acknowledges gets it for certain: the
-    history keeps it. To the others it is put again for a while.
+    Small messages are sent immediately, like the commands before it; large ones by the thread for
+    them, which has a priority of its own. A reader that acknowledges is certain to get it, as the
+    history keeps it. For the others it is repeated for a while.
 
     Args:
         writer: The publisher.
         stop: The message.
-        is_last: Whether nothing was published since; else it is not put again.
+        is_last: Whether nothing was published since; otherwise it is not repeated.
     """
 
     def __init__(self, writer: StoppableWriter, stop: Any, is_last: Callable[[], bool]) -> None:
         self._writer = writer
         self._payload = cdr.encoder(type(stop))(stop)
         self._is_last = is_last
-        self._extra = b""  # once it was sent
-        self._ends_ns = 0  # when it is put no more
-        self._past = 0  # its number, once it was sent past the loop
-        # Whether a large message was published since: only behind it nothing is overtaken.
+        self._extra = b""  # set once it was sent
+        self._ends_ns = 0  # when to stop repeating it
+        self._past = 0  # its number, once it was sent while the loop was blocked
+        # Whether a large message was published since: only behind it, nothing is overtaken.
         writer.sender.used_bulk = len(self._payload) >= BULK_BYTES
 
     @property
     def is_repeated(self) -> bool:
-        """Whether it is to be put again now."""
+        """Whether it should be repeated now."""
         return perf_ns() < self._ends_ns and self._is_last()
 
     def send(self, sequence: int, source_ns: int) -> None:
-        """Send it, or keep for those who ask again what was sent past the loop."""
+        """Send it, or keep it for readers that missed it while the loop was blocked."""
         writer, sender, history = self._writer, self._writer.sender, self._writer.history
         is_past = self._past == sequence
         if not is_past:
@@ -82,7 +82,7 @@ class ZenohStop(StopSender):
             writer.keep_early(sequence, self._payload, self._extra)
             return
         sender.abandon()
-        # Past the loop, it was put past what is kept for late readers.
+        # If sent while the loop was blocked, it bypassed what is kept for late readers.
         put = self._no_more if is_past and not sender.transient else sender.put_stop
         if history is None:
             put(self._payload, self._extra)
@@ -93,7 +93,7 @@ class ZenohStop(StopSender):
         writer.watch_stop(self)
 
     def tick(self) -> ZenohStop | None:
-        """Put it again, if that is still due; return what to call next time."""
+        """Send it again, if that is still due; return what to call next time."""
         if not self.is_repeated:
             return None
         self.repeat()
@@ -104,21 +104,21 @@ class ZenohStop(StopSender):
         self._ends_ns = perf_ns() + REPEAT_NS
 
     def _no_more(self, payload: bytes, extra: bytes) -> None:
-        """Do nothing: it was put past the loop."""
+        """Do nothing: it was sent while the loop was blocked."""
 
     def send_past_loop(self, sequence: int, source_ns: int) -> None:
-        """Put it, and tell the readers that acknowledge to wait for nothing before it.
+        """Send it, and tell acknowledging readers not to wait for anything before it.
 
-        The loop could not send again what they lack.
+        The loop could not resend what they lack.
         """
         self._past = sequence
         self._begin(sequence, source_ns)
         self.repeat()
-        # Zenoh keeps no such stop, and late readers would get the last command.
+        # Zenoh does not keep such a stop, and late readers would get the last command.
         self._writer.sender.keep_past_loop(self._payload, self._extra)
         if self._writer.history is not None:
             self._writer.history.announce_only(sequence)
 
     def repeat(self) -> None:
-        """Put it at once, with the priority of the messages before it."""
+        """Send it immediately, with the priority of the messages before it."""
         self._writer.sender.put_now(self._payload, self._extra)

@@ -44,23 +44,24 @@ __all__ = ["ZenohReader"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 BACKLOG = 10_000
-"""At least so many small messages wait for the loop before the oldest are dropped."""
+"""Minimum number of small messages that wait for the loop before the oldest are dropped."""
 
 KEEP_ALL_ARRIVING = 100_000
-"""Number of messages for a KEEP_ALL subscription that wait for a stalled loop."""
+"""Number of messages for a KEEP_ALL subscription that may wait for a stalled loop."""
 
 WINDOWS = 8
-"""So many times as much as otherwise waits for room in a KEEP_ALL subscription from publishers with
-flow control: 512 of them with a full window."""
+"""Factor for what may wait for room in a KEEP_ALL subscription from publishers with flow control:
+512 of them with a full window."""
 
 SPAN = 1_000
-"""At least so many small messages a KEEP_LAST subscription holds while earlier ones are missing."""
+"""Minimum number of small messages a KEEP_LAST subscription holds while earlier ones are
+missing."""
 
 
 class ZenohReader(Declaration):
-    """A subscription to the publishers of other contexts."""
+    """A subscription to publishers of other contexts."""
 
-    recovers: ClassVar[bool] = True  # whether its publishers send again what it misses
+    recovers: ClassVar[bool] = True  # whether its publishers resend what it misses
 
     def __init__(
         self, state: SessionState, endpoint: EndpointInfo, msg_type: type[Any], reader: Reader
@@ -73,7 +74,7 @@ class ZenohReader(Declaration):
         super().__init__(state, token, gid)
         self.endpoint = endpoint
         self._transient = transient
-        # The history comes at once, and how long a message is valid is in its publisher's token.
+        # The history comes at once, and a message's lifespan is in its publisher's token.
         self.needs_graph = transient
         self._reader = reader
         self._deliver = reader.deliver
@@ -84,11 +85,11 @@ class ZenohReader(Declaration):
         depth = depth_of(endpoint.qos)
         reliable = is_reliable(endpoint.qos)
         self._keep_all = keeps_all(endpoint.qos)
-        # A few hundred images waiting for a busy loop would take all memory; what is small may
-        # wait for its turn in the subscription's own queue, where it is counted if dropped.
+        # A few hundred images waiting for a busy loop would take all memory; small messages may
+        # wait for their turn in the subscription's own queue, where drops are counted.
         limit = depth if self._buffers else max(depth, BACKLOG)
-        # A publisher that gets acknowledgements sends at most a window ahead, and sends again what
-        # is dropped here.
+        # A publisher that gets acknowledgements sends at most a window ahead, and resends what is
+        # dropped here.
         self._queue = state.arrivals(
             self._receive, KEEP_ALL_ARRIVING if self._keep_all else limit, self._note_dropped
         )
@@ -103,7 +104,7 @@ class ZenohReader(Declaration):
         # Messages for which a KEEP_ALL subscription has no room yet.
         self._full: deque[tuple[bytes, SampleInfo, WriterProxy | None]] = deque()
         self._full_bytes = 0
-        # The largest message of those that a KEEP_ALL subscription has not taken.
+        # The largest message that a KEEP_ALL subscription has not accepted.
         self._largest_bytes = 0
         self._waits_for_room = False
         self._subscribers: list[zenoh.Subscriber[None] | ext.AdvancedSubscriber[None]] = []
@@ -119,7 +120,7 @@ class ZenohReader(Declaration):
         put = self._queue.put
         if self._transient:
             reliable = is_reliable(self.endpoint.qos)
-            # Not `direct`: Zenoh calls with a lock held, for which undeclaring would wait as well.
+            # Not `direct`: Zenoh calls it with a lock held, for which undeclaring would also wait.
             subscriber: Any = ext.declare_advanced_subscriber(
                 session,
                 self._key,
@@ -166,12 +167,12 @@ class ZenohReader(Declaration):
             by_target = str(sample.key_expr).endswith(BUFFER_SUFFIX)
             sequence = self._numbers.number(gid, sequence, by_target=by_target)
         if self._transient and gid in self.state.own_gids:
-            return  # a late subscription asks the publishers of its own context for history too
+            return  # a late subscription also asks the publishers of its own context for history
         payload = sample.payload.to_bytes()
         proxy = self._proxies.get(gid)
         if proxy is None:
             if self._stateful is not None and not self._stateful.receive_early(gid, sequence):
-                return  # its publisher has sent it again
+                return  # its publisher has resent it
             if self._keep_all:
                 self._accept_or_wait(payload, self._held(gid, sequence, source_ns), None)
                 return
@@ -184,7 +185,7 @@ class ZenohReader(Declaration):
             # The history of a transient local publisher may come again.
             self._receive_in_order(proxy, payload, sample_info, is_resent=self._transient)
             return
-        # As `_hand_over`, which would be one more call for each message.
+        # Like `_hand_over`, which would be one more call per message.
         decode = self._decode
         if decode is None:
             decode = self._make_decode()
@@ -196,13 +197,13 @@ class ZenohReader(Declaration):
             self._deliver(msg, gid, sequence, source_ns, self._waker.inline_deadline_ns)
 
     def _without_attachment(self, extra: zenoh.ZBytes | None) -> tuple[int, int, bytes]:
-        """Return the fields of a message that ROS drops; here it counts, from an unknown sender."""
+        """Return the fields of a message that ROS would drop; here its sender is unknown."""
         if extra is not None:
             self.state.note_malformed(self._key, "an attachment")
         return 0, 0, UNKNOWN_GID
 
     def _count_targets(self) -> int:
-        """Return how many subscriptions of the topic a publisher of Lyrical sends to one by one."""
+        """Count the topic's subscriptions to which a publisher of Lyrical sends individually."""
         graph = self.state.graph
         if graph is None:
             return 0
@@ -215,18 +216,18 @@ class ZenohReader(Declaration):
         )
 
     def _held(self, gid: bytes, sequence: int, source_ns: int) -> SampleInfo:
-        """Return what is known of a message that may wait here, with the time of its arrival."""
+        """Return the metadata of a message that may wait here, with its arrival time."""
         return SampleInfo(gid, sequence, source_ns, self.state.time_base.system_ns())
 
     def _note_dropped(self, count: int) -> None:
-        """Count messages that were dropped as too many bytes of them waited for the loop."""
+        """Count messages dropped because too many bytes of them waited for the loop."""
         limit = f"{self.state.queue_bytes / 2**20:.3g} MiB"
         self.state.drops.note(Drop.BUSY_LOOP, self.endpoint.name, limit, count)
 
     def _has_room(self, size_bytes: int) -> bool:
-        """Return whether a KEEP_ALL subscription can take one more message of this size.
+        """Return whether a KEEP_ALL subscription can accept another message of this size.
 
-        What it has not taken counts as if all were as large as the largest of it.
+        What it has not accepted counts as if every message had the size of the largest.
         """
         waiting = self._reader.waiting
         if not waiting:
@@ -249,7 +250,7 @@ class ZenohReader(Declaration):
             self._watch()
 
     def accept(self, item: tuple[bytes, SampleInfo], proxy: WriterProxy) -> bool:
-        """Take the next message of a writer; return whether it is used, or else waits for room."""
+        """Accept a writer's next message; return whether it is used now, or else waits for room."""
         if self._keep_all:
             return self._accept_or_wait(*item, proxy)
         self._hand_over(*item)
@@ -262,8 +263,8 @@ class ZenohReader(Declaration):
         if not self._full and self._has_room(len(payload)):
             self._hand_over(payload, sample_info)
             return True
-        # Publishers that are acknowledged send a window ahead at most, so only very many of them,
-        # or one that is no publisher of aionode, fill this.
+        # Acknowledged publishers send at most a window ahead, so only very many of them, or one
+        # that is not aionode's, can fill this.
         limit = self.state.queue_bytes if proxy is None else WINDOWS * self.state.queue_bytes
         if self._full_bytes >= limit:
             self._refuse(limit)
@@ -294,7 +295,7 @@ class ZenohReader(Declaration):
             self._wait_for_room()
 
     def _make_decode(self) -> Callable[[bytes], Any]:
-        """Make the decoder with the first message: most subscriptions never need it."""
+        """Create the decoder with the first message, as most subscriptions never need it."""
         decode = self._decode = bytes if self._raw else cdr.decoder(self._msg_type)
         return decode
 
@@ -326,7 +327,7 @@ class ZenohReader(Declaration):
             self._watch()
 
     def _watch(self) -> None:
-        """Ask again for missing messages until they are here."""
+        """Ask again for missing messages until they have arrived."""
         if self._stateful is not None:
             self.state.acknowledgements.watch(self._stateful.tick)
 
@@ -335,7 +336,7 @@ class ZenohReader(Declaration):
         self.state.acknowledgements.send(self._key, Side.SUBSCRIPTIONS, participant, submessage)
 
     def item_of(self, submessage: Submessage) -> tuple[bytes, SampleInfo]:
-        """Return a message that was sent again, as `accept` gets it."""
+        """Return a resent message in the form that `accept` takes."""
         return submessage.rest, self._held(submessage.writer, submessage.first, submessage.last)
 
     def has_arrivals(self) -> bool:
@@ -343,7 +344,7 @@ class ZenohReader(Declaration):
         return bool(len(self._queue))
 
     def receive_arrivals(self) -> None:
-        """Take the messages that wait for the loop."""
+        """Handle the messages that wait for the loop."""
         self._queue.take_all()
 
     def participant_of(self, writer: bytes) -> str:
@@ -357,11 +358,11 @@ class ZenohReader(Declaration):
         return ""
 
     def malformed(self) -> None:
-        """Count a submessage that names no context to answer."""
+        """Count a submessage that does not name a context to answer."""
         self.state.note_malformed(self._key, "an acknowledgement")
 
     def refused(self, last: int) -> None:
-        """Say once that something was said in a publisher's name that it cannot have said."""
+        """Log once that something was claimed in a publisher's name that it cannot have said."""
         self.state.note_lie(
             self.endpoint.name,
             f"a HEARTBEAT or GAP up to message {last} was refused, as the publisher has not sent "
@@ -369,7 +370,7 @@ class ZenohReader(Declaration):
         )
 
     def started_anew(self, first: int) -> None:
-        """Say once that messages come that should not have come."""
+        """Log once that messages arrive that were announced as missing."""
         self.state.note_lie(
             self.endpoint.name,
             f"messages from number {first} on are taken, although it was said that they would not "

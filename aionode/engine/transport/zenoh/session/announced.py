@@ -1,4 +1,4 @@
-"""Limits of the tokens of other contexts that are kept: nodes, endpoints, links."""
+"""Limits on the tokens of other contexts that are kept: nodes, endpoints, links."""
 
 from __future__ import annotations
 
@@ -17,32 +17,32 @@ __all__ = ["AnnouncedLimit"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 TOKEN_BYTES: Final = 2_000
-"""Bytes that a token counts besides its text, approximately: an endpoint in the graph takes as
-much."""
+"""Approximate bytes that a token counts besides its text: the memory of an endpoint in the
+graph."""
 
 SHARE: Final = 8
-"""One participant may have an eighth of it all."""
+"""One participant may use this fraction of the total (an eighth)."""
 
 RESERVED_BYTES: Final = 256_000
-"""Bytes of each connected participant that are kept whatever others announce: 100 endpoints. A
-process that fills the graph under invented names displaces no participant that is there."""
+"""Bytes reserved for each connected participant whatever others announce: 100 endpoints. A process
+that fills the graph under invented names displaces no participant that is there."""
 
 
 class AnnouncedLimit:
-    """Limits how many liveliness tokens of others are kept, in all and of each participant.
+    """Limits how many liveliness tokens of others are kept, in total and per participant.
 
-    Zenoh keeps all of them, and takes about 4 kB for each.
+    Zenoh itself keeps all of them, and takes about 4 kB for each.
 
     Args:
-        limit_bytes: The limit in all; a token counts its text, and `TOKEN_BYTES`.
-        connected: The participants that are connected now; the others may be behind routers, or
+        limit_bytes: The total limit; a token counts its text, and `TOKEN_BYTES`.
+        connected: The participants that are connected now; others may be behind routers, or
             invented.
-        drops: Where it is counted what is left out.
+        drops: Counts ignored tokens.
 
     Attributes:
-        left_out: How many tokens were left out since the graph was last filled up; those that come
-            again count again.
-        is_crowded: Whether there are so many that Zenoh may stand still for a moment.
+        left_out: Number of tokens ignored since the graph was last filled up; repeated ones count
+            again.
+        is_crowded: Whether there are so many that Zenoh may block for a moment.
         on_crowded: Called when that has changed.
     """
 
@@ -60,7 +60,7 @@ class AnnouncedLimit:
         self._of: Counter[str] = Counter()  # by participant
 
     def admit(self, participant: str, key: str) -> bool:
-        """Count a token that is to be kept; return whether it may be, and log the first refusal."""
+        """Admit a token within the limits; return whether it was, and log the first refusal."""
         size_bytes = TOKEN_BYTES + len(key)
         own_bytes = self._of[participant] + size_bytes
         is_reserved = own_bytes <= RESERVED_BYTES and participant in self._connected
@@ -75,7 +75,7 @@ class AnnouncedLimit:
         return True
 
     def release(self, participant: str, key: str) -> None:
-        """Count no more a token that was admitted."""
+        """Release a token that was admitted."""
         if participant not in self._of:  # everything was forgotten meanwhile
             return
         size_bytes = TOKEN_BYTES + len(key)
@@ -87,18 +87,18 @@ class AnnouncedLimit:
         self._judge()
 
     def begin_to_fill(self) -> None:
-        """Count anew what is left out: everything is asked for again."""
+        """Reset the count of ignored tokens, as everything is queried again."""
         self.left_out = 0
         self._judge()
 
     def clear(self) -> None:
-        """Begin anew: nothing is kept any more."""
+        """Start over: nothing is kept any more."""
         self._used_bytes = self._count = 0
         self._of.clear()
         self._judge()
 
     def _judge(self) -> None:
-        """Find out whether it is crowded."""
+        """Determine whether it is crowded."""
         is_crowded = is_crowd(self._count) or self.left_out > 0
         if is_crowded is not self.is_crowded:
             self.is_crowded = is_crowded
@@ -107,7 +107,7 @@ class AnnouncedLimit:
 
     def _leave_out(self, participant: str) -> None:
         if not self._of[participant]:
-            del self._of[participant]  # it was asked for only
+            del self._of[participant]  # it was only queried
         self.left_out += 1
         self._judge()
         kept = (

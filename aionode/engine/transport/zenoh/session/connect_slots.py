@@ -1,7 +1,7 @@
 """Connect slots: processes that start together take their ports and connect one after another.
 
-A process takes a slot by binding the loopback UDP port that stands for it. Unlike a lock file the
-port belongs to no user, and is free as soon as its process has ended, however that ends.
+A process takes a slot by binding the loopback UDP port that stands for it. Unlike a lock file, the
+port belongs to no user, and is released as soon as its process ends, however that happens.
 """
 
 from __future__ import annotations
@@ -26,29 +26,27 @@ if TYPE_CHECKING:
 __all__ = ["connecting", "one_at_a_time"]
 
 SLOT_S: Final = 3.0
-"""Time for which a process waits for another that has the slot and does not go on, in
-seconds."""
+"""How long a process waits for another that holds the slot without making progress, in seconds."""
 
 FOREIGN_SLOT_S: Final = 0.3
-"""Time for which a process waits while another user's process has the slot, in seconds: that
-process may keep the slot on purpose."""
+"""How long a process waits while another user's process holds the slot, in seconds, as that may be
+on purpose."""
 
 FIRST_POLL_S: Final = 0.002
 """The first interval at which a process tries to take a slot, in seconds."""
 
 POLL_GROWTH: Final = 1.5
-"""Growth of that interval: the more processes wait, the longer each waits, and some try soon."""
+"""Growth factor of that interval: with more processes waiting, each waits longer."""
 
 LAST_POLL_S: Final = 0.03
-"""The longest interval for a place in the list of sessions, in seconds; a slot is kept for a
+"""The longest interval for a place in the list of sessions, in seconds; a slot is held for a
 millisecond."""
 
 LAST_CONNECTING_POLL_S: Final = 0.5
-"""The longest interval for connecting, in seconds; a slot is kept for up to a
-second."""
+"""The longest interval for connecting, in seconds; a slot is held for up to a second."""
 
 LOAD: Final = Path("/proc/loadavg")
-"""Says how many threads of this machine run or could run."""
+"""Contains how many threads of this machine are running or runnable."""
 
 
 @contextmanager
@@ -77,10 +75,10 @@ def one_at_a_time(port: int | None) -> Iterator[None]:
 async def connecting(network: Network) -> AsyncIterator[None]:
     """Limit how many processes of this machine connect at once: one for every two processors.
 
-    Each is connected with all others. If a hundred start together, and all connect at once, each of
-    4950 connections is made while hundreds of threads wait for a processor, and the first processes
-    that are ready have to wait for the last ones. While a processor is free, or where the machine
-    does not list its sessions, or there is one meeting port only, nobody waits.
+    Each is connected to all others. If a hundred start together, and all connect at once, each of
+    the 4950 connections is made while hundreds of threads wait for a processor, and the first
+    processes to be ready have to wait for the last ones. While a processor is idle, or if the
+    machine does not list its sessions, or there is only one meeting port, nobody waits.
     """
     group = network.meeting_ports[0]
     others = listed(group) if near(network) else None
@@ -96,13 +94,13 @@ async def connecting(network: Network) -> AsyncIterator[None]:
             if wait.is_over():
                 before, others = others, listed(group)
                 if wait.is_foreign or others == before:
-                    break  # nobody has begun to connect meanwhile: those that do are stuck
+                    break  # nobody has started meanwhile: those that hold slots are stuck
                 wait = SlotWait(ports)
         yield
 
 
 class SlotWait:
-    """One wait of a process until any of several slots is free.
+    """One process's wait for any of several slots.
 
     Attributes:
         is_foreign: Whether processes of other users have all slots.
@@ -114,7 +112,7 @@ class SlotWait:
         self.is_foreign = False
 
     def is_over(self) -> bool:
-        """Return whether this took long enough, given the users that have the slots."""
+        """Return whether this has taken long enough, given the users that hold the slots."""
         waited_s = (perf_ns() - self._began_ns) / 1e9
         if waited_s < FOREIGN_SLOT_S:
             return False
@@ -124,16 +122,16 @@ class SlotWait:
 
 
 def connecting_ports(network: Network) -> tuple[int, ...]:
-    """Return a port for each process that may connect now: one for two processors."""
+    """Return a port for each process that may connect now: one per two processors."""
     ports = (*network.meeting_ports[1:], *network.spare_ports)
     return ports[: max(processors() // 2, 1)]
 
 
 def is_idle() -> bool:
-    """Return whether a processor of this machine is free, or may be as far as it tells."""
+    """Return whether a processor of this machine is idle, or may be as far as is known."""
     try:
         running, _, _ = LOAD.read_text("ascii").split()[3].partition("/")
-        return int(running) <= processors()  # this thread is among those that run
+        return int(running) <= processors()  # this thread is among the running ones
     except (OSError, ValueError, IndexError):  # a sandbox may hide it
         return True
 
@@ -144,7 +142,7 @@ def processors() -> int:
 
 
 def takes(slot: socket.socket, port: int) -> bool:
-    """Return whether the slot of a port was free; the socket has it from then on."""
+    """Take the slot of a port if it is free, which the socket then holds; return whether it was."""
     with suppress(OSError):
         slot.bind((LOOPBACK, port))
         return True

@@ -1,10 +1,10 @@
-"""The router of this machine towards static peers, in one of the processes that name them.
+"""Makes one process of this machine its router to static peers.
 
-Routers of Zenoh do not carry messages between the peers of one router, as these are expected to
-reach each other. Nodes listen on loopback only, so a node that dials the router of another machine
-would hear nothing behind it: each machine needs a router of its own, linked with those of others.
-Where there is none, the first process with static peers opens it; where there is one, a process
-with static peers opens a router that links it with them, and takes no peers.
+Zenoh routers do not forward messages between the peers of one router, as these are expected to
+reach each other. Nodes listen on loopback only, so a node that dialled the router of another
+machine would hear nothing behind it: each machine needs its own router, linked with those of
+others. If there is none, the first process with static peers opens it; if there is one, a process
+with static peers opens a router that links it with them, and accepts no peers.
 """
 
 from __future__ import annotations
@@ -43,22 +43,22 @@ __all__ = ["LocalRouter"]
 logger = logging.getLogger("aionode.transport.zenoh")
 
 ROUTER_IDS: Final = "a10de20c"
-"""The prefix of the ids of such routers."""
+"""The id prefix of such routers."""
 
 LINKED_S: Final = 1.0
-"""Time for which `open` waits for the first static peer, in seconds; the peer may be absent."""
+"""How long `open` waits for the first static peer, in seconds; the peer may be absent."""
 
 LINKED_POLL_S: Final = 0.005
 
 TREES_S: Final = 0.25
-"""Time that routers take to exchange their tokens, in seconds; Zenoh waits 0.1 s by itself."""
+"""How long routers take to exchange their tokens, in seconds; Zenoh itself waits 0.1 s."""
 
 TAKE_OVER_S: Final = 0.3
-"""Within this time after a router of another process has ended, this one opens its own."""
+"""Within this time after another process's router has ended, this process opens its own."""
 
 
 class LocalRouter:
-    """Links this machine with the static peers of a context, by a router where one is needed.
+    """Links this machine with the static peers of a context, through a router if necessary.
 
     Args:
         state: The session state of the context.
@@ -77,7 +77,7 @@ class LocalRouter:
         self._opening = threading.Lock()
 
     async def open(self) -> None:
-        """Open a router if this machine needs one; return when it is linked, if that is soon.
+        """Open a router if this machine needs one; return once it is linked, if that is soon.
 
         Raises:
             ConfigurationError: the configuration cannot be used.
@@ -88,7 +88,7 @@ class LocalRouter:
         await run_in_own_thread(self._open)
 
     async def close(self) -> None:
-        """Close the router, if this process has it."""
+        """Close the router, if this process has one."""
         if self._closed:
             return
         self._closed = True
@@ -98,13 +98,13 @@ class LocalRouter:
             await close_session(router)
 
     def _give_up(self) -> zenoh.Session | None:
-        """Return the router, which the caller closes; runs in a thread, as it may be opening."""
+        """Return the router, for the caller to close; runs in a thread, as it may be opening."""
         with self._opening:
             router, self._router = self._router, None
         return router
 
     def _take_change(self, change: ConnectionChange) -> None:
-        """Take the place of the router of another process when that has ended."""
+        """Replace another process's router when that has ended."""
         if change.is_made or not change.zid.startswith(ROUTER_IDS) or self._closed:
             return
         if not self._later.waits:
@@ -115,11 +115,11 @@ class LocalRouter:
         start_thread(threading.Thread(target=self._open_again, name="aionode-zenoh"))
 
     def _open_again(self) -> None:
-        with suppress(ConfigurationError):  # it was right before
+        with suppress(ConfigurationError):  # it was valid before
             self._open()
 
     def _open(self) -> None:
-        """Open a router unless there is one of another process; runs in a thread."""
+        """Open a router unless another process has one; runs in a thread."""
         with self._opening:
             if self._closed or self._router is not None:
                 return
@@ -141,7 +141,7 @@ class LocalRouter:
         until_linked(router)
 
     def _router_at(self, port: int) -> str:
-        """Return the id of the router at a port of this machine, "unknown" if it does not say."""
+        """Return the id of the router at a port of this machine; "unknown" if it does not tell."""
         with (
             suppress(zenoh.ZError),
             closing(open_probe(self._network, f"tcp/{LOOPBACK}:{port}")) as probe,
@@ -155,7 +155,7 @@ def until_linked(router: zenoh.Session) -> None:
     """Wait until a router is linked with another machine, and knows what is there."""
     ends_ns = perf_ns() + int(LINKED_S * 1e9)
     while perf_ns() < ends_ns:
-        with suppress(zenoh.ZError):  # it is closed meanwhile
+        with suppress(zenoh.ZError):  # it was closed meanwhile
             if any(not is_near(str(link.dst)) for link in router.info.links()):
                 threading.Event().wait(TREES_S)
                 return

@@ -1,17 +1,17 @@
-"""The Zenoh sessions of this machine, as Linux lists them.
+"""Lists this machine's Zenoh sessions, using Linux's list of sockets.
 
 Each session that other processes may dial connects a UDP socket, which sends nothing: the remote
-address says which sessions it meets, and the remote port is that on which Zenoh listens.
+address identifies the group of sessions, and the remote port is the one on which Zenoh listens.
 ``/proc/net/udp`` lists these sockets, so that a session knows all others before it is opened, and
-dials them. They belong to a network namespace, as loopback does: a listed session can be dialled,
-whatever user or container it belongs to. A socket ends with its process, however that ends.
+dials them. They belong to a network namespace, as loopback does: a listed session can be dialled
+whatever its user or container. A socket ends with its process, however that happens.
 
-Unix sockets with abstract names would do as well, but ``/proc/net/unix`` lists all connections too:
-with a hundred processes that are linked it takes 8 ms to read, when all of them start and wait.
+Unix sockets with abstract names would work too, but ``/proc/net/unix`` also lists all connections:
+with a hundred linked processes it takes 8 ms to read, while all of them start and wait.
 
-Zenoh's gossip would introduce the sessions too, but each one tells all that it is connected with of
-each new one: a hundred that start at once send half a million such messages. Where nothing is
-listed, that is how sessions meet.
+Zenoh's gossip would introduce the sessions too, but each one tells all its peers about each new
+one: a hundred that start at once send half a million such messages. Where nothing is listed, that
+is how sessions meet.
 """
 
 from __future__ import annotations
@@ -42,18 +42,18 @@ STOPPED: Final = {"T", "t"}
 """States of processes that a signal, or a debugger, has stopped; see proc(5)."""
 
 COMMAND: Final = 100
-"""Number of characters of a command line that are shown."""
+"""Maximum number of characters of a command line to show."""
 
 PRESENCE: Final = 97
-"""The second number of these addresses, all of which belong to loopback."""
+"""The second byte of these addresses, all of which belong to loopback."""
 
 
 def announce(group: int, port: int) -> socket.socket:
     """Register a session on this machine until the returned object is closed.
 
     Args:
-        group: The first of the ports on which sessions meet; those with others do not meet.
-        port: Where it listens on loopback.
+        group: The first of the ports on which sessions meet; those with other ports do not meet.
+        port: The port on which it listens on loopback.
     """
     presence = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     presence.bind((LOOPBACK, 0))
@@ -63,7 +63,7 @@ def announce(group: int, port: int) -> socket.socket:
 
 
 def listed(group: int) -> set[int] | None:
-    """Return the ports of the sessions that are listed; None if the machine has no list."""
+    """Return the ports of the listed sessions; None if the machine has no list."""
     lines = udp_sockets()
     if lines is None:
         return None
@@ -88,12 +88,12 @@ def groups() -> set[int]:
 
 
 class LocalProcess(NamedTuple):
-    """The process of a session that is listed.
+    """The process of a listed session.
 
     Attributes:
         pid: Its id.
-        command: Its command line, for people to read.
-        is_stopped: Whether a signal or a debugger has stopped it, so that it answers nobody.
+        command: Its command line, for display.
+        is_stopped: Whether a signal or debugger has stopped it, so that it cannot answer.
     """
 
     pid: int
@@ -102,7 +102,7 @@ class LocalProcess(NamedTuple):
 
 
 def processes(group: int) -> dict[int, LocalProcess]:
-    """Return the processes whose sessions are listed, by port, as far as the system tells."""
+    """Return the processes with listed sessions by port, as far as the system reveals them."""
     start = address_in_list(group)
     ports = {}
     for line in udp_sockets() or ():
@@ -112,7 +112,7 @@ def processes(group: int) -> dict[int, LocalProcess]:
     found: dict[int, LocalProcess] = {}
     for folder in PROCESSES.iterdir() if ports else ():
         if folder.name.isdigit():
-            with suppress(OSError):  # it is another user's, or has ended
+            with suppress(OSError):  # another user's, or it has ended
                 for descriptor in (folder / "fd").iterdir():
                     port = ports.get(str(descriptor.readlink()))
                     if port is not None:
@@ -121,7 +121,7 @@ def processes(group: int) -> dict[int, LocalProcess]:
 
 
 def process_in(folder: Path) -> LocalProcess:
-    """Return what the system tells of a process."""
+    """Return what the system reveals about a process."""
     command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
     state = (folder / "stat").read_text(errors="replace").rpartition(") ")[2][:1]
     text = shortened(escaped(" ".join(command.split())), COMMAND)  # in one line
@@ -129,13 +129,13 @@ def process_in(folder: Path) -> LocalProcess:
 
 
 def address_in_list(group: int) -> str:
-    """Return the address of a group as the list has it, up to the port."""
+    """Return the address of a group as in the list, up to the port."""
     address = int.from_bytes(socket.inet_aton(address_of(group)), sys.byteorder)
     return f"{address:08X}:"
 
 
 def holder_of(port: int) -> int | None:
-    """Return the user id of the process that has bound a UDP port of loopback, if it is listed."""
+    """Return the user id of the process that has bound a loopback UDP port, if it is listed."""
     local = f"{int.from_bytes(socket.inet_aton(LOOPBACK), sys.byteorder):08X}:{port:04X}"
     for line in udp_sockets() or ():
         columns = line.split()
@@ -145,7 +145,7 @@ def holder_of(port: int) -> int | None:
 
 
 def reserve_port(host: str) -> socket.socket:
-    """Return a socket with a free port, where a session can listen as long as it is open."""
+    """Return a socket with a free port, on which a session can listen while it is open."""
     reserved = socket.socket()
     try:
         reserved.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -157,5 +157,5 @@ def reserve_port(host: str) -> socket.socket:
 
 
 def address_of(group: int) -> str:
-    """Return the address with which the sessions of a group are connected."""
+    """Return the address to which the sessions of a group are connected."""
     return f"127.{PRESENCE}.{group >> 8}.{group & 0xFF}"

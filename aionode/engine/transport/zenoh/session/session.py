@@ -1,4 +1,4 @@
-"""Opening and closing Zenoh sessions without blocking the event loop."""
+"""Opens and closes Zenoh sessions without blocking the event loop."""
 
 from __future__ import annotations
 
@@ -61,21 +61,21 @@ PROBE_S = 0.2
 SPEAK_S = 2.0
 """Timeout for an answer to Zenoh's first message, in seconds; it takes a millisecond.
 
-A process of aionode may take longer where many start at once. Other programs mostly answer or close
-the connection at once.
+An aionode process may take longer when many start at once. Other programs mostly answer or close
+the connection immediately.
 """
 
 CLOSE_S = 0.8
-"""Limit of the time that `close` takes, in seconds. With a frozen peer it goes on in a thread."""
+"""Maximum time that `close` takes, in seconds. With a frozen peer it continues in a thread."""
 
 
 INIT: Final = 1
 CLOSE: Final = 3
 KIND: Final = 0x1F
-"""Kinds of Zenoh's messages, and the bits of the first byte that say so."""
+"""Kinds of Zenoh messages, and the bits of the first byte that encode them."""
 
 INIT_SYN: Final = bytes([INIT, 9, 0xF1])
-"""The first message of a session: version 9, a peer whose id of 16 bytes follows."""
+"""The first message of a session: version 9, a peer, followed by its 16-byte id."""
 
 
 def outcome_of(work: Callable[[], T]) -> tuple[T | None, BaseException | None]:
@@ -87,12 +87,14 @@ def outcome_of(work: Callable[[], T]) -> tuple[T | None, BaseException | None]:
 
 
 async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] | None = None) -> T:
-    """Run `work` in a thread that ends with it, and return its result.
+    """Run `work` in a dedicated thread, and return its result.
 
-    Cancelling gives the result up, to `late` if there is one.
+    If cancelled, the result is passed to `late`, if given.
     """
     loop = asyncio.get_running_loop()
-    done: asyncio.Future[T] = loop.create_future()  # the loop's; the thread calls `deliver` there
+    done: asyncio.Future[T] = (
+        loop.create_future()
+    )  # belongs to the loop; the thread calls `deliver` there
 
     def deliver(result: T | None, error: BaseException | None) -> None:
         if error is None and done.cancelled() and late is not None:
@@ -111,7 +113,8 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
             if error is None and late is not None:
                 late(result)  # type: ignore[arg-type]  # there is one without an error
 
-    # No daemon, so that Python waits for it at exit: a thread inside Zenoh would abort the process.
+    # Not a daemon, so that Python waits for it at exit: a thread inside Zenoh would abort the
+    # process.
     thread = threading.Thread(target=run, name="aionode-zenoh")
     if not start_thread(thread):
         return work()
@@ -123,10 +126,10 @@ async def run_in_own_thread(work: Callable[[], T], late: Callable[[T], object] |
 
 
 def answering_ports(ports: Iterable[int]) -> list[int]:
-    """Return those ports of this machine that accept a connection."""
+    """Return the given ports of this machine that accept a connection."""
     answering = []
     ends_ns = perf_ns() + int(PROBE_S * 1e9)
-    # Not select(), which takes no descriptor above 1023.
+    # Not select(), which cannot handle descriptors above 1023.
     with ExitStack() as stack, selectors.DefaultSelector() as pending:
         for port in ports:
             probe = stack.enter_context(socket.socket())
@@ -145,12 +148,12 @@ def answering_ports(ports: Iterable[int]) -> list[int]:
 
 
 def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
-    """Return a network whose ports can be met on, and those of them that are taken.
+    """Return a network with usable meeting ports, and those of them that are taken.
 
     Args:
         network: The settings of the context.
-        answering: Those of its ports that accept a connection; if Zenoh answers at none of the
-            meeting ports, these are removed, and spare ones where it does are added.
+        answering: Those of its ports that accept a connection. If Zenoh answers at none of the
+            meeting ports, these are removed, and spare ports where it does are added.
     """
     address = listening_address(network)
     taken = {port for port in network.meeting_ports if not can_listen(address, port)}
@@ -166,14 +169,14 @@ def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
     if met or spare_taken < set(spare):
         answering |= met
         logger.info(
-            "other programs hold the ports %s, on which processes of this machine meet: they meet "
+            "other programs use the ports %s, on which processes of this machine meet: they meet "
             "on %s instead",
             named,
             ", ".join(map(str, spare)),
         )
     elif network.router_port not in answering:
         logger.warning(
-            "other programs hold the ports %s, on which processes of this machine meet: nodes of "
+            "other programs use the ports %s, on which processes of this machine meet: nodes of "
             "other processes will not be found without a router; `ss -ltnp` names the programs, "
             "and AIONODE_MEETING_PORTS, with three free ports, makes all processes meet elsewhere",
             ", ".join(map(str, (*network.meeting_ports, *spare))),
@@ -184,7 +187,7 @@ def meeting(network: Network, answering: set[int]) -> tuple[Network, set[int]]:
 def can_listen(address: str, port: int) -> bool:
     """Return whether a port is free."""
     with socket.socket() as tried:
-        if os.name == "posix":  # elsewhere it means something else
+        if os.name == "posix":  # it has another meaning elsewhere
             tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             tried.bind((address, port))
@@ -195,7 +198,7 @@ def can_listen(address: str, port: int) -> bool:
 
 
 def speaking_ports(ports: Iterable[int]) -> set[int]:
-    """Return those ports of this machine where Zenoh answers; not all, if one answers at once."""
+    """Return the ports of this machine where Zenoh answers; not all, if one answers immediately."""
     syn = INIT_SYN + os.urandom(16)
     speaking: set[int] = set()
     with ExitStack() as stack, selectors.DefaultSelector() as probes:
@@ -217,13 +220,13 @@ def speaking_ports(ports: Iterable[int]) -> set[int]:
 
 
 class Opened(NamedTuple):
-    """A session, and what comes with it.
+    """A session, and associated data.
 
     Attributes:
         session: The session.
-        expected: How many peers are about to be connected.
-        presence: What has it listed on this machine, until it is closed; None if nothing does.
-        dialled: The ports of the other sessions that are listed.
+        expected: Number of peers about to be connected.
+        presence: Keeps it listed on this machine until closed; None if it is not listed.
+        dialled: The ports of the other listed sessions.
     """
 
     session: zenoh.Session
@@ -252,7 +255,7 @@ async def open_session(network: Network, participant: str) -> Opened:
             return opened or open_unlisted(network, participant)
         except zenoh.ZError as error:
             raise TransportError(
-                f"Zenoh: no session could be opened: {reason(error)}; look at "
+                f"Zenoh: no session could be opened: {reason(error)}; check "
                 "ZENOH_SESSION_CONFIG_URI, ZENOH_CONFIG_OVERRIDE and Context(config=...)"
             ) from error
 
@@ -260,9 +263,9 @@ async def open_session(network: Network, participant: str) -> Opened:
 
 
 def open_listed(network: Network, participant: str) -> Opened | None:
-    """Open a session on a machine that lists its sessions: it dials those that are there.
+    """Open a session on a machine that lists its sessions, and dial the existing ones.
 
-    None if the machine has no list.
+    Returns None if the machine has no list.
     """
     group = network.meeting_ports[0]
     address = listening_address(network)
@@ -275,10 +278,10 @@ def open_listed(network: Network, participant: str) -> Opened | None:
             mine = next(free, None)
             port = mine or reserved.getsockname()[1]
             presence = failed.enter_context(announce(group, port))
-            # Listed again: one that got no slot may have come meanwhile, and if one has
-            # ended while the list was read, another may be missing in it.
+            # Listed again: one that got no slot may have come meanwhile, and if one has ended while
+            # the list was read, another may be missing from it.
             others = (there | (listed(group) or set())) - {port}
-        # Other programs may listen there, or processes of aionode that cannot be listed.
+        # Other programs may listen there, or aionode processes that cannot be listed.
         unlisted = set(
             answering_ports(p for p in probed_ports(network) if p not in {port, *others})
         )
@@ -292,7 +295,7 @@ def open_listed(network: Network, participant: str) -> Opened | None:
 
 
 def open_unlisted(network: Network, participant: str) -> Opened:
-    """Open a session that meets others at ports known to all, or is told where they are."""
+    """Open a session that meets others at well-known ports, or is told where they are."""
     ports = probed_ports(network)
     with one_at_a_time(network.meeting_ports[0] if near(network) else None):
         answering = set(answering_ports(ports))
@@ -305,16 +308,16 @@ def open_unlisted(network: Network, participant: str) -> Opened:
 
 
 async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zenoh.Session:
-    """Open a router, as `rmw_zenohd` is; `close_session` ends it.
+    """Open a router, like `rmw_zenohd`; `close_session` ends it.
 
     ``ZENOH_CONFIG_OVERRIDE`` is honoured, for TLS and access control.
 
     Args:
-        listen: The Zenoh endpoints on which it listens.
-        connect: Those of routers on other machines, with which it is linked; they may be absent.
+        listen: The Zenoh endpoints to listen on.
+        connect: Endpoints of routers on other machines to link with; they may be absent.
 
     Raises:
-        ConfigurationError: the override does not fit.
+        ConfigurationError: the override is invalid.
         TransportError: it cannot listen there, for example because another router does.
     """
     endpoints = list(listen)
@@ -336,11 +339,11 @@ async def open_router(listen: Iterable[str], connect: Iterable[str] = ()) -> zen
 
 
 async def close_session(session: zenoh.Session) -> None:
-    """Close a session; if that takes too long, it goes on in a thread."""
+    """Close a session; if that takes too long, it continues in a thread."""
 
     def work() -> None:
         done = threading.Event()
-        # Connections may have begun after `cut_stuck`, and others begin meanwhile.
+        # Connections may have started after `cut_stuck`, and others start meanwhile.
         cutting = threading.Thread(target=cut_unanswered, args=(done,), name="aionode-zenoh")
         is_cutting = start_thread(cutting)
         try:

@@ -1,14 +1,14 @@
-"""Zenoh's configuration of the sessions and routers of aionode, made of a `Network`.
+"""Builds Zenoh's configuration for aionode's sessions and routers from a `Network`.
 
-Pure functions; nothing is connected here. Among the settings are the intervals at which a lost
-router or peer is dialled again (`RETRY`), and the time after which a silent peer is taken for dead
+Pure functions; nothing is connected here. The settings include the intervals at which a lost router
+or peer is redialled (`RETRY`), and the time after which a silent peer is considered dead
 (`LEASE_MS`).
 
-Without configuration the processes of one machine find each other over loopback: each tries to
-listen on one of three meeting ports, and dials those that are listed (`_local_sessions`), other
-listeners on these ports, and the port of a ROS 2 router. Where the machine lists nothing, each
-dials the meeting ports, and gossip introduces all of them to each other; if other programs hold all
-three, there are three spare ones.
+Without configuration, the processes of one machine find each other over loopback: each tries to
+listen on one of three meeting ports, and dials those that are listed (`local_sessions`), other
+listeners on these ports, and the port of a ROS 2 router. If the machine lists nothing, each dials
+the meeting ports, and gossip introduces all of them to each other; if other programs use all three,
+there are three spare ones.
 """
 
 from __future__ import annotations
@@ -40,15 +40,15 @@ __all__ = [
 EVERYWHERE: Final = "0.0.0.0"  # noqa: S104  # only on request: ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET
 
 FLUSH_S: Final = 2.0
-"""Time for which the end of a context waits for reliable messages, in seconds, while their readers
-make progress."""
+"""How long the end of a context waits for reliable messages while their readers make progress, in
+seconds."""
 
 BATCHES: Final = 16
-"""Number of batches of 64 kB that wait for a busy peer, of each priority in `BURSTING`."""
+"""Number of 64 kB batches that may wait for a busy peer, for each priority in `BURSTING`."""
 
 BURSTING: Final = ("control", "interactive_low", "data_high", "data_low")
-"""The priorities of what the loop sends, tokens, requests and replies, messages, and that of
-messages which late readers get, too."""
+"""The priorities of what the loop sends: tokens, requests and replies, messages, and messages for
+late readers."""
 
 GOSSIPING: Final = 4
 """Number of listed sessions that tell all others by gossip of sessions that are not listed, such as
