@@ -86,7 +86,7 @@ class Service(IntrospectedEntity, Generic[RequestT, ResponseT]):
             self._message_queue.weigh(
                 lambda request: size_of(request.message),
                 setup.queue_bytes,
-                partial(report_heavy, setup, "requests are refused"),
+                partial(report_heavy, setup, "refused"),
                 unweighed=0,
             )
         self._concurrent = checked_concurrency(concurrent, self._subject)

@@ -115,7 +115,7 @@ class Subscription(Endpoint, Generic[ItemT]):
         size_of = len if raw else memory_size(msg_type)
         if size_of is not None:
             self._reader.weigh_messages(
-                size_of, setup.queue_bytes, partial(report_heavy, setup, "messages are dropped")
+                size_of, setup.queue_bytes, partial(report_heavy, setup, "dropped")
             )
         if self._runner is not None:
             self._reader.set_runner(self._runner)
