@@ -209,7 +209,7 @@ async def test_a_description_beyond_the_limits_is_named(
 
     await lying_node(node_factory, describe)
 
-    with pytest.raises(InterfaceNotFoundError, match="at most 64 MiB fit"):
+    with pytest.raises(InterfaceNotFoundError, match="at most 64 MiB are allowed"):
         await node_factory("asker").find_type("foreign/msg/Foreign")
 
 

@@ -87,7 +87,7 @@ async def test_two_servers_of_one_service_are_reported(
     node_factory("other").create_service(AddTwoInts, "/add", add)
 
     (text,) = warnings(caplog)
-    assert text.startswith("service /add has two servers, in /other and of /node: each request")
+    assert text.startswith("service /add has two servers, in /other and /node: each request")
 
 
 async def test_two_servers_of_one_node_are_reported(
@@ -98,7 +98,7 @@ async def test_two_servers_of_one_node_are_reported(
     node.create_service(AddTwoInts, "/add", add)
 
     (text,) = warnings(caplog)
-    assert "service /add has two servers, in /node and of /node" in text
+    assert "service /add has two servers, in /node and /node" in text
 
 
 async def test_a_client_reports_two_servers_of_other_processes(
@@ -112,7 +112,7 @@ async def test_a_client_reports_two_servers_of_other_processes(
     node.create_client(AddTwoInts, "/add")
 
     (text,) = warnings(caplog)
-    assert text.startswith("service /add has two servers, in /one and of /two")
+    assert text.startswith("service /add has two servers, in /one and /two")
 
 
 async def test_a_server_that_appears_is_reported_to_a_client(
@@ -125,7 +125,7 @@ async def test_a_server_that_appears_is_reported_to_a_client(
     context.graph.add_endpoint(remote_server("/add", "two", 2))
 
     (text,) = warnings(caplog)
-    assert text.startswith("service /add has two servers, in /one and of /two")
+    assert text.startswith("service /add has two servers, in /one and /two")
 
 
 async def test_two_servers_of_one_action_are_reported_once(
@@ -137,4 +137,4 @@ async def test_two_servers_of_one_action_are_reported_once(
     ActionServer(node_factory("other"), Fibonacci, "/count", lambda goal: Fibonacci.Result())
 
     (text,) = warnings(caplog)
-    assert text.startswith("action /count has two servers, in /other and of /node")
+    assert text.startswith("action /count has two servers, in /other and /node")

@@ -173,15 +173,15 @@ def test_a_described_class_is_not_found_by_its_name() -> None:
 @pytest.mark.parametrize(
     ("description", "problem"),
     [
-        (tower(30, width=2), "a new .* takes .* at most 64 MiB fit"),
+        (tower(30, width=2), "a new .* takes .* at most 64 MiB are allowed"),
         (tower(51), "nested more than 50 deep"),
-        (tower(1000), "1001 types, at most 1000 fit"),
-        (one_field(INT32 + ARRAY, 2**37), "elements; 1 to 4294967295 fit"),
-        (one_field(INT32 + ARRAY, 2**64 - 1), "elements; 1 to 4294967295 fit"),
-        (one_field(INT32 + ARRAY, 2**31), "at most 64 MiB fit"),
-        (one_field(STRING + ARRAY, 2**21), "at most 64 MiB fit"),
+        (tower(1000), "1001 types, at most 1000 are allowed"),
+        (one_field(INT32 + ARRAY, 2**37), "elements; 1 to 4294967295 are allowed"),
+        (one_field(INT32 + ARRAY, 2**64 - 1), "elements; 1 to 4294967295 are allowed"),
+        (one_field(INT32 + ARRAY, 2**31), "at most 64 MiB are allowed"),
+        (one_field(STRING + ARRAY, 2**21), "at most 64 MiB are allowed"),
         (one_field(INT32 + ARRAY, 0), "has 0 elements"),
-        (one_field(INT32 + BOUNDED, 2**40), "elements; 1 to 4294967295 fit"),
+        (one_field(INT32 + BOUNDED, 2**40), "elements; 1 to 4294967295 are allowed"),
         (one_field(MESSAGE, 0, "a/msg/T"), "'a/msg/T' contains itself"),
         (one_field(MESSAGE, 0, "a/msg/U"), "lacks the type 'a/msg/U'"),
         (one_field(14, 0), "unknown type id 14"),
@@ -190,7 +190,7 @@ def test_a_described_class_is_not_found_by_its_name() -> None:
             TypeDescription(
                 type_description=part("a/msg/T", *((f"f{n}", 2, 0, "") for n in range(10_001)))
             ),
-            "10001 fields, at most 10000 fit",
+            "10001 fields, at most 10000 are allowed",
         ),
         (TypeDescription(type_description=part("a/msg/T", ("x;y", 2, 0, ""))), "not a valid"),
         (TypeDescription(type_description=part("\x1b[31m", ("x", 2, 0, ""))), "not a valid"),

@@ -564,7 +564,7 @@ def test_text_that_is_no_unicode_is_logged_with_its_place(caplog: pytest.LogCapt
         cdr.decode(Units, octets)
 
     assert [record.getMessage().partition("; ")[0] for record in caplog.records] == [
-        "test/msg/Units.unit: a text is no Unicode: b'\\xb0C'"
+        "test/msg/Units.unit: a string is not valid UTF-8: b'\\xb0C'"
     ]
 
 
@@ -617,7 +617,7 @@ def test_more_than_a_bound_allows_is_a_decode_error(values: dict[str, Any], path
     """What a reader gets always fits its own definition."""
     encoded = cdr.encode(NoLimits(**values))
 
-    with pytest.raises(DecodeError, match="at most 2 fit") as caught:
+    with pytest.raises(DecodeError, match="at most 2 are allowed") as caught:
         cdr.decode(Limits, encoded)
     assert caught.value.path == path
 

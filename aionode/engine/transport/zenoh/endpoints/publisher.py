@@ -396,7 +396,7 @@ class ZenohWriter(Declaration, Writer):
         """Count dropped messages, and log the first ones of a reliable publisher."""
         if self._reliable and not self._dropped:
             logger.warning(
-                "%s: dropped %d of the messages published here before every reader had them: "
+                "%s: %d of the messages published here were dropped before every reader had them: "
                 "a reader is too slow, frozen or gone; further ones are only counted, in the "
                 "publisher's stats.dropped. %s",
                 *(self.endpoint.name, count, DRAIN if self.bounded else MORE_DEPTH),
