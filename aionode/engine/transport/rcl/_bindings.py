@@ -267,9 +267,9 @@ def load() -> Rcl:
     except ImportError as error:
         reason = str(error).partition("\n")[0]  # rclpy's messages have several lines
         raise TransportError(
-            f"transport=rcl: Python {sys.version_info.major}.{sys.version_info.minor} cannot import "
-            f"rclpy {version} ({reason}); use the Python that it is built for, with its ROS 2 "
-            "sourced"
+            f"transport=rcl: Python {sys.version_info.major}.{sys.version_info.minor} cannot "
+            f"import rclpy {version} ({reason}); use the Python that it is built for, with its "
+            "ROS 2 sourced"
         ) from error
     if not hasattr(os, "eventfd"):
         raise TransportError("transport=rcl: it needs Linux, whose eventfds wake the event loop")

@@ -326,7 +326,7 @@ def test_a_number_without_its_descriptor_is_refused(pool: BufferPool) -> None:
     mappings.forget(one.number)
 
     for number in (one.number, 99):
-        with pytest.raises(FrameError, match="descriptor of shared buffer .* is missing"):
+        with pytest.raises(FrameError, match=r"descriptor of shared buffer .* is missing"):
             mappings.view(number, SIZE, None, Done())
 
 

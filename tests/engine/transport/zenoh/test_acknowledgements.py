@@ -133,7 +133,9 @@ async def test_the_log_gives_a_publisher_a_remedy_that_it_does_not_use_yet(
     keeps_all, keeps_last = (text for text in caplog.messages if "were dropped" in text)
     assert "KEEP_ALL" not in keeps_all
     assert "`await drain()`" in keeps_all
-    assert "A greater depth keeps more of them; KEEP_ALL with `await drain()` all" in keeps_last
+    assert (
+        "A greater depth keeps more of them; KEEP_ALL with `await drain()` keeps all" in keeps_last
+    )
 
 
 @pytest.mark.parametrize(
