@@ -57,12 +57,12 @@ class Drop(enum.Enum):
 
 
 class Drops:
-    """Counts what is dropped by its kind and subject, and logs it as `RatedLines` says.
+    """Counts drops by kind and subject, and logs them at a limited rate (`RatedLines`).
 
     Any thread may call `note`: of two simultaneous calls one may not be counted, which is harmless.
 
     Args:
-        log: Where it is said.
+        log: The logger to use.
         now_ns: Returns the time of a steady clock, in nanoseconds.
     """
 
@@ -72,7 +72,7 @@ class Drops:
         self._counts: dict[Drop, Counter[str]] = {drop: Counter() for drop in Drop}
 
     def note(self, drop: Drop, subject: str, detail: str = "", count: int = 1) -> None:
-        """Count something, and log it unless the same was logged a short while ago.
+        """Count something, and log it unless the same was logged recently.
 
         Args:
             drop: Why it was dropped.

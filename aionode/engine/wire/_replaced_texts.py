@@ -24,7 +24,7 @@ SHOWN: Final = 40
 
 
 class ReplacedTexts:
-    """Counts them by their type, and logs those of each type as `RatedLines` says.
+    """Counts such messages by type, and logs each type at a limited rate (`RatedLines`).
 
     Any thread may call `note`: of two simultaneous calls one may not be counted, which is harmless.
     """
@@ -51,8 +51,8 @@ class ReplacedTexts:
         more = self._lines.note(type_name)
         if more is not None:
             logger.warning(
-                "%s%s: a text is no Unicode: %r; what is wrong in it was replaced by U+FFFD. "
-                "Strings of ROS 2 are UTF-8: does the sender write Latin-1?%s",
+                "%s%s: a string is not valid UTF-8: %r; the invalid parts were replaced by U+FFFD. "
+                "ROS 2 strings are UTF-8: does the sender write Latin-1?%s",
                 *(type_name, path, data[:SHOWN], more),
             )
 
