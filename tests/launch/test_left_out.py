@@ -35,7 +35,7 @@ def generate_launch_description():
         ComposableNodeContainer(
             name="c", namespace="", package="rclcpp_components", executable="component_container",
             composable_node_descriptions=[ComposableNode(package="x", plugin="x::Y")]),
-        TimerAction(period=1.0, actions=[Node(package="tf2_ros", executable="tf2_monitor")]),
+        TimerAction(period=1.0, actions=[Node(package="tf2_ros", executable="tf2_other")]),
         Node(package="rviz2", executable="rviz2"),
         ExecuteProcess(cmd=["echo", "started"]),
     ])
@@ -73,7 +73,7 @@ def test_each_missing_package_is_one_warning_with_what_was_left_out(files: Files
     assert sim.startswith("package 'tb3_sim' is not there; left out: IncludeLaunchDescription (")
     assert sim.count("a.launch.py:") == 2
     assert "ComposableNode(plugin='my_robot.nodes:Driver')" in container
-    assert monitor.startswith("package 'tf2_ros' has no executable 'tf2_monitor' here; left out:")
+    assert monitor.startswith("package 'tf2_ros' has no executable 'tf2_other' here; left out:")
     assert waiting == "the exit of rviz2 never comes: that is left out"
 
 

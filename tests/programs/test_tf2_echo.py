@@ -11,7 +11,7 @@ import pytest
 
 from aionode import Node
 from aionode.interfaces.geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
-from aionode.programs._tf2_echo import Echo, text_of
+from aionode.programs._tf2.echo import Echo, text_of
 from aionode.testing import ManualClock, settle
 from aionode.tf import TransformBroadcaster
 from aionode.tf._arithmetic import from_angles
