@@ -36,7 +36,8 @@ ENDING = ["fibonacci", "overload", "pubsub", "service", "timers"]
 ENDLESS = sorted(
     path.name
     for path in (ROOT / "examples").glob("*.py")
-    if path.name
+    if not path.name.endswith(".launch.py")  # no program: tests/launch/test_running.py starts it
+    and path.name
     not in {"call_service.py", "fastapi_app.py", "lifecycle_manager.py", "robot_system.py"}
 )
 STAMP = r"\[INFO\] \[\d+\.\d{9}\]"
