@@ -47,7 +47,7 @@ class Overload(Node):
             self.sent += 1
 
     def work(self, _msg: Int64) -> None:
-        """Block the event loop for 2 ms, as a callback should not."""
+        """Block the event loop for 2 ms, which a callback should never do."""
         time.sleep(WORK_SEC)
 
     def tick(self) -> None:

@@ -27,7 +27,7 @@ class Adder(Node):
         )
 
     async def add(self, request: AddTwoInts.Request) -> AddTwoInts.Response:
-        """Handle one request, slowly, as if it needed another machine."""
+        """Handle one request, slowly, as if it had to ask another machine."""
         if request.a < 0 or request.b < 0:
             raise ValueError("only counts, please: nothing below zero")
         await self.get_clock().sleep(0.2)
@@ -63,7 +63,7 @@ async def call_ten_at_once(client: AdderClient) -> None:
 
 
 async def call_with_bad_request(client: AdderClient) -> None:
-    """Get the exception of the callback as an error of the call."""
+    """Show that an exception of the callback is raised by the call."""
     try:
         await client.call(AddTwoInts.Request(a=-1, b=0))
     except ServiceError as error:
@@ -71,7 +71,7 @@ async def call_with_bad_request(client: AdderClient) -> None:
 
 
 async def call_without_server(client: AdderClient) -> None:
-    """Get a timeout, which is part of the call, as no server answers."""
+    """Let the call time out, since no server answers."""
     try:
         await client.call(AddTwoInts.Request(a=2, b=3), timeout_sec=0.5)
     except TimeoutError as error:

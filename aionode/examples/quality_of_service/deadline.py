@@ -1,4 +1,4 @@
-"""A talker that pauses, and both ends learn that the deadline was missed.
+"""A talker pauses, and both ends are notified that the deadline was missed.
 
 Run it with ``python -m aionode.examples.quality_of_service.deadline``, and with a deadline in
 milliseconds for another: ``deadline 600 --publish-for 2000 --pause-for 1500``.
@@ -25,7 +25,7 @@ __all__ = ["Listener", "Talker", "main"]
 
 
 class Talker(Node):
-    """Publishes twice in each deadline, then pauses, then does so once more."""
+    """Publishes twice per deadline, pauses, and then publishes again."""
 
     def __init__(self, deadline_ms: int, publish_ms: int, pause_ms: int) -> None:
         super().__init__("qos_talker")
@@ -59,7 +59,7 @@ class Talker(Node):
 
 
 class Listener(Node):
-    """Relies on a message in each deadline."""
+    """Expects a message within each deadline."""
 
     def __init__(self, deadline_ms: int) -> None:
         super().__init__("qos_listener")

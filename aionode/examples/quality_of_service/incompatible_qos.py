@@ -1,4 +1,4 @@
-"""A publisher offers less than a subscription requests: no message passes, and both learn why.
+"""A publisher offers less than a subscription requests: no message passes, and both are told why.
 
 Run it with ``python -m aionode.examples.quality_of_service.incompatible_qos``, and with the name of
 another policy: ``incompatible_qos durability``.
@@ -63,13 +63,13 @@ class Talker(Node):
         self.create_timer(1.0, self.context.shutdown)
 
     def found(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        """Log the policy that a subscription requests in vain."""
+        """Log the policy that a subscription requests but is not offered."""
         policy = qos_policy_name_from_kind(event.last_policy_kind)
         self.get_logger().info(f"A subscription requests more than is offered: {policy}")
 
 
 class Listener(Node):
-    """Hears nothing."""
+    """Receives nothing."""
 
     def __init__(self, profile: QoSProfile) -> None:
         super().__init__("qos_listener")

@@ -1,4 +1,4 @@
-"""A subscription that comes late gets only the messages that are still valid.
+"""A late subscription receives only the messages that are still valid.
 
 Run it with ``python -m aionode.examples.quality_of_service.lifespan``, and with a lifespan in
 milliseconds for another: ``lifespan 1000 --publish-count 10 --subscribe-after 800``.
@@ -20,7 +20,7 @@ PERIOD_SEC = 0.25
 
 
 async def application(lifespan_ms: int, publish_count: int, subscribe_after_ms: int) -> None:
-    """Publish some messages, subscribe, and read what is left of them."""
+    """Publish some messages, subscribe, and receive those that have not expired."""
     profile = QoSProfile(
         depth=publish_count,
         durability=DurabilityPolicy.TRANSIENT_LOCAL,

@@ -27,14 +27,14 @@ __all__ = ["application", "main", "watch_listener", "watch_talker"]
 
 
 async def watch_talker(publisher: Publisher[String]) -> None:
-    """Print what the talker learns of itself."""
+    """Print the liveliness events of the talker."""
     async for event in publisher.events:
         if isinstance(event, QoSLivelinessLostInfo):
             print(f"talker:   liveliness lost, {event.total_count} times so far", flush=True)
 
 
 async def watch_listener(subscription: Subscription[String]) -> None:
-    """Print what the listener learns of its publishers."""
+    """Print the liveliness events of the listener's publishers."""
     async for event in subscription.events:
         if isinstance(event, QoSLivelinessChangedInfo):
             print(
@@ -45,7 +45,7 @@ async def watch_listener(subscription: Subscription[String]) -> None:
 
 
 async def application(lease_ms: int, policy: str) -> None:
-    """Publish, be silent for two leases, assert liveliness without a message, and end."""
+    """Publish, stay silent for two leases, assert liveliness without a message, and end."""
     profile = QoSProfile(
         depth=10,
         liveliness=LivelinessPolicy.get_from_short_key(policy),

@@ -1,7 +1,7 @@
-"""Bursts that are too large for the way between two processes; the listener counts what is lost.
+"""Bursts that are too large for the route between two processes; the listener counts the losses.
 
 Run it with ``python -m aionode.examples.quality_of_service.message_lost``. Two contexts in one
-process stand for two processes: within one context, nothing is lost on the way.
+process stand for two processes, because within one context no message is lost.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ async def watch(subscription: Subscription[String]) -> None:
 
 
 async def application() -> None:
-    """Publish bursts without a break, to a subscription that takes what arrives."""
+    """Publish bursts without a pause, to a subscription that receives what arrives."""
     profile = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     async with (
         Context() as here,

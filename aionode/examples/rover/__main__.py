@@ -1,7 +1,7 @@
 """The whole rover in one process: ``python -m aionode.examples.rover``.
 
-With ``--ros-args -p use_sim_time:=true -p rate:=5.0`` its time is that of /clock, and passes five
-times as fast as that of the day.
+With ``--ros-args -p use_sim_time:=true -p rate:=5.0`` it uses simulated time from /clock, which
+runs five times as fast as wall time.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The battery: a managed node, which says what is left only while it is active.
+"""The battery: a managed node, which publishes its charge only while it is active.
 
 Run it with ``python -m aionode.examples.rover.battery``, and start it with ``aionode lifecycle set
 /battery configure`` and ``activate``.
@@ -23,7 +23,7 @@ LOW = 0.2
 
 
 class Battery(LifecycleNode):
-    """Loses charge with time, and with each metre that the rover drives."""
+    """Loses charge over time, and with each metre that the rover drives."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("battery", **options)
@@ -34,19 +34,19 @@ class Battery(LifecycleNode):
         self.create_lifecycle_timer(PERIOD_SEC, self.measure)
 
     def on_configure(self, state: State) -> TransitionCallbackReturn:
-        """Take a full battery."""
+        """Start with a full battery."""
         self.left = 1.0
         self.place = None
         return super().on_configure(state)
 
     def drain(self, odometry: Odometry) -> None:
-        """Lose what the last piece of the way has cost."""
+        """Subtract the charge that the last part of the way took."""
         position = odometry.pose.pose.position
         before, self.place = self.place, (position.x, position.y)
         self.left -= PER_METRE * math.dist(before or self.place, self.place)
 
     def measure(self) -> None:
-        """Publish what is left, and warn when that is little."""
+        """Publish the remaining charge, and warn when it is low."""
         self.left = max(0.0, self.left - PER_SEC * PERIOD_SEC)
         state = BatteryState(percentage=self.left, voltage=10.0 + 2.6 * self.left, present=True)
         state.header.stamp = self.get_clock().now().to_msg()

@@ -24,7 +24,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class Joint(NamedTuple):
-    """How one link sits in another; a wheel turns around the y axis."""
+    """The pose of one link in another; a wheel turns around the y axis."""
 
     name: str
     parent: str
@@ -33,7 +33,7 @@ class Joint(NamedTuple):
     is_fixed: bool
 
     def transform(self, angle: float, header: Header) -> TransformStamped:
-        """Return where the child is when the joint is at an angle."""
+        """Return the pose of the child when the joint is at an angle."""
         x, y, z = self.origin
         stamped = TransformStamped(child_frame_id=self.child)
         stamped.header.stamp = header.stamp
@@ -44,7 +44,7 @@ class Joint(NamedTuple):
 
 
 class Description(Node):
-    """Publishes the URDF once, for everyone who comes, and the transforms of the rover's links."""
+    """Publishes the URDF once (latched), and the transforms of the rover's links."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("description", **options)
@@ -60,7 +60,7 @@ class Description(Node):
         self.create_subscription(JointState, "/joint_states", self.turn, 10)
 
     def turn(self, msg: JointState) -> None:
-        """Publish where the wheels are."""
+        """Publish the transforms of the wheels."""
         self.transforms.sendTransform(
             [
                 self.wheels[name].transform(float(angle), msg.header)

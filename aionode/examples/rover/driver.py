@@ -31,7 +31,7 @@ Handle = ServerGoalHandle[DriveTo.Goal, DriveTo.Result, DriveTo.Feedback]
 
 
 class Settings(msgspec.Struct):
-    """The parameters of the driver; a change counts from the next command on."""
+    """The parameters of the driver; a change takes effect with the next command."""
 
     speed: Annotated[float, Meta(gt=0.0, le=0.8, description="at most, in m/s")] = 0.4
     tolerance: Annotated[float, Meta(ge=0.02, le=1.0, description="how near is there, in m")] = 0.05
@@ -39,7 +39,7 @@ class Settings(msgspec.Struct):
 
 
 class Driver(Node):
-    """Serves /drive_to: one goal at a time, and the rover stands still after each end of it."""
+    """Serves /drive_to: one goal at a time; the rover stops however a goal ends."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("driver", **options)
@@ -59,12 +59,12 @@ class Driver(Node):
         )
 
     def look_ahead(self, scan: LaserScan) -> None:
-        """Remember how far it is to what is ahead."""
+        """Remember the distance to the next obstacle ahead."""
         angles = scan.angle_min + scan.angle_increment * np.arange(len(scan.ranges))
         self.ahead = float(np.min(scan.ranges[np.abs(angles) <= AHEAD], initial=math.inf))
 
     def judge(self, goal: DriveTo.Goal) -> GoalResponse:
-        """Refuse what is too far away, and a second goal: nobody can drive to two places."""
+        """Reject a goal that is too far away, and a second goal while one is executed."""
         if self.is_driving:
             raise GoalRejected("a goal is under way")
         distance = math.hypot(goal.x, goal.y)
@@ -102,13 +102,13 @@ class Driver(Node):
         return DriveTo.Result(driven=driven, distance_left=left)
 
     def place(self) -> tuple[float, float, float]:
-        """Return where the rover is, by the newest transform."""
+        """Return the pose of the rover, from the newest transform."""
         transform = self.buffer.lookup_transform("odom", "base_link", Time()).transform
         heading = 2 * math.atan2(transform.rotation.z, transform.rotation.w)
         return transform.translation.x, transform.translation.y, heading
 
     def command(self, left: float, off: float) -> Twist:
-        """Return the velocity for what is left of the way: turn first, then drive."""
+        """Return the velocity for the rest of the way: turn first, then drive."""
         twist = Twist()
         twist.angular.z = min(1.5, max(-1.5, 2.0 * off))
         if abs(off) < AHEAD:

@@ -17,12 +17,12 @@ class DriveTo(ActionType, typename="rover_interfaces/action/DriveTo"):
         y: float64 = 0.0
 
     class Result(Message):
-        """How far the rover drove, and how far from the destination it stands."""
+        """How far the rover drove, and its distance from the destination."""
 
         driven: float64 = 0.0
         distance_left: float64 = 0.0
 
     class Feedback(Message):
-        """How far it still is."""
+        """The remaining distance."""
 
         distance_left: float64 = 0.0

@@ -1,7 +1,7 @@
 """The rover as a launch file of ROS 2, with a process for each part.
 
-Start it with ``aionode launch`` and the path of this file; ``use_sim_time:=true rate:=5.0`` has it
-run five times as fast.
+Start it with ``aionode launch`` and the path of this file; ``use_sim_time:=true rate:=5.0`` makes
+it run five times as fast.
 """
 
 from launch import LaunchDescription

@@ -1,7 +1,7 @@
 """The simulator: wheels, odometry, lidar and camera of a rover in a room of its own.
 
 Run it with ``python -m aionode.examples.rover.simulator``. With ``--ros-args -p use_sim_time:=true
--p rate:=5.0`` it publishes /clock, five times as fast as the time of day.
+-p rate:=5.0`` it publishes /clock, which runs five times as fast as wall time.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ CAMERA_AHEAD = 0.12
 
 
 class Settings(msgspec.Struct):
-    """The parameters of the simulator; with other names, it is the base of another robot."""
+    """The parameters of the simulator; other frame names make it the base of another robot."""
 
     rate: Annotated[
         float, Meta(gt=0.0, le=100.0, description="simulated seconds a second, on /clock")
@@ -57,7 +57,7 @@ class Settings(msgspec.Struct):
 
 
 class Simulator(Node):
-    """Moves the rover as /cmd_vel says, and publishes what it measures."""
+    """Moves the rover according to /cmd_vel, and publishes the measurements of its sensors."""
 
     def __init__(self, **options: Any) -> None:
         super().__init__("simulator", **options)
@@ -94,7 +94,7 @@ class Simulator(Node):
     # Wheels
 
     def obey(self, command: Twist) -> None:
-        """Drive as commanded, as fast as the motors can; what is no number stops them."""
+        """Drive as commanded, limited to what the motors can do; a NaN or infinity stops them."""
         if not (math.isfinite(command.linear.x) and math.isfinite(command.angular.z)):
             self.get_logger().warning(f"stopped: a command is no number: {command}")
             self.stop()
@@ -103,11 +103,11 @@ class Simulator(Node):
         self.turn = min(MAX_TURN, max(-MAX_TURN, command.angular.z))
 
     def stop(self) -> None:
-        """Stop: whoever drove is silent, or gone."""
+        """Stop: the publisher of the commands is silent or gone."""
         self.speed = self.turn = 0.0
 
     def reset(self, _request: Trigger.Request) -> Trigger.Response:
-        """Put the rover and the ball back to where they began."""
+        """Move the rover and the ball back to their start."""
         self.stop()
         self.world.reset()
         return Trigger.Response(success=True, message="the rover is back where it began")
@@ -136,10 +136,10 @@ class Simulator(Node):
         return Header(stamp=self.now().to_msg(), frame_id=frame_id)
 
     def publish_motion(self, distance: float) -> None:
-        """Publish where the rover is, and how far its wheels have turned.
+        """Publish the pose of the rover, and the angles of its wheels.
 
         Args:
-            distance: How far it came in this step, in metres.
+            distance: The distance driven in this step, in metres.
         """
         place, header = self.world.rover, self.header("odom")
         rotation = Quaternion(z=math.sin(place.heading / 2), w=math.cos(place.heading / 2))
@@ -165,7 +165,7 @@ class Simulator(Node):
         self.joints.publish(JointState(header=header, name=names, position=self.wheels))
 
     def publish_scan(self) -> None:
-        """Publish the distances all around; the lidar stands in the middle of the rover."""
+        """Publish the distances all around; the lidar is at the centre of the rover."""
         ranges = self.world.scan(self.world.rover, self.angles)
         self.scans.publish(
             LaserScan(
@@ -181,7 +181,7 @@ class Simulator(Node):
         )
 
     def publish_picture(self) -> None:
-        """Publish what the camera sees; nobody pays for it while nobody looks."""
+        """Publish the camera image, which is rendered only while somebody subscribes."""
         eye = self.world.rover.moved(CAMERA_AHEAD, 0.0)
         picture = self.world.picture(eye)
         self.pictures.publish(from_numpy(picture, "rgb8", header=self.header("camera")))

@@ -1,6 +1,6 @@
-"""A room with walls and a ball, seen from above: its physics, and what a sensor sees in it.
+"""A room with walls and a ball, seen from above: its physics, and the view of its sensors.
 
-There is no node here, and no time but the steps that it is told: lengths are in metres, angles in
+It contains no node, and time passes only by the given steps: lengths are in metres, angles in
 radians, and the origin is the middle of the room.
 """
 
@@ -22,7 +22,7 @@ RADIUS: Final = 0.18
 BALL_RADIUS: Final = 0.12
 WALL_HEIGHT: Final = 0.6
 LONGEST_STEP: Final = 0.02
-"""So far the rover moves at most before it is looked whether it touches something."""
+"""The largest distance that the rover moves between two checks for contact."""
 
 WALLS: Final[Numbers] = np.array(
     [
@@ -34,14 +34,14 @@ WALLS: Final[Numbers] = np.array(
         (-1.5, 2.0, -1.5, 0.8),
     ]
 )
-"""The ends of each wall: x and y of the one, x and y of the other."""
+"""The ends of each wall: x and y of the first, x and y of the second."""
 
 SKY, WALL, BALL = (190, 215, 235), (150, 120, 100), (210, 60, 40)
 TILES: Final = np.array([(110, 115, 120), (160, 165, 170)])
 
 
 class Place(NamedTuple):
-    """Where something is, and in which direction it looks."""
+    """A position, and the direction in which something faces."""
 
     x: float = 0.0
     y: float = 0.0
@@ -70,12 +70,12 @@ class World:
         self.reset()
 
     def reset(self) -> None:
-        """Put the rover and the ball back to where they began."""
+        """Move the rover and the ball back to their start."""
         self.rover = Place(-2.0, -1.0)
         self.ball = (-0.5, -1.0)
 
     def drive(self, speed: float, turn: float, seconds: float) -> float:
-        """Drive for a while, and return how far; the wheels slip where something is in the way.
+        """Drive for a while, and return the distance; the wheels slip if something is in the way.
 
         Args:
             speed: In metres a second.
@@ -96,7 +96,7 @@ class World:
         return distance
 
     def scan(self, place: Place, angles: Numbers) -> Numbers:
-        """Return how far it is from a place to the next wall or ball, in each direction.
+        """Return the distance from a place to the next wall or ball, in each direction.
 
         Args:
             place: Where the scanner is.
@@ -106,7 +106,7 @@ class World:
         return np.minimum(to_walls(place, directions), to_ball(place, directions, self.ball))
 
     def picture(self, place: Place, width: int = 160, height: int = 120) -> npt.NDArray[np.uint8]:
-        """Return what a camera at a place sees, as (height, width, 3) in red, green and blue."""
+        """Return the view of a camera at a place, as an RGB array of shape (height, width, 3)."""
         above_floor = 0.25
         focal = width / 2  # of a lens that sees a right angle
         left = (width / 2 - 0.5 - np.arange(width)) / focal
@@ -131,7 +131,7 @@ class World:
 
 
 def clearance(x: float, y: float) -> float:
-    """Return how far a point is from the next wall."""
+    """Return the distance from a point to the next wall."""
     starts, lines = WALLS[:, :2], WALLS[:, 2:] - WALLS[:, :2]
     point = np.array([x, y])
     along = ((point - starts) * lines).sum(axis=1) / (lines**2).sum(axis=1)
@@ -140,7 +140,7 @@ def clearance(x: float, y: float) -> float:
 
 
 def pushed(ball: tuple[float, float], rover: Place) -> tuple[float, float]:
-    """Return where the ball is when the rover is at a place: straight ahead of the contact."""
+    """Return the position to which the rover pushes the ball: straight ahead of the contact."""
     away = math.hypot(ball[0] - rover.x, ball[1] - rover.y)
     touching = RADIUS + BALL_RADIUS
     if away >= touching or away == 0.0:
@@ -176,10 +176,10 @@ def to_ball(place: Place, directions: Numbers, ball: tuple[float, float]) -> Num
 def to_sphere(
     place: Place, directions: Numbers, up: Numbers, ball: tuple[float, float, float]
 ) -> Numbers:
-    """Return how many times each line of sight, by row and column, fits up to the ball.
+    """Return how many times each line of sight, by row and column, fits between eye and ball.
 
     Args:
-        place: Where the eye is.
+        place: The position of the eye.
         directions: Across the floor, for each column of a picture.
         up: How much the lines of sight rise, for each row.
         ball: The middle of the ball; its height is that above the eye.
