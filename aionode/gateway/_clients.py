@@ -34,14 +34,14 @@ class GatewayStats(msgspec.Struct, frozen=True):
     """Counts of a gateway's work.
 
     Attributes:
-        sessions: How many clients there are, by the way in.
-        refused: How many things were refused.
-        refusals: How much was refused, dropped or is late, by the reason as a word for programs.
-        sent: How many frames were sent to the clients there are.
-        dropped: How many frames were dropped, as their clients were too slow, by topic.
-        received: How many messages of topics arrived, by topic.
+        sessions: Number of clients, by protocol.
+        refused: Number of refusals.
+        refusals: Number of things refused, dropped or late, by reason code.
+        sent: Number of frames sent to current clients.
+        dropped: Number of frames dropped because clients were too slow, by topic.
+        received: Number of messages received, by topic.
         holders: Who commands which topic.
-        audit_lost: How many lines of the audit log were not written.
+        audit_lost: Number of audit log lines that were not written.
     """
 
     sessions: dict[str, int]
@@ -77,7 +77,7 @@ class Clients:
         self._robot: Robot | None = None
 
     def check_node(self) -> None:
-        """Refuse to begin with a node that does not run.
+        """Refuse to start with a node that is not running.
 
         Raises:
             RuntimeError: it does not.
@@ -86,7 +86,7 @@ class Clients:
             raise RuntimeError(f"gateway: {self.node!r} does not run; enter it first")
 
     async def open(self, stack: AsyncExitStack) -> asyncio.TaskGroup:
-        """Make what the sessions share, until a stack ends, and return the group of its tasks."""
+        """Create what the sessions share, until a stack ends, and return the group of its tasks."""
         tasks = await stack.enter_async_context(asyncio.TaskGroup())
         audit = Audit(self.node, self._policy.audit_file)
         stack.callback(audit.close)
@@ -98,7 +98,7 @@ class Clients:
         return tasks
 
     def end(self) -> None:
-        """Have the sessions of all clients end."""
+        """End the sessions of all clients."""
         for session in self.sessions:
             session.ended.set()
 
@@ -176,7 +176,7 @@ class Clients:
             greediest = largest(own, lambda each: each.identity.place)
             if len(here) + 1 >= len(greediest):
                 raise RefusedError("connection", f"there are {limit} clients already", "too_many")
-        # What moves something ends last; of the others those that are there longest stay.
+        # Sessions that move something end last; of the others, the oldest stay.
         leaving = min(reversed(greediest), key=lambda each: each.publishes or each.has_goals)
         leaving.end(
             f"there are {limit} clients, which is the limit, and {leaving.identity.name} has most "

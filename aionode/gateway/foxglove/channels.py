@@ -58,7 +58,7 @@ class Channels:
     # News for the client
 
     async def announce(self) -> None:
-        """Tell the client of topics and services that are new or gone."""
+        """Tell the client about topics and services that are new or gone."""
         topics = everyone(self._session.graph.topics())
         services = everyone(self._session.graph.services())
         self._withdraw(self._topics, topics, "unadvertise", "channelIds")
@@ -84,7 +84,7 @@ class Channels:
     async def _announce(
         self, named: Named, room: asyncio.Semaphore, announce: Callable[[Named], Awaitable[None]]
     ) -> None:
-        """Tell the client of one topic or service, as soon as its type is known."""
+        """Tell the client about one topic or service, as soon as its type is known."""
         try:
             async with room:
                 await announce(named)
@@ -97,7 +97,7 @@ class Channels:
         return self._last_id
 
     def _warn(self, named: Named, error: Exception) -> None:
-        """Say once for each type that nobody describes it."""
+        """Log once per type that no node describes it."""
         if named.type_name in self._unknown:
             return
         self._unknown.add(named.type_name)

@@ -46,7 +46,7 @@ MOST_CHANNELS: Final = 1000
 """Channels that a client may advertise, of all topics together."""
 
 ERROR: Final = 2
-"""The level of a status, of which 0 is an information and 1 a warning."""
+"""The level of a status; 0 is information and 1 a warning."""
 
 
 async def serve_frames(
@@ -82,7 +82,7 @@ class Client:
     """One client.
 
     Attributes:
-        malformed: How many of its frames were no ops.
+        malformed: Number of its frames that were not valid ops.
         playback: The player that it controls.
     """
 
@@ -289,7 +289,7 @@ class Connections:
     """The connection graph, as one client has it.
 
     Args:
-        session: Its session, which leaves out names that the policy hides.
+        session: Its session, which omits names that the policy hides.
     """
 
     def __init__(self, session: Session) -> None:

@@ -162,7 +162,7 @@ def op_of(frame: str, most_parts: int) -> Op:
     """Return the op in a text frame.
 
     Raises:
-        MessageError: the frame is no op that clients send.
+        MessageError: the frame is not an op that clients send.
     """
     try:
         octets = frame.encode()
@@ -198,7 +198,7 @@ class ServiceCall(NamedTuple):
 
 
 class PlaybackRequest(NamedTuple):
-    """A wish for the player; without `seek_ns`, it goes on where it is."""
+    """A request to the player; without `seek_ns`, it continues where it is."""
 
     paused: bool
     rate: float
@@ -243,7 +243,7 @@ def text_at(frame: bytes, start: int, length: int) -> str:
     """Return a text within a frame.
 
     Raises:
-        MessageError: it is no UTF-8, or longer than the frame.
+        MessageError: it is not UTF-8, or longer than the frame.
     """
     piece = frame[start : start + length]
     if len(piece) < length:
@@ -265,7 +265,7 @@ def message_frame(
 
 
 def time_frame(time_ns: int) -> bytes:
-    """Return the frame that tells the time."""
+    """Return a frame with the current time."""
     return struct.pack("<BQ", 2, time_ns)
 
 
@@ -282,7 +282,7 @@ PLAYING, PAUSED, ENDED = 0, 1, 3
 def playback_frame(
     status: int, time_ns: int, rate: float, *, did_seek: bool, request_id: str = ""
 ) -> bytes:
-    """Return the frame that tells the state of a player."""
+    """Return a frame with the state of a player."""
     answered = request_id.encode()
     return struct.pack("<BBQfBI", 5, status, time_ns, rate, did_seek, len(answered)) + answered
 

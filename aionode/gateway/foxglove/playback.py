@@ -30,7 +30,7 @@ class Playback:
 
     Args:
         session: The session of the client.
-        player: The player; None if there is none.
+        player: The player, or None.
     """
 
     def __init__(self, session: Session, player: Player | None) -> None:
@@ -61,7 +61,7 @@ class Playback:
         return self._clock.now().nanoseconds if self._clock.ros_time_is_active else received.time_ns
 
     async def watch(self) -> None:
-        """Tell the client the time, and the state of the player."""
+        """Send the client the time, and the state of the player."""
         if self._player is None:
             await self._watch_clock()
             return
@@ -75,7 +75,7 @@ class Playback:
             await self._session.robot.clock.sleep(PERIOD_SEC)
 
     async def _watch_clock(self) -> None:
-        """Tell the client of simulated time, if the node of the gateway uses it."""
+        """Send the client simulated time, if the gateway's node uses it."""
         if self._clock.ros_time_is_active:
             try:
                 await self._session.subscribe(
@@ -85,10 +85,10 @@ class Playback:
                 self._session.rights.note_failure(error, "simulated time")
 
     async def control(self, begin: Begin, request: frames.PlaybackRequest) -> None:
-        """Control the player as the client wants, and tell the client its state then.
+        """Control the player as requested, and send the client the resulting state.
 
         Args:
-            begin: Begins work that ends with the client.
+            begin: Starts work that ends with the client.
             request: The client's wish.
 
         Raises:

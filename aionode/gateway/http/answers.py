@@ -57,7 +57,7 @@ connections, and the network reports a client that is gone only to a server that
 """
 
 CLIENT_GONE: Final = 499
-"""The status of a request whose client has disconnected, as nginx logs it; nobody gets it."""
+"""The status of a request whose client has disconnected, as in nginx's log; nobody receives it."""
 
 HEADERS: Final = {"Cache-Control": "no-store"}
 
@@ -103,7 +103,7 @@ def json_response(value: Any, status: int = 200) -> Response:
 
 
 def error_of(error: Exception) -> tuple[int, str, str]:
-    """Return the status, the code and the text with which an error is answered.
+    """Return the status, code and text with which to answer an error.
 
     Raises:
         Exception: `error`, if it is a mistake of aionode.
@@ -137,11 +137,11 @@ def error_response(error: Exception) -> Response:
 
 
 async def body_of(request: Request, timeout_sec: float) -> bytes:
-    """Return the body of a request, whose size the door has limited.
+    """Return the body of a request; the door has limited its size.
 
     Args:
         request: The request.
-        timeout_sec: How long the body may take to arrive, in seconds.
+        timeout_sec: Timeout for the body to arrive, in seconds.
 
     Raises:
         RefusedError: the body is too large.
@@ -187,7 +187,7 @@ class Asked:
         return self.request.headers.get("accept", "")
 
     def lose_silent_client(self) -> None:
-        """Treat the caller as gone when its host has been silent for as long as the policy says."""
+        """Treat the caller as gone if its host has been silent for the time set in the policy."""
         connection: Any = self.request.scope["state"].get("aionode_connection")
         if connection is not None:
             connection.lose_after(self.session.rights.limits.client_lost_sec)
@@ -243,7 +243,7 @@ async def until_ended(session: Session) -> AsyncIterator[None]:
 
     Raises:
         HTTPException: the session has ended (503).
-        RefusedError: another client has taken the place.
+        RefusedError: another client has taken its place.
     """
     scope = asyncio.timeout(None)
     try:
@@ -258,14 +258,14 @@ async def until_ended(session: Session) -> AsyncIterator[None]:
 
 
 class Stream(Response):
-    """An answer without an end, whose chunks are sent as they come.
+    """A response without an end, whose chunks are sent as they arrive.
 
     It ends with its session. The generator of the chunks is closed when the client goes.
 
     Args:
         session: The session.
         chunks: The chunks.
-        media_type: Of the whole.
+        media_type: The media type of the whole response.
         first: Is sent before them.
         alive: Is sent as a sign of life; empty for none.
     """
@@ -298,7 +298,7 @@ class Stream(Response):
         head = {"status": self.status_code, "headers": self.raw_headers}
         async with aclosing(self._chunks):
             await send({"type": "http.response.start", **head})
-            if scope["method"] != "HEAD":  # whose answer would have no end
+            if scope["method"] != "HEAD":  # otherwise the response would have no end
                 await self._send_chunks(put)
         await send({"type": "http.response.body", "body": b"", "more_body": False})
 

@@ -65,7 +65,7 @@ class Family(msgspec.Struct):
 
 
 def prometheus(families: Iterable[Family]) -> str:
-    """Return the text of an answer to Prometheus; metrics without samples are left out."""
+    """Return metrics in Prometheus's text format, omitting those without samples."""
     return "".join(f"{line}\n" for family in families if family.samples for line in lines(family))
 
 
@@ -88,7 +88,7 @@ def escaped(text: str) -> str:
 
 
 def gateway_metrics(stats: GatewayStats, sees: Callable[[str, str], bool]) -> list[Family]:
-    """Return the counts of a gateway, as far as the caller sees the names.
+    """Return the counts of a gateway, limited to the names that the caller may see.
 
     Args:
         stats: Its counts.
@@ -144,7 +144,7 @@ DURATIONS: Final = {
 
 
 def node_metrics(nodes: Iterable[Node], sees: Callable[[str, str], bool]) -> list[Family]:
-    """Return the counts of the entities of nodes, as far as the caller sees their names.
+    """Return the counts of the nodes' entities, limited to the names that the caller may see.
 
     Args:
         nodes: The nodes.

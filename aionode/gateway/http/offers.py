@@ -36,7 +36,7 @@ async def offers(session: Session, *, user_only: bool = True) -> list[Offer]:
 
     Args:
         session: The session of the caller.
-        user_only: Whether infrastructure is left out.
+        user_only: Whether to omit infrastructure.
     """
     found = session.graph.offered(user_only=user_only)
     graph: dict[Kind, dict[str, list[str]]] = {
@@ -63,9 +63,9 @@ async def offers(session: Session, *, user_only: bool = True) -> list[Offer]:
 
 
 async def classes_of(session: Session, types: set[tuple[Kind, str]]) -> dict[str, Any]:
-    """Return the classes of types by their names; those that nobody knows are left out.
+    """Return the classes of types by name, omitting those that no node knows.
 
-    The nodes are asked at once, for a few seconds in all.
+    The nodes are asked concurrently, for a few seconds in total.
     """
     ask = {
         "topic": session.message_class,

@@ -161,7 +161,7 @@ def openapi(title: str, version: str, offers: Iterable[Offer]) -> dict[str, Any]
 
 
 def operation(name: str, summary: str, responses: Schema, **more: Any) -> Schema:
-    """Return an operation with its answers, of which each may be an error.
+    """Return an operation with its responses, any of which may be an error.
 
     Args:
         name: What it does with which name, such as ``publish/cmd_vel``: unique, as names of methods
@@ -190,7 +190,7 @@ def answer(schema: Schema, **others: Schema) -> Schema:
 
 
 def body(schema: Schema) -> Schema:
-    """Return the body of a request; a message without fields may be left out."""
+    """Return the schema of a request body; a message without fields may be omitted."""
     return {"requestBody": {"required": True, **content("application/json", schema)}}
 
 
@@ -305,7 +305,7 @@ def component(
     """Return a reference to the schema of a message, which is added with those nested in it.
 
     Args:
-        cls: The class of the message; None if nobody knows it.
+        cls: The class of the message; None if no node knows it.
         schemas: The schemas that there are.
         is_sent: Whether clients send the message: their numbers are none for which null stands.
     """

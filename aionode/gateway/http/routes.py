@@ -137,7 +137,7 @@ class Endpoint:
 
 
 def end_with(session: Session, ended: list[Subscribed]) -> None:
-    """End a session whose request was for a topic that the policy does not allow any more."""
+    """End a session whose request was for a topic that the policy no longer allows."""
     if ended:
         session.ended.set()
 
@@ -145,7 +145,7 @@ def end_with(session: Session, ended: list[Subscribed]) -> None:
 class Caller(msgspec.Struct, frozen=True):
     """The holder of topics that requests command, as the session of each ends with the request.
 
-    Two programs may be one identity, so that alone does not make them one holder.
+    Two programs may share an identity, so that alone does not make them the same holder.
 
     Attributes:
         identity: The client that has sent the requests.
@@ -159,11 +159,11 @@ class Caller(msgspec.Struct, frozen=True):
 
     @property
     def way(self) -> str:
-        """How it is connected, for `Owner`."""
+        """The way it is connected, for `Owner`."""
         return f"http as client {self.client!r}" if self.client else "another connection of http"
 
     def doubt(self) -> None:
-        """Do nothing: the next request has to come with all that the caller has to show."""
+        """Do nothing: the next request has to prove the caller's identity anyway."""
 
 
 def caller_of(request: Request, session: Session) -> Caller:

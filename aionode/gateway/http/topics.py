@@ -39,7 +39,7 @@ ANY_PICTURE: Final = "image/*"
 MOST_WIDTH: Final = 8192
 
 WAIT_SEC: Final = 5.0
-"""Time for which a request waits for a message unless it says otherwise, in seconds."""
+"""How long a request waits for a message by default, in seconds."""
 
 SUFFIXES: Final = {
     ".jpeg": "image/jpeg",
@@ -131,7 +131,7 @@ async def events(asked: Asked, topic: str) -> Response:
 
 
 def as_event(received: Received) -> Frame:
-    """Return a message as an event, which is made once for all clients."""
+    """Return a message as an event, encoded once for all clients."""
     return received.once(EVENTS, make_event)
 
 
@@ -147,7 +147,7 @@ async def frames(outbox: Outbox) -> AsyncGenerator[Frame, None]:
 
 
 class Newest:
-    """The newest message of a topic that was not taken yet: the others are left out.
+    """Holds the newest message of a topic; older ones are dropped.
 
     Unlike a frame in an outbox, it is encoded only when its client is ready for it.
     """
@@ -173,7 +173,7 @@ class Newest:
         self._arrived.set()
 
     async def get(self) -> Received:
-        """Wait for a message that was not taken yet."""
+        """Wait for a message that has not been returned yet."""
         while self._received is None:
             self._arrived.clear()
             await self._arrived.wait()

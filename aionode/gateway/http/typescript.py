@@ -151,7 +151,7 @@ def constant_text(constant: Constant) -> str:
 
 
 def comment(texts: Iterable[str], indent: str) -> list[str]:
-    """Return the lines of a comment; none if there is nothing to say."""
+    """Return the lines of a comment; empty if there is no text."""
     # A description must not be able to end the comment that it stands in.
     said = [re.sub(r"\*/", "* /", " ".join(text.split())) for text in texts if text]
     if len(said) < 2:

@@ -1,1 +1,1 @@
-"""The page that comes with the gateway."""
+"""The gateway's built-in web page."""

@@ -1,4 +1,4 @@
-"""The page that comes with the gateway: a few files, which need nothing from elsewhere."""
+"""The built-in web page: a few files, which need nothing from elsewhere."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ class FieldLimit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class OutOfLimitsError(ValueError):
-    """A field has a value outside of its limits. Caught by `Policy.decide`."""
+    """A field value is outside of its limits. Caught by `Policy.decide`."""
 
 
 def check_finite(message: Any) -> None:
@@ -62,7 +62,7 @@ def may_not_be_finite(message: Message) -> bool:
         return False
     try:
         return b"null" in ENCODER.encode(message)
-    except UnicodeError:  # a text that is no UTF-8
+    except UnicodeError:  # text that is not UTF-8
         return True
 
 
@@ -108,7 +108,7 @@ def not_finite(value: Any) -> list[float]:
 
 
 def limited(message: Any, limits: Mapping[str, FieldLimit]) -> Any:
-    """Return a message whose fields are within their limits: the same one if it already is.
+    """Return a message whose fields are within their limits: unchanged if they already are.
 
     Raises:
         OutOfLimitsError: a value is not within its limits, and may not be clamped.

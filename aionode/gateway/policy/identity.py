@@ -19,7 +19,7 @@ TOKEN_PROTOCOL: Final = "bearer."  # noqa: S105  # what stands before one
 """Before the token, among the subprotocols of a WebSocket: browsers can set no header there."""
 
 FORWARDED: Final = frozenset({"forwarded", "via", "x-real-ip"})
-"""Headers that proxies add, beside those that begin with ``x-forwarded-``."""
+"""Headers added by proxies, besides those that start with ``x-forwarded-``."""
 
 
 class Identity(msgspec.Struct, frozen=True):
@@ -27,7 +27,7 @@ class Identity(msgspec.Struct, frozen=True):
 
     Attributes:
         name: For the audit log, and for others who ask who commands a topic.
-        groups: The groups that the policy gives it, by which rules may name it.
+        groups: The groups that the policy assigns to it, which rules may refer to.
         address: Where it connects from.
     """
 
@@ -37,7 +37,7 @@ class Identity(msgspec.Struct, frozen=True):
 
     @property
     def place(self) -> str:
-        """Where it connects from, as far as that tells clients apart; see `place_of`."""
+        """Where it connects from, as far as that distinguishes clients; see `place_of`."""
         return place_of(self.address)
 
 
@@ -49,10 +49,10 @@ class Credentials(msgspec.Struct, frozen=True):
         token: Its token; empty without one. It is never printed.
         certificate: The common name of its TLS certificate, which the server has verified.
         origin: The origin of the page that has made the request; None if no page has.
-        host: The ``Host`` header: by which name the client knows the gateway.
+        host: The ``Host`` header: the name under which the client knows the gateway.
         sec_fetch_site: How the page and the gateway are related, as the browser says.
         scheme: ``http`` or ``https``.
-        is_forwarded: Whether a proxy has passed the request on, as its headers say.
+        is_forwarded: Whether its headers show that a proxy has forwarded the request.
     """
 
     address: str
@@ -85,7 +85,7 @@ def from_scope(scope: Mapping[str, Any], token: str) -> Credentials:
     headers: dict[str, str] = {}
     for raw_name, raw_value in scope["headers"]:
         name, value = raw_name.decode("latin-1"), raw_value.decode("latin-1")
-        # Of a header that comes twice neither counts: together they fit nothing.
+        # A header that occurs twice is ignored altogether.
         headers[name] = f"{headers[name]}, {value}" if name in headers else value
     client = scope.get("client")
     return Credentials(

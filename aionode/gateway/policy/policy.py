@@ -94,7 +94,7 @@ MOST_CHARACTERS: Final = 1000
 READ_ONLY: Final = (
     "without a policy, clients only read; start the gateway with --allow-write, or write a policy"
 )
-"""Why a client may not write, where there is no policy file."""
+"""The reason why a client may not write if there is no policy file."""
 
 
 ORIGIN: Final = re.compile(
@@ -108,7 +108,7 @@ class Part(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class LeaseRule(Part, frozen=True):
-    """How commands of a topic are published: by one client at a time, and with a stop at the end.
+    """How commands on a topic are published: by one client at a time, with a stop at the end.
 
     Attributes:
         ttl_sec: The longest time between two commands of the holder, in seconds. After it, the
@@ -139,10 +139,10 @@ class Rule(Part, frozen=True):
         who: The names and groups of the clients that the rule is about; all clients if empty.
         see: The topics, services, actions and nodes that these clients see, and the parameters that
             they read, as ``/node:parameter``. ``/node`` stands for the node and its parameters.
-        subscribe: The topics to which they may subscribe.
-        publish: The topics to which they may publish.
+        subscribe: The topics to which clients may subscribe.
+        publish: The topics to which clients may publish.
         call: The services that they may call.
-        goal: The actions to which they may send goals.
+        goal: The actions to which clients may send goals.
         parameter: The parameters that they may set, as ``/node:parameter``. ``/node`` stands for
             all parameters of the node.
         advertise: The services and actions that they may offer themselves.
@@ -157,8 +157,8 @@ class Rule(Part, frozen=True):
         finite: Whether a NaN or an infinity is refused anywhere in a message, request, goal or
             parameter. By default it is, but for measurements such as a LaserScan that are published
             without a lease.
-        ask: Whether a person has to say yes each time.
-        lease: How commands are published; None for messages that are no commands.
+        ask: Whether a person has to approve each time.
+        lease: How commands are published; None for messages that are not commands.
         because: The reason that a refused client is told.
     """
 
@@ -196,7 +196,7 @@ class Rule(Part, frozen=True):
                 )
 
     def is_about(self, identity: Identity) -> bool:
-        """Return whether the rule names a client, or names nobody and so all clients."""
+        """Return whether the rule applies to a client: it names it, or names nobody."""
         who = listed(self.who)
         return not who or identity.name in who or not identity.groups.isdisjoint(who)
 
@@ -228,11 +228,11 @@ class Who(Part, frozen=True):
         name: The name of the client, for rules and for the audit log.
         groups: The groups of the client, for rules about several clients.
         token: A secret that the client shows.
-        token_sha256: The SHA-256 of the secret, in hexadecimal digits, in place of ``token``.
+        token_sha256: The SHA-256 of the secret, in hexadecimal, instead of ``token``.
         certificate: The common name of the client's TLS certificate.
         origin: The origin of the page. Without a token or certificate it counts on loopback only,
             since a program may claim any origin.
-        loopback: Whether the client has to run on this host, whose users all may connect.
+        loopback: Whether the client has to run on this host, where any user may connect.
     """
 
     name: str
@@ -330,7 +330,7 @@ class Limits(Part, frozen=True):
             given: Some as text, such as ``frame_bytes=20_000_000``.
 
         Raises:
-            ValueError: there is no such limit, or its value is none.
+            ValueError: there is no such limit, or its value is invalid.
         """
         values = msgspec.structs.asdict(self)
         for text in given:
@@ -377,12 +377,12 @@ class Decision(msgspec.Struct, frozen=True):
 
     @property
     def ask(self) -> bool:
-        """Whether a person has to say yes."""
+        """Whether a person has to approve."""
         return self.rule is not None and self.rule.ask
 
     @property
     def lease(self) -> LeaseRule | None:
-        """How commands are published; None if the message is no command."""
+        """How commands are published; None if the message is not a command."""
         return None if self.rule is None else self.rule.lease
 
 
@@ -392,7 +392,7 @@ class Policy(Part, frozen=True):
     Attributes:
         who: The clients that the policy knows.
         allow: The rules that allow. The first rule that covers a request counts.
-        refuse: The rules that refuse, whatever `allow` says.
+        refuse: The rules that refuse, whatever `allow` contains.
         hosts: The names of this machine, beside addresses and ``localhost``.
         origins: The origins of pages that may connect, beside the gateway's own page.
         limits: The limits for all clients.

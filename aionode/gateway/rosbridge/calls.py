@@ -1,4 +1,4 @@
-"""The ops of rosbridge by which a client calls services and sends goals."""
+"""The rosbridge ops by which a client calls services and sends goals."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class Calls:
     # Services
 
     async def call_service(self, op: Op, arrived_ns: int) -> None:
-        """Begin a call; the client goes on meanwhile."""
+        """Start a call; the client continues meanwhile."""
         name, _, old_id = text(op, "service").partition("#")  # as in the first rosbridge
         if old_id and op.get("id") is None:
             op["id"] = old_id
@@ -179,7 +179,7 @@ class Calls:
 
 
 def same_name(name: str, other: str) -> bool:
-    """Return whether two names differ at most in the leading slash, which clients may omit."""
+    """Return whether two names are equal except for the leading slash, which clients may omit."""
     return name.removeprefix("/") == other.removeprefix("/")
 
 

@@ -160,7 +160,7 @@ class Client:
         await self._lanes.put((kind, name), partial(self._attempt, op, handler))
 
     async def _attempt(self, op: Op, handler: Handler) -> None:
-        """Tell the client if an op fails."""
+        """Handle an op, and tell the client if it fails."""
         try:
             await handler(op)
         except (AionodeError, TimeoutError) as error:
@@ -172,7 +172,7 @@ class Client:
         self._link.set_level(text(op, "level"))
 
     async def _auth(self, op: Op) -> None:
-        """Ignore the authentication of ROS 1, whose server is gone."""
+        """Ignore ROS 1's authentication, whose server no longer exists."""
         problem = "has no effect; connect with a token instead"
         self._link.session.rights.note(Refusal.IGNORED, "auth", problem)
         self._link.status("warning", f"auth: {problem}", op)

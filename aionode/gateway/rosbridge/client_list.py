@@ -1,4 +1,4 @@
-"""The topics by which rosbridge tells how many clients it has, and who they are."""
+"""The topics on which rosbridge publishes how many clients it has, and who they are."""
 
 from __future__ import annotations
 

@@ -58,14 +58,14 @@ class Link:
         self.session.outbox.send(frame)
 
     def fail(self, error: Exception, op: dict[str, Any] | None = None, what: str = "") -> None:
-        """Say that something of the client has failed: to it, and in the log.
+        """Report a failure to the client, and in the log.
 
         A call or a goal is answered in any case; of others it is told by a status.
 
         Args:
             error: Why.
             op: The op.
-            what: What has failed; by default the op.
+            what: What has failed; the op by default.
         """
         name = str(op["op"])[:MOST_OP] if op is not None else ""
         text = str(error) or "no answer in time"
@@ -81,7 +81,7 @@ class Link:
         self.send(told | ({"status": 0} if name == "send_action_goal" else {}))
 
     def status(self, level: str, text: str, op: dict[str, Any] | None = None) -> None:
-        """Tell the client what became of an op, if it has asked for statuses of this level."""
+        """Send the client the status of an op, if it has requested statuses of this level."""
         if LEVELS.index(level) > self._level:
             return
         message_id = None if op is None else raw_id(op)

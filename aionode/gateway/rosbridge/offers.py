@@ -48,8 +48,8 @@ class Offer:
         name: Its name, as the client has it.
         type_class: Its class.
         served: The service or action of the session.
-        is_closed: Whether it has ended; a request that comes then fails.
-        count: How many requests there were.
+        is_closed: Whether it has ended; later requests fail.
+        count: Number of requests so far.
         pending: The requests that the client has not answered, by id.
         goals: The goals that it executes, by id.
     """
@@ -146,7 +146,7 @@ class Offers:
             del offer.pending[message_id]
 
     async def service_response(self, op: Op) -> None:
-        """Take the client's answer to a request."""
+        """Handle the client's answer to a request."""
         self._deliver(self._services, "service", op)
 
     # Actions
@@ -198,7 +198,7 @@ class Offers:
         message_id: str,
         answer: asyncio.Future[Op],
     ) -> Op:
-        """Wait for the client's result; when the goal is canceled, tell the client first."""
+        """Wait for the client's result; if the goal is canceled, tell the client first."""
         try:
             return await asyncio.shield(answer)
         except asyncio.CancelledError:
@@ -234,7 +234,7 @@ class Offers:
         goal.publish_feedback(await self._message(offer.type_class.Feedback, op))
 
     async def action_result(self, op: Op) -> None:
-        """Take the client's result of a goal."""
+        """Handle the client's result of a goal."""
         self._deliver(self._actions, "action", op)
 
     # Both

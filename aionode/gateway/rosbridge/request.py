@@ -52,11 +52,11 @@ LONGEST_NAME: Final = 1000
 MOST_FRAGMENTS: Final = 10_000
 
 OVERHEAD: Final = 20
-"""Bytes that a fragment counts beside its own: empty ones take memory as well."""
+"""Bytes that a fragment counts besides its content: empty ones take memory as well."""
 
 
 def op_of(frame: str | bytes, most_parts: int) -> Op:
-    """Return the op in a frame, which is one object of JSON.
+    """Parse the op in a frame, which is one JSON object.
 
     Raises:
         MessageError: the frame is something else.
@@ -116,7 +116,7 @@ def id_of(op: Op) -> str | None:
 
 
 class Head(msgspec.Struct):
-    """What an answer needs of an op, whatever else is in it."""
+    """The fields of an op that an answer needs."""
 
     op: str
     id: Any = None
@@ -137,7 +137,7 @@ def number(op: Op, name: str, default: float = 0) -> float:
     """Return a field that is a number of at least 0; a missing or negative one is `default`.
 
     Raises:
-        MessageError: the field is no number.
+        MessageError: the field is not a number.
     """
     value = op.get(name)
     if value is None:

@@ -36,7 +36,7 @@ SERVICES: Final[dict[str, tuple[tuple[str, ...], Answer]]] = {}
 
 
 def service(name: str, *request: str) -> Callable[[Answer], Answer]:
-    """Answer a service by a function, whose arguments are the fields of the request in order."""
+    """Declare the function that answers a service, given the fields of the request in order."""
 
     def add(answer: Answer) -> Answer:
         SERVICES[name] = (request, answer)
@@ -74,7 +74,7 @@ async def answer(session: Session, name: str, args: dict[str, Any] | list[Any]) 
 
 
 def visible(names: Iterable[str]) -> list[str]:
-    """Return the names that are not hidden: no part begins with an underscore."""
+    """Filter out hidden names, which have a part that starts with an underscore."""
     return [name for name in names if "/_" not in name]
 
 
@@ -102,7 +102,7 @@ async def topics_and_raw_types(session: Session, _: Args) -> dict[str, Any]:
 
 
 async def text_of(session: Session, name: str) -> str:
-    """Return the full definition of a type, or a comment that says why there is none."""
+    """Return the full definition of a type, or a comment with the reason why there is none."""
     try:
         return full_text(await session.message_class(name))
     except AionodeError as error:
@@ -279,7 +279,7 @@ def parameter_name(name: str) -> tuple[str, str]:
 
 
 def failed(session: Session, error: Exception) -> dict[str, Any]:
-    """Return the fields of an answer that say why a parameter was not read or set."""
+    """Return the fields of an answer with the reason why a parameter was not read or set."""
     session.rights.note_failure(error, "rosapi")
     return {"successful": False, "reason": str(error) or "the node has not answered in time"}
 

@@ -9,7 +9,7 @@ from aionode.message import Field, FieldType, Message, constants, fields, type_n
 __all__ = ["full_text", "type_definitions"]
 
 WORDS: Final = {"float64": "double", "float32": "float", "bool": "boolean", "byte": "octet"}
-"""The names that rosapi has for types of fields, which are those of IDL; others are the same."""
+"""rosapi's names for types of fields, which are IDL's; others are unchanged."""
 
 
 def short_name(cls: type[Message]) -> str:

@@ -56,12 +56,12 @@ that advertises and publishes at once reaches the subscriptions that are just be
 
 @dataclass(frozen=True)
 class Wish:
-    """How a client wants the messages of a topic, for one id of its subscriptions.
+    """How a client wants to receive a topic, for one id of its subscriptions.
 
     Attributes:
         type_name: The type, or None for that of the topic.
         period_sec: The shortest time between messages, in seconds.
-        depth: How many messages wait at most.
+        depth: Maximum number of messages that wait.
         fragment_size: The longest frame, in characters; 0 for any.
         compression: One of `COMPRESSIONS`.
         qos: The profile, or None for one that fits the publishers.
@@ -134,7 +134,7 @@ class Topics:
         self._session.on_policy = self._tell_ended
 
     async def advertise(self, op: Op) -> None:
-        """Make a publisher for the client."""
+        """Create a publisher for the client."""
         topic = self._session.topic_name(text(op, "topic"))
         type_name = type_text(text(op, "type"), "msg")
         await self._advertise(topic, type_name, op)
@@ -164,7 +164,7 @@ class Topics:
         await self._session.publish(topic, message, type_name, arrived_ns=arrived_ns)
 
     async def _advertise(self, topic: str, type_name: str | None, op: Op) -> None:
-        """Make a publisher, unless no subscription of the topic would hear it.
+        """Create a publisher, unless no subscription of the topic would receive from it.
 
         Raises:
             RefusedError: the policy does not allow it.
@@ -226,14 +226,14 @@ class Topics:
             earlier.subscribed.close()
 
     def _tell_ended(self, ended: list[Subscribed]) -> None:
-        """Tell the client which topics the policy, which has changed, does not allow any more."""
+        """Tell the client which topics a changed policy no longer allows."""
         for topic, view in list(self._views.items()):
             if view.subscribed in ended:
                 del self._views[topic], self._wishes[topic]
                 self._link.status("error", f"subscribe: the policy has ended {topic}")
 
     def _frames(self, topic: str, wish: Wish) -> Callable[[Received], Frame | None]:
-        """Return a function that makes the frame of a message, once for equal wishes."""
+        """Return a function that encodes a message as a frame, once for equal wishes."""
         kind = ("rosbridge", wish.compression, topic)
         make = partial(frame_of, wish.compression, topic)
 
@@ -273,7 +273,7 @@ def prepare_of(compression: str, topic: str) -> Prepare | None:
 
 
 async def prepare_text(topic: str, received: Received) -> None:
-    """Make the frame of JSON of a large message."""
+    """Encode a large message as a JSON frame."""
     kind = ("rosbridge", "none", topic)
     if not received.has(kind):
         frame = long_json_frame(topic, await pieces_of(received))
@@ -281,7 +281,7 @@ async def prepare_text(topic: str, received: Received) -> None:
 
 
 async def prepare_png(topic: str, received: Received) -> None:
-    """Make the picture of a large message; compressing it takes most of a second."""
+    """Encode a large message as an image; compression takes most of a second."""
     kind = ("rosbridge", "png", topic)
     if not received.has(kind):
         text = str(long_json_frame(topic, await pieces_of(received)))

@@ -27,7 +27,7 @@ Application: TypeAlias = Callable[[Any, Any, Any], Awaitable[None]]
 """An application of ASGI."""
 
 PHRASES: Final = {status.value: status.phrase.encode() for status in HTTPStatus}
-"""The words of each status."""
+"""The reason phrase of each status."""
 
 GOODBYE_SEC: Final = 5.0
 """Longest time for a client to read the end of a connection, in seconds."""
@@ -70,7 +70,7 @@ class Shared:
         task.add_done_callback(self.requests.discard)
 
     def admit(self, connection: Connection) -> bool:
-        """Take a new connection, and return whether there is room for it.
+        """Accept a new connection if there is room, and return whether there is.
 
         The oldest connection without a session makes room: a client says at once what it wants, and
         those who only keep connections, or read none of what is public, must not keep it out.
@@ -117,7 +117,7 @@ class Connection(asyncio.Protocol):
         self._portions = Portions(transport, self.take, self.is_ready)
 
     def data_received(self, data: bytes) -> None:
-        """Note the time, and take what was received, some of it at a time."""
+        """Record the time, and process received data, a part at a time."""
         self._heard_s = self._loop.time()
         self._portions.add(data)
 
@@ -130,10 +130,10 @@ class Connection(asyncio.Protocol):
         self.writable.set()
 
     def connection_lost(self, exc: Exception | None) -> None:  # noqa: ARG002  # asyncio's name
-        """Forget what waits, and tell the server, which may wait for its last connection to end."""
+        """Discard pending data, and notify the server, which may wait for its last connection."""
         self.is_lost = True
         self._portions.close()
-        self.writable.set()  # nobody says it any more
+        self.writable.set()  # nobody else sets it any more
         self._shared.connections.discard(self)
         self._shared.has_lost_one.set()
 
@@ -142,13 +142,13 @@ class Connection(asyncio.Protocol):
         return self._loop.time() - self._heard_s
 
     def abort(self) -> None:
-        """Close the connection without a word, which nobody would read."""
+        """Close the connection without a message, which nobody would read."""
         self.transport.abort()
 
     # What is spoken
 
     def take(self, data: bytes) -> None:
-        """Take a part of what was received."""
+        """Process a part of the received data."""
         raise NotImplementedError
 
     def is_ready(self) -> bool:
@@ -161,7 +161,7 @@ class Connection(asyncio.Protocol):
 
 
 def scope_of(request: h11.Request, transport: asyncio.Transport) -> dict[str, Any]:
-    """Return what ASGI tells of a request, whatever its kind."""
+    """Return the ASGI scope of a request, without its type."""
     path, _, query = request.target.partition(b"?")
     return {
         "asgi": {"version": "3.0", "spec_version": "2.3"},

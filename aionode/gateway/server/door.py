@@ -28,10 +28,10 @@ PUBLIC: Final = ("/page/",)
 """
 
 MOST_WRONG: Final = 10
-"""Wrong tokens that may come from one place at once."""
+"""Number of wrong tokens accepted from one place in a burst."""
 
 WRONG_NS: Final = S_TO_NS
-"""After how many nanoseconds one of them is forgotten."""
+"""Time after which one of them is forgotten, in nanoseconds."""
 
 MOST_PLACES: Final = 10_000
 
@@ -118,7 +118,7 @@ class Door:
 
 
 class Guesses:
-    """Bounds how often tokens are tried: so many from one place at once, and then one a second.
+    """Limits token attempts: a burst per place, and then one per second.
 
     Right tokens of that place have to wait as well, or an attacker would see at once which is
     right. Clients that are connected stay so.
@@ -135,7 +135,7 @@ class Guesses:
         )  # when a place has no wrong tokens left, by place
 
     def check(self, address: str) -> None:
-        """Refuse a token if too many wrong ones came from where it comes from.
+        """Refuse a token if too many wrong ones came from the same place.
 
         Raises:
             RefusedError: there were too many; its code is ``too_fast``.
@@ -154,7 +154,7 @@ class Guesses:
 
 
 def is_public(scope: Message) -> bool:
-    """Return whether a request is for the page or the health, which tell nothing of the robot."""
+    """Return whether a request is for the page or the health check, which reveal nothing."""
     if scope["type"] != "http" or scope["method"] not in {"GET", "HEAD"}:
         return False
     return scope["path"] in {"/", "/healthz"} or is_script(scope)
@@ -229,7 +229,7 @@ async def preflight(send: Send) -> None:
 
 
 def limit_body(scope: Message, receive: Receive, most: int) -> Receive:
-    """Return a `receive` that refuses the body of a request beyond so many bytes."""
+    """Return a `receive` that refuses request bodies beyond a size."""
     if scope["type"] != "http":
         return receive
     received = 0

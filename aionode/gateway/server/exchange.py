@@ -23,13 +23,13 @@ __all__ = ["TRY_AGAIN_LATER", "close", "exchange"]
 Serve: TypeAlias = Callable[["Session", AsyncIterator[bytes | str]], Awaitable[None]]
 
 POLICY_VIOLATION: Final = 1008
-"""Why a WebSocket is closed whose client sends no ops, or reads no answers (RFC 6455)."""
+"""Closes a WebSocket whose client sends no ops, or reads no answers (RFC 6455)."""
 
 TRY_AGAIN_LATER: Final = 1013
-"""Why a WebSocket is closed whose place another client takes (IANA's registry of RFC 6455)."""
+"""Closes a WebSocket whose place another client takes (IANA's registry of RFC 6455)."""
 
 CLOSING_SEC: Final = 1.0
-"""How long a client that reads nothing may keep the end of its WebSocket, in seconds."""
+"""How long a client that reads nothing may delay the end of its WebSocket, in seconds."""
 
 MOST_REASON: Final = 120
 """The longest reason of an end, in bytes of UTF-8: RFC 6455 allows 123."""

@@ -29,7 +29,7 @@ MOST_BODY: Final = 64 << 10
 
 
 class HttpConnection(Connection):
-    """A connection that has to say within some seconds what it wants, and to read the answer.
+    """A connection that must send its request, and read the answer, within some seconds.
 
     The application finds in the state of the scope who the client is by its TLS certificate.
     """
@@ -45,7 +45,7 @@ class HttpConnection(Connection):
         self._state: dict[str, Any] = {}
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Begin the time within which a request has to arrive."""
+        """Start the timeout for the first request."""
         self.use(transport)
         if not self._shared.admit(self):
             self.abort()
@@ -60,12 +60,12 @@ class HttpConnection(Connection):
         return not self._is_paused
 
     def take(self, data: bytes) -> None:
-        """Take a part of a request."""
+        """Process a part of a request."""
         self._http.receive_data(data)
         self._handle_events()
 
     def go_on(self) -> None:
-        """Read further, as the application has taken what was read."""
+        """Continue reading, as the application has consumed what was read."""
         self._is_paused = False
         self._portions.go_on()
 
@@ -91,7 +91,7 @@ class HttpConnection(Connection):
                 self._begin_next()
 
     def _begin(self, event: h11.Request) -> None:
-        """Hand a request to the application."""
+        """Pass a request to the application."""
         scope = {**scope_of(event, self.transport), "state": dict(self._state)}
         if asks_for_websocket(event):
             self._become_websocket(scope)
@@ -115,7 +115,7 @@ class HttpConnection(Connection):
         websocket.begin(self.transport, scope, rest)
 
     def _refuse(self, status: int) -> None:
-        """Answer what is no HTTP, and close the connection."""
+        """Answer what is not HTTP with an error, and close the connection."""
         if self._http.our_state in {h11.IDLE, h11.SEND_RESPONSE}:
             headers = [(b"content-type", b"text/plain"), (b"connection", b"close")]
             text = b"this cannot be read as a request of HTTP"
@@ -139,7 +139,7 @@ class HttpConnection(Connection):
             self.transport.write(b"".join(small))
 
     def end_answer(self) -> None:
-        """Go on after the last part of an answer, with the time in which the next request comes."""
+        """Continue after the last part of an answer, and start the timeout for the next request."""
         if self.transport.is_closing():
             return
         if self._is_ending or self._http.our_state is h11.MUST_CLOSE:
@@ -203,14 +203,14 @@ class HttpConnection(Connection):
     # The end
 
     def end(self) -> None:
-        """End after the answer to a request; at once without one, or while one is not there yet."""
+        """End after the answer to a request; immediately if there is no request."""
         self._is_ending = True
         request = self._request
         if request is None or request.is_answered or request.more_body:
             self.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Forget the time limit, and tell the application."""
+        """Cancel the timeout, and notify the application."""
         self._stop_time()
         super().connection_lost(exc)
         if self._request is not None:
@@ -218,7 +218,7 @@ class HttpConnection(Connection):
 
 
 class Request:
-    """A request and its answer, as ASGI has them.
+    """A request and its answer, as an ASGI application sees them.
 
     Attributes:
         changed: Set when `receive` has something to return.
@@ -256,18 +256,18 @@ class Request:
                 self._connection.transport.close()
 
     def add(self, data: bytes) -> None:
-        """Add a part of the body; nobody reads what comes after the answer."""
+        """Add a part of the body; what comes after the answer is discarded."""
         if not self.is_answered:
             self._body += data
             self.changed.set()
 
     @property
     def waiting_bytes(self) -> int:
-        """How many bytes of the body wait for the application."""
+        """The number of body bytes waiting for the application."""
         return len(self._body)
 
     def end_body(self) -> None:
-        """Take the end of the body."""
+        """Handle the end of the body."""
         self.more_body = False
         self.changed.set()
 

@@ -1,4 +1,4 @@
-"""How frames leave a WebSocket: framed once for all clients, and large ones in slices."""
+"""Sends the frames of a WebSocket: framed once for all clients, and large ones in slices."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ BINARY: Final = 0x82
 """The first byte of a frame that is a whole message, of either kind (RFC 6455)."""
 
 SLICE: Final = 256 << 10
-"""Bytes of a large frame that are given to the transport at once."""
+"""Number of bytes of a large frame to pass to the transport at a time."""
 
 SLICES_IN_A_TURN: Final = 4
-"""Slices that leave before the event loop turns: they take about half a millisecond."""
+"""Number of slices to send before the event loop runs: they take about half a millisecond."""
 
 MOST_CONTROL_BYTES: Final = 1 << 20
 """Bytes that may wait when a pong is added: a client may ask for many and read none."""
@@ -49,7 +49,7 @@ class Framing:
 
 
 def framed(frame: Frame) -> tuple[bytes, ...]:
-    """Return a WebSocket frame with its head, which is a part of its own before a large payload."""
+    """Return a WebSocket frame with its header, which is separate for a large payload."""
     if isinstance(frame, LongFrame):
         return (head(TEXT if frame.is_text else BINARY, len(frame)), *frame.pieces)
     first, payload = (TEXT, frame.encode()) if isinstance(frame, str) else (BINARY, frame)
@@ -58,7 +58,7 @@ def framed(frame: Frame) -> tuple[bytes, ...]:
 
 
 def head(first: int, size: int) -> bytes:
-    """Return the head of a frame whose payload has a size."""
+    """Return the header of a frame with a payload of this size."""
     if size < 126:
         return struct.pack(">BB", first, size)
     if size < 1 << 16:
@@ -109,7 +109,7 @@ class Outgoing:
         if not self._rest:
             self._writable.set()
         elif self._turn is None:
-            # Not at once: a transport whose connection breaks within this call ends twice.
+            # Not immediately: a transport whose connection breaks within this call would end twice.
             self._turn = asyncio.get_running_loop().call_soon(self._go_on)
 
     def _go_on(self) -> None:
@@ -167,7 +167,7 @@ class Outgoing:
         self._transport.close()
 
     def abort(self) -> None:
-        """Close the connection at once."""
+        """Close the connection immediately."""
         self._forget_turn()
         self._rest.clear()
         self._after.clear()

@@ -12,7 +12,7 @@ PART: Final = 1024
 """Bytes that a parser gets at a time: some 170 frames or chunks of one byte."""
 
 TURN_SEC: Final = 0.002
-"""Time for which parts are handed on before timers, I/O and callbacks of the robot run."""
+"""How long parts are passed on before timers, I/O and callbacks of the robot run, in seconds."""
 
 
 class Portions:
@@ -23,7 +23,7 @@ class Portions:
 
     Args:
         transport: Is not read while something waits.
-        take: Takes a part.
+        take: Processes a part.
         is_ready: Returns whether `take` can be called now; by default it always can. If it could
             not, `go_on` has to be called as soon as it can.
 
@@ -51,7 +51,7 @@ class Portions:
         return bool(self._waiting)
 
     def add(self, data: bytes) -> None:
-        """Take what was received."""
+        """Add received data."""
         if not self._waiting and self._turn is None and len(data) <= PART and self._is_ready():
             self._take(data)
             self._wait_if_owed()

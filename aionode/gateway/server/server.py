@@ -92,7 +92,7 @@ async def end_connections(shared: Shared) -> None:
 
 
 def tls_context(tls: Tls) -> ssl.SSLContext:
-    """Return what makes connections of TLS; with an authority of clients, it asks for theirs."""
+    """Return the TLS context for connections; with a client CA, it requires certificates."""
     context = ssl.create_default_context(ssl.Purpose.CLIENT_AUTH)
     context.load_cert_chain(tls.certificate, tls.key)
     if tls.clients:

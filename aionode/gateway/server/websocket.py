@@ -39,13 +39,13 @@ if TYPE_CHECKING:
 __all__ = ["WebSocketConnection"]
 
 PING_SEC: Final = 20.0
-"""Time between two pings, within which a client has to answer, in seconds."""
+"""Interval between pings, within which a client has to answer, in seconds."""
 
 ANSWERED: Final = "aionode.answered"
 """The type of a message of ASGI for the answer to a ping, which the application does not see."""
 
 MOST_ASKED: Final = 16
-"""Pings that may wait for their answers at once."""
+"""Maximum number of pings that wait for their answers."""
 
 PINGS_PER_SEC: Final = 200.0
 """Pings and pongs that the gateway reads of a client in a second: it has to answer each ping."""
@@ -61,7 +61,7 @@ quiet.setLevel(logging.WARNING)  # below, it writes headers, in which tokens are
 
 
 class WebSocketConnection(Connection):
-    """A WebSocket that says how long its client is silent, and whether it answers now.
+    """A WebSocket that reports how long its client has been silent, and when it answers a ping.
 
     Args:
         shared: What it shares with the other connections.
@@ -145,7 +145,7 @@ class WebSocketConnection(Connection):
     # The answer to the request
 
     def _answer(self, status: int, headers: list[tuple[bytes, bytes]], body: bytes) -> None:
-        """Refuse to begin."""
+        """Refuse the upgrade."""
         self._begin_answer(status, headers)
         self._end_answer(body)
 
@@ -249,11 +249,11 @@ class WebSocketConnection(Connection):
     # Frames
 
     def is_ready(self) -> bool:
-        """Return whether the application has taken all that was read."""
+        """Return whether the application has consumed everything that was read."""
         return self._is_open and (self._queue.empty() or self._has_closed)
 
     def take(self, data: bytes) -> None:
-        """Take a part of what was received."""
+        """Process a part of the received data."""
         self._protocol.receive_data(data)
         for event in self._protocol.events_received():
             if isinstance(event, Frame):
@@ -261,7 +261,7 @@ class WebSocketConnection(Connection):
         self._write_protocol()
 
     def _write_protocol(self) -> None:
-        """Send what the protocol has to say, and end if it does."""
+        """Send what the protocol has to send, and end if it is done."""
         written = self._protocol.data_to_send()
         data = b"".join(written)
         if data:
@@ -294,7 +294,7 @@ class WebSocketConnection(Connection):
             self.take_message(parts[0] if len(parts) == 1 else b"".join(parts))
 
     def take_message(self, data: bytes) -> None:
-        """Hand a message to the application; after the goodbye, a few a second are read at most."""
+        """Pass a message to the application; after a close frame, only a few per second."""
         if self._has_closed:
             self._portions.owed_sec += ENDED_SEC
             return
@@ -376,7 +376,7 @@ class WebSocketConnection(Connection):
         self._loop.call_later(GOODBYE_SEC, self.abort)
 
     def _finish(self) -> None:
-        """End with what the client has sent: its goodbye, or what is no WebSocket."""
+        """End after the client's close frame, or after invalid data."""
         if not self._has_closed:
             self._has_closed = True
             self._protocol.receive_eof()
@@ -405,11 +405,11 @@ class WebSocketConnection(Connection):
             self._outgoing.close()
 
     def abort(self) -> None:
-        """Close the connection without a word, which nobody would read."""
+        """Close the connection without a message, which nobody would read."""
         self._outgoing.abort()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Tell the application."""
+        """Notify the application."""
         if self._timer is not None:
             self._timer.cancel()
         super().connection_lost(exc)

@@ -1,4 +1,4 @@
-"""What a call counts as: it may be part of a goal, or about parameters."""
+"""Classifies calls: a call may be part of a goal, or be about parameters."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SETTERS: Final = ("SetParameters", "SetParametersAtomically")
 READERS: Final = ("GetParameters", "GetParameterTypes", "DescribeParameters")
 LISTER: Final = "ListParameters"
 PARAMETERS: Final = "rcl_interfaces/srv/"
-"""The types of the parameter services, of which a node may have remapped the names."""
+"""The types of the parameter services, whose names a node may have remapped."""
 
 
 def decide_call(
@@ -54,7 +54,7 @@ def decide_call(
 
 
 def nodes_of(robot: Robot, service: str) -> list[str]:
-    """Return the nodes whose parameters a service is about: by its name, and by who has it."""
+    """Return the nodes whose parameters a service concerns, by its name and by its servers."""
     servers = robot.node.graph.endpoints(EndpointKind.SERVER, name=service)
     named = service.rpartition("/")[0]
     return sorted({named, *(server.node.fully_qualified_name for server in servers)})

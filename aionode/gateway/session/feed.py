@@ -30,10 +30,10 @@ DEPTH: Final = 100
 """The depth of subscriptions: the loop may be busy for some milliseconds."""
 
 UNDEMANDING: Final = QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT)
-"""While there is no publisher: whatever the first one offers, it fits."""
+"""The QoS while there is no publisher, which is compatible with whatever the first one offers."""
 
 MOST_LATCHED: Final = 100
-"""Messages of each transient local publisher that are kept for clients that come later."""
+"""Number of messages of each transient local publisher to keep for late clients."""
 
 MOST_LATCHED_BYTES: Final = 32 << 20
 """Most bytes of these messages, though the last one is always kept."""
@@ -74,7 +74,7 @@ class Received:
 
     @property
     def message(self) -> Any:
-        """The message, which is decoded when it is first asked for.
+        """The message, decoded on first use.
 
         Raises:
             DecodeError: the bytes are no message of that type.
@@ -88,7 +88,7 @@ class Received:
         return key in self._kinds
 
     def once(self, key: Hashable, make: Callable[[Received], T]) -> T:
-        """Return what `make` returns, which is called once for each key, whoever asks.
+        """Return the result of `make`, which is called once per key, whoever asks.
 
         Args:
             key: The kind of encoding.
@@ -125,7 +125,7 @@ class Feed:
         self._subscribe()
 
     def add(self, taker: Taker) -> Callable[[], bool]:
-        """Call `taker` with each message, beginning with those that late subscriptions get.
+        """Call `taker` with each message, starting with those that late subscriptions get.
 
         Returns:
             A function that ends this, and returns whether the feed has no taker any more.
@@ -157,7 +157,7 @@ class Feed:
             self._subscription = None
 
     def _note_publisher(self, publisher: EndpointInfo, present: bool) -> None:
-        """Subscribe anew if the publishers offer something else now."""
+        """Subscribe again if the publishers now offer something else."""
         if present:
             self._offered[publisher.gid] = publisher.qos
         else:

@@ -1,4 +1,4 @@
-"""Whose goals the gateway has sent: where one goes on without its owner, that is said."""
+"""Tracks whose goals the gateway has sent, to report goals that continue without their owner."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 __all__ = ["GoalOwners"]
 
 MOST_GOALS: Final = 10_000
-"""Goals whose owners are remembered, the newest ones."""
+"""Number of goals whose owners are remembered, newest first."""
 
 WARN_SEC: Final = 1.0
 """The time between two warnings, in seconds; the audit log has a line for each goal."""

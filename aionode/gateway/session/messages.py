@@ -42,7 +42,7 @@ def as_message(
 
 
 def least_bytes(cls: Any, values: object) -> int:
-    """Return how many bytes the messages in the lists of a message take at least, if empty."""
+    """Return the minimum size of the messages in a message's lists, in bytes."""
     if isinstance(values, list):
         values = dict(zip((field.name for field in fields(cls)), values, strict=False))
     if not isinstance(values, Mapping):
@@ -77,7 +77,7 @@ def large_message(cls: Any, values: Any, clock: Clock, most_bytes: int) -> Any:
     from aionode.engine.wire import cdr  # few clients send large messages
 
     least = least_bytes(cls, values)
-    if least > most_bytes:  # the empty messages alone would take the memory
+    if least > most_bytes:  # the empty messages alone would use up the memory
         raise MessageError(cls.__ros_type__, f"takes {least} bytes, at most {most_bytes} fit")
     message = as_message(cls, values, clock)
     size = len(cdr.encode(message))

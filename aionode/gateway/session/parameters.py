@@ -34,7 +34,7 @@ MOST_ASKED: Final = 8
 
 
 class NodeParameters:
-    """Reads and sets parameters of nodes, as far as the policy allows.
+    """Reads and sets parameters of nodes, as far as the policy permits.
 
     Args:
         robot: Has the node that asks.
@@ -111,7 +111,7 @@ class NodeParameters:
         return dict(sorted(names_of.items()))
 
     async def get(self, node: str, names: list[str]) -> dict[str, Parameter]:
-        """Return parameters by name; those that are not declared are left out.
+        """Return parameters by name, omitting those that are not declared.
 
         Raises:
             RefusedError: the client may not see one of them.

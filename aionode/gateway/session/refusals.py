@@ -1,6 +1,6 @@
-"""What a gateway refuses or drops of its clients, or reads late: each has a number and a log line.
+"""What a gateway refuses, drops or reads late: each kind has a count and a log line.
 
-Each place that does so goes through `Refusals`, mostly by `Session.note`.
+All such places go through `Refusals`, mostly through `Session.note`.
 """
 
 from __future__ import annotations
@@ -52,15 +52,15 @@ class Refusal(enum.Enum):
     UNSUPPORTED = "unsupported"
     # Others
     INVALID = "invalid_message"
-    """What the client has sent is no op, or no message of its type."""
+    """The client sent something that is not an op, or not a message of its type."""
     FAILED = "failed"
-    """What it asked for has failed: nobody knows the type, or nobody has answered."""
+    """A request failed: no node knows the type, or nothing has answered."""
     IGNORED = "ignored"
     """It has no effect."""
     UNREADABLE = "unreadable"
-    """A message for the client is none of its type."""
+    """A message for the client is not valid for its type."""
     SLOW = "slow"
-    """Messages for the client were dropped, as it reads more slowly than they come."""
+    """Messages for the client were dropped because it reads too slowly."""
     LATE = "late"
     """The gateway reads the client later than it sends."""
     DISCONNECTED = "disconnected"
@@ -155,7 +155,7 @@ class Refusals:
         return self._windows.setdefault(client, Window(now_ns + WAIT_NS))
 
     def _tell_left_out(self, client: tuple[str, str], count: int) -> None:
-        """Say how many lines about a client were left out in its window."""
+        """Log how many lines about a client were omitted in its window."""
         if count:
             name, place = client
             who = name or (f"unknown client ({place})" if place else "unknown clients")

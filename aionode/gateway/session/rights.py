@@ -1,4 +1,4 @@
-"""What a client may do: every part of its session asks here before it touches the robot."""
+"""What a client may do: all parts of its session check here before they touch the robot."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Rights:
         identity: Who the client is; a new policy may know it by another name.
         kind: The way in.
         ask: Asks a person about the client; None for the way that all clients have.
-        refused: How many things the client was refused.
+        refused: Number of times the client was refused something.
         refused_cheaply: How many of these were commands that came too late, or on a topic in use.
     """
 
@@ -150,16 +150,16 @@ class Rights:
 
     @contextmanager
     def one_more(self, verb: str, name: str, what: str, held: Sized, most: int) -> Iterator[None]:
-        """Count one more of what a client may have so many of, while the block makes it.
+        """Count one more of something that a client may have a limited number of, during the block.
 
         Those that are being made count, too: several at once would each find the last place.
 
         Args:
             verb: What the client does.
             name: With what.
-            what: What there may be so many of.
+            what: What is limited.
             held: Those that are made.
-            most: How many there may be.
+            most: The limit.
 
         Raises:
             RefusedError: there are as many.
@@ -205,7 +205,7 @@ class Rights:
         return parameter if changed == parameter.value else Parameter(parameter.name, value=changed)
 
     def check_seen(self, node: str, names: Iterable[str]) -> None:
-        """Refuse to tell anything of parameters that the client may not see.
+        """Refuse to reveal anything about parameters that the client may not see.
 
         Raises:
             RefusedError: it may not see one of them.

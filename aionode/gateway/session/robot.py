@@ -113,7 +113,7 @@ class Robot:
         return now[full]
 
     async def _find_type(self, full: str) -> Any:
-        """Return the class of a type by its full name, once made for all nodes that use the same.
+        """Return the class of a type by its full name, created once for all nodes that use it.
 
         Raises:
             InterfaceNotFoundError: see `find_type`.
@@ -158,7 +158,7 @@ class Rates:
 
 
 class Bucket:
-    """A token bucket: so many a second, and a second's worth at once, but at least one."""
+    """A token bucket: a rate per second, with a burst of one second's worth, but at least one."""
 
     def __init__(self, rate_hz: float, now_ns: Callable[[], int]) -> None:
         self.rate_hz = rate_hz
@@ -167,7 +167,7 @@ class Bucket:
         self._at_ns = now_ns()
 
     def wait_sec(self) -> float:
-        """Take one, and return 0; without one, return after how many seconds there is one."""
+        """Take a token and return 0; if there is none, return how long to wait, in seconds."""
         now_ns = self._now_ns()
         passed = (now_ns - self._at_ns) / S_TO_NS
         self._tokens = min(self._room, self._tokens + passed * self.rate_hz)

@@ -33,7 +33,7 @@ class Served:
 def serve(
     node: Node, service: str, cls: Any, answer: Callable[[Any], Awaitable[Any]], most: int
 ) -> Served:
-    """Offer a service whose requests `answer` answers; at most so many at once."""
+    """Offer a service whose requests are answered by `answer`, with a concurrency limit."""
 
     async def handle(request: Any) -> Any:
         return as_message(cls.Response, await answer(request), node.get_clock())

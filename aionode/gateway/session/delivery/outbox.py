@@ -1,4 +1,4 @@
-"""The frames that wait for one client: a bounded queue for each topic, which slows nobody else."""
+"""The frames waiting for one client: a bounded queue per topic, which slows down nobody else."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["Frame", "LongFrame", "Outbox", "binary_frame"]
 
 
 class LongFrame:
-    """A long frame in pieces: putting them together would take time, and memory once more.
+    """A long frame in pieces: joining them would take time, and twice the memory.
 
     Attributes:
-        pieces: What it consists of; text in UTF-8.
+        pieces: Its parts; text in UTF-8.
         is_text: Whether it is text.
     """
 
@@ -71,8 +71,8 @@ class Outbox:
             oldest frames.
 
     Attributes:
-        dropped: How many frames were dropped, by key.
-        sent: How many frames have left.
+        dropped: Number of frames dropped, by key.
+        sent: Number of frames sent.
         overflowed: Whether it was closed because the client reads no answers.
         direct: Sends a frame at once, if it can, and returns whether it did: while nothing waits, a
             frame needs no turn of the task that writes. None if there is no such way.
@@ -110,7 +110,7 @@ class Outbox:
         Args:
             key: Which queue it belongs to, such as the name of the topic.
             frame: The frame.
-            depth: How many frames of this key may wait.
+            depth: Maximum number of waiting frames with this key.
         """
         if self._closed:
             return
@@ -181,7 +181,7 @@ class Outbox:
         return not (self._turns or self._answers or self._is_leaving)
 
     def next_frame(self) -> Frame | None:
-        """Take the frame that is to leave next; None if nothing waits."""
+        """Remove and return the next frame to send; None if nothing waits."""
         if self._answers:
             answer = self._answers.popleft()
             self._answer_bytes -= len(answer)

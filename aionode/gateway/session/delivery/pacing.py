@@ -1,4 +1,4 @@
-"""Messages that come faster than their client wants them: the newest wait for their time."""
+"""Limits the rate of messages to a client; the newest ones wait for their time."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class Pacing:
     Args:
         time_base: Drives it.
         period_ns: The shortest time between two messages, in nanoseconds.
-        deliver: Takes each message when its time has come.
-        depth: How many messages may wait.
+        deliver: Called with each message when its time has come.
+        depth: Maximum number of waiting messages.
     """
 
     def __init__(
@@ -44,7 +44,7 @@ class Pacing:
         self._alarm: Alarm | None = None  # while messages wait
 
     def put(self, received: Received) -> None:
-        """Deliver a message if its time has come, or else have it wait; the oldest make room."""
+        """Deliver a message if its time has come, otherwise queue it; the oldest are dropped."""
         if self._alarm is None and self._time_base.steady_ns() >= self._due_ns:
             self._send(received)
             return

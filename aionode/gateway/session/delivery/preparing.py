@@ -20,10 +20,10 @@ __all__ = ["LARGE_BYTES", "Prepare", "Preparing", "prepared"]
 logger = logging.getLogger("aionode.gateway")
 
 Prepare: TypeAlias = Callable[["Received"], Awaitable[None]]
-"""Encodes a message while the event loop turns; what it makes is kept in the message."""
+"""Encodes a message while the event loop runs; the result is kept in the message."""
 
 LARGE_BYTES: Final = 128 << 10
-"""Bytes of a message up to which it is encoded at once, in half a millisecond."""
+"""Size up to which a message is encoded directly, in half a millisecond."""
 
 MOST_BYTES: Final = 32 << 20
 """Messages of one subscription that may wait to be encoded; beyond it the oldest is dropped."""
@@ -38,11 +38,11 @@ class Preparing:
         robot: Has the turns, and runs the task.
         prepare: Encodes a message.
         deliver: Takes each message once it is encoded.
-        depth: How many messages may wait.
+        depth: Maximum number of waiting messages.
         on_drop: Called when a message is dropped, unless only the newest was wanted.
 
     Attributes:
-        dropped: How many messages were dropped.
+        dropped: Number of messages dropped.
     """
 
     def __init__(
@@ -64,7 +64,7 @@ class Preparing:
         self._task: asyncio.Task[None] | None = None
 
     def put(self, received: Received) -> None:
-        """Take a message; it is delivered at once if it is small, and nothing waits."""
+        """Add a message, which is delivered immediately if it is small and nothing waits."""
         if self._task is None and len(received.raw) <= LARGE_BYTES:
             self._deliver(received)
             return
@@ -98,7 +98,7 @@ class Preparing:
             try:
                 await prepared(self._robot, self._prepare, received)
                 self._deliver(received)
-            except Exception:  # the task belongs to the gateway, which goes on
+            except Exception:  # the task belongs to the gateway, which continues
                 self.dropped += 1
                 logger.exception("%s: a message could not be encoded", received.topic)
         self._task = None

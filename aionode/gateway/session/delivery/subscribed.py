@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Subscribed"]
 
 EVENT: Final = "rcl_interfaces/msg/ParameterEvent"
-"""Has values of parameters, of which a client may not see each."""
+"""Contains parameter values, some of which a client may not be allowed to see."""
 
 
 class Subscribed:
@@ -38,7 +38,7 @@ class Subscribed:
         message_class: The class of its messages.
         frame: Returns the frame of a message, or None for none.
         key: Which queue of the outbox the frames wait in.
-        depth: How many may wait there.
+        depth: Maximum number of frames waiting there.
         min_period_sec: The shortest time between two messages, in seconds.
         prepare: Encodes a large message; None if `frame` does.
         on_close: Called when it is closed.
@@ -48,8 +48,8 @@ class Subscribed:
         type_name: The name of its type.
         message_class: The class of its messages.
         key: Which queue of the outbox its frames wait in.
-        failed: How many messages had no frame, because they are malformed.
-        take: Takes each message of the topic.
+        failed: Number of messages that could not be encoded because they are malformed.
+        take: Called with each message of the topic.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class Subscribed:
             self.take = partial(self._take_seen, self.take)
 
     def open(self, qos: QoSProfile | None) -> None:
-        """Take the messages of the topic from now on; see `Feeds.add` for what it raises."""
+        """Receive the messages of the topic from now on; see `Feeds.add` for what it raises."""
         self._leave = self._robot.feeds.add(self.topic, self.message_class, qos, self.take)
 
     @property
@@ -104,7 +104,7 @@ class Subscribed:
         return unprepared + self._outbox.dropped.get(self.key, 0)
 
     def _take_seen(self, take: Callable[[Received], None], received: Received) -> None:
-        """Take of an event of parameters what the client may see."""
+        """Pass on the part of a parameter event that the client may see."""
         try:
             seen = seen_event(self._rights, received)
         except AionodeError as error:

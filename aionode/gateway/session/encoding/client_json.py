@@ -34,10 +34,10 @@ def decoded(text: str | bytes | memoryview, most_parts: int, what: str = "frame"
         text: The JSON.
         most_parts: How many objects and lists it may have: an empty object of two characters may
             become a message of some kilobytes.
-        what: What it is, for errors.
+        what: The name of the data, for errors.
 
     Raises:
-        MessageError: it is no JSON, is nested too deeply, or has too many parts.
+        MessageError: it is not JSON, is nested too deeply, or has too many parts.
     """
     octets = text.encode("utf-8", "surrogatepass") if isinstance(text, str) else bytes(text)
     check_parts(octets, most_parts, what)
@@ -66,12 +66,12 @@ def check_parts(octets: bytes, most: int, what: str = "frame") -> None:
 
 
 def brackets(octets: bytes) -> int:
-    """Return how many brackets are opened."""
+    """Count the opening brackets."""
     return octets.count(b"{") + octets.count(b"[")
 
 
 def without_texts(octets: bytes) -> bytes:
-    """Return JSON without the texts in it, each of which is between two quotation marks."""
+    """Return JSON without its strings, each of which is between two quotation marks."""
     plain = octets.replace(rb"\\", b"").replace(rb"\"", b"")
     return b"".join(plain.split(b'"')[::2])
 
@@ -99,7 +99,7 @@ def check_items(value: object, what: str) -> None:
 
 
 def is_large(values: object) -> bool:
-    """Return whether it takes long to make a message of values, or of its bytes."""
+    """Return whether converting values, or their bytes, to a message takes long."""
     if isinstance(values, bytes | bytearray | memoryview):
         return len(values) > LARGE_BYTES
     waiting, count = [values], 0

@@ -1,4 +1,4 @@
-"""JSON of large messages, which is written in slices while the event loop turns.
+"""Writes JSON of large messages in slices, while the event loop runs in between.
 
 JSON of an image of 6 MB takes some 20 ms. A thread is no remedy: what writes JSON holds the GIL, so
 that the loop would wait for it each time that it has read a socket.
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["base64_in_turns", "json_in_turns", "pieces_of", "prepare_json"]
 
 OCTETS: Final = frozenset({"uint8", "char"})
-"""Kinds of numbers whose arrays are base64 text in JSON."""
+"""Kinds of numbers whose arrays are Base64 text in JSON."""
 
 HOLE: Final = b"\0"
-"""A character that JSON has nowhere: control characters are escaped."""
+"""A character that never occurs in JSON, as control characters are escaped."""
 
 SLICE_BYTES: Final = 192 << 10
 """Bytes that are written between two turns of the loop, in a quarter of a millisecond;

@@ -1,4 +1,4 @@
-"""Values of parameters in JSON, which tells no double from an integer, nor what a list has."""
+"""Parameter values in JSON, which distinguishes neither doubles from integers nor list types."""
 
 from __future__ import annotations
 
