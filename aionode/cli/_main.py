@@ -48,6 +48,7 @@ NOUNS = {
     "system": "Show what runs in a system; stop and restart its members.",
     "teleop": "Drive a robot from the keyboard.",
     "tf": "Show and publish transforms between frames.",
+    "top": "Show what all processes of a robot do.",
     "topic": "List, print, publish and measure topics.",
 }
 """One line of help per noun; the noun's module holds its command, e.g. ``topic_command``."""
