@@ -102,7 +102,7 @@ def mcp_command(ctx: click.Context, /, host: str | None, **options: Any) -> None
         click.echo(settings(host, sys.argv[1:]), nl=False)
         return
     verb = partial(serve, **checked(ctx, options))
-    run_verb(verb, node_name=f"mcp_{os.getpid()}", endless=True, asks=False)
+    run_verb(verb, node_name=f"mcp_{os.getpid()}", endless=True)
 
 
 @mcp_command.command("try")
