@@ -90,11 +90,11 @@ def test_namespaces_of_bridges_are_limited(caplog: pytest.LogCaptureFixture) -> 
 
     assert len(state._served) == 100
     assert len(state.prefixes) == 101
-    assert caplog.text.count("more than 100 namespaces") == 2  # the first, and the tenth
+    assert caplog.text.count("more than 100 namespaces") == 1
 
 
 def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> None:
-    """The log says a few times that something was left out, and which limit it was."""
+    """The log says once in a while that something was left out, and which limit it was."""
     limit = AnnouncedLimit(LIMIT)
     count = taken(limit, "a", 10_000)
     for number in range(count):
@@ -102,8 +102,8 @@ def test_what_has_gone_leaves_its_place(caplog: pytest.LogCaptureFixture) -> Non
 
     assert taken(limit, "a", 10_000) == count
     assert limit.left_out == 2 * (10_000 - count)
-    assert len(caplog.records) == len(str(limit.left_out))
-    assert all("AIONODE_GRAPH_BYTES" in text for text in caplog.messages)
+    (line,) = caplog.messages
+    assert "AIONODE_GRAPH_BYTES" in line
 
 
 async def test_a_flood_is_left_out_of_the_graph_and_has_its_place_when_there_is_room(
