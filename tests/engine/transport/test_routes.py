@@ -43,7 +43,7 @@ async def test_a_linked_subscription_is_reached_both_ways_beside_an_unannounced_
         await numbers.until_linked()
         assert list(numbers.publisher.stats.routes.values()) == ["link"]
         with raw_session():
-            await numbers.go_until(writer_of(numbers.publisher).update)
+            await numbers.go_until(writer_of(numbers.publisher).routes.update)
             assert list(numbers.publisher.stats.routes.values()) == ["link and zenoh"]
 
 

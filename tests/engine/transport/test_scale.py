@@ -93,7 +93,7 @@ async def test_a_subscription_of_another_process_concerns_publishers_of_its_name
 
         for publisher in (near, *far):
             writer: Any = writers_of(publisher)[1]
-            writer.reconsider = note(publisher.topic_name)
+            writer.routes.reconsider = note(publisher.topic_name)
         nodes.b.create_subscription(Int32, "near", None, 10)
         await near.wait_for_subscribers()
         assert set(asked) == {near.topic_name}

@@ -242,7 +242,7 @@ class LinkManager:
         writer = self.writers.get(gid)
         if writer is not None:
             self.writers.remove(gid)
-            self._peer_directory.forget(writer.endpoint, writer.reconsider)
+            self._peer_directory.forget(writer.endpoint, writer.routes.reconsider)
         self.readers.remove(gid)
         self.servers.pop(gid, None)
         self.requesters.pop(gid, None)
@@ -274,7 +274,7 @@ class LinkManager:
 
     def _on_unannounced_peers(self, _: bool) -> None:
         for writer in self.writers.values():
-            writer.reconsider()
+            writer.routes.reconsider()
 
     def on_endpoint(self, endpoint: EndpointInfo) -> None:
         """Handle a new endpoint, of this context or another."""
@@ -284,7 +284,7 @@ class LinkManager:
         if endpoint.node.participant != self.participant:
             if endpoint.kind is EndpointKind.SUBSCRIPTION:
                 for writer in self.writers.named(endpoint.name):
-                    writer.reconsider()
+                    writer.routes.reconsider()
             self._consider(endpoint.node.participant, endpoint, readers)
             return
         new = [reader for reader in readers if reader.endpoint is endpoint]

@@ -13,12 +13,12 @@ from aionode.engine.transport.link._protocol import (
     Gone,
     Opened,
 )
+from aionode.engine.transport.link._routes import LinkRoutes
 from aionode.engine.transport.link._send_queue import DATA, LinkSendQueue, RemoteSubscription
 from aionode.engine.transport.link._shared_memory import SHARED_FROM
 from aionode.engine.transport.link._stop import LinkStop
 from aionode.engine.wire import cdr
 from aionode.engine.wire.cdr._layout import has_views
-from aionode.graph import EndpointKind
 from aionode.qos import ReliabilityPolicy, depth_of, keeps_all
 
 if TYPE_CHECKING:
@@ -42,6 +42,9 @@ class LinkWriter(Writer):
         endpoint: The publisher.
         msg_type: The type of its messages.
         zenoh: Its registration with Zenoh.
+
+    Attributes:
+        routes: The routes of its messages.
     """
 
     def __init__(
@@ -54,20 +57,12 @@ class LinkWriter(Writer):
         self._zenoh = zenoh
         self._msg_type = msg_type
         self._reliable = endpoint.qos.resolved().reliability is ReliabilityPolicy.RELIABLE
-        # One per process that asked for the messages; removed when its last subscription leaves,
-        # the link ends, or the publisher is destroyed.
-        self._send_queues: dict[Connection, LinkSendQueue] = {}
-        # The number of the last message that was encoded for any route.
-        self._sequence = 0
-        # The same for `write`, as a broken one may be removed during iteration.
+        self.routes = LinkRoutes(registry, endpoint)
+        # Their send queues, for `write`: a broken one may be removed during iteration.
         self._targets: tuple[LinkSendQueue, ...] = ()
         # Encodes messages in one piece; None if there is no link, or if `_write_views` has to
         # handle them.
         self._encode: Callable[[Any], bytes] | None = None
-        # Whether Zenoh has to carry messages too, because a matched subscription has not switched.
-        self._needs_zenoh = True
-        # The registry's `changes` when that was computed; -1 to recompute it.
-        self._asked_at = -1
         # Messages dropped by send queues that were removed.
         self._dropped = 0
 
@@ -79,27 +74,29 @@ class LinkWriter(Writer):
     @property
     def dropped(self) -> int:
         """The number of messages dropped because a link or Zenoh was slow."""
-        linked = sum(send_queue.dropped for send_queue in self._send_queues.values())
+        linked = sum(send_queue.dropped for send_queue in self.routes.send_queues.values())
         return self._dropped + linked + self._zenoh.dropped
 
     def route_of(self, reader: EndpointInfo) -> str | None:
         """Return ``link``, ``zenoh``, or both while another subscription still needs Zenoh."""
-        if not any(reader.gid in send_queue.readers for send_queue in self._send_queues.values()):
+        if not any(
+            reader.gid in send_queue.readers for send_queue in self.routes.send_queues.values()
+        ):
             return self._zenoh.route_of(reader)
-        return "link and zenoh" if self.update() else "link"
+        return "link and zenoh" if self.routes.update() else "link"
 
     @property
     def linked(self) -> int:
         """The number of subscriptions that receive only over a link."""
         return sum(
             reader.switched
-            for send_queue in self._send_queues.values()
+            for send_queue in self.routes.send_queues.values()
             for reader in send_queue.readers.values()
         )
 
     def write(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send `msg` over each route that a subscription needs."""
-        encode = self._encode
+        encode, routes = self._encode, self.routes
         if encode is not None:
             payload = encode(msg)
             size = len(payload)
@@ -111,14 +108,14 @@ class LinkWriter(Writer):
                     send_queue.send(sequence, data)
             else:
                 self._write_parts([payload], sequence, source_ns)
-            self._sequence = sequence
+            routes.sequence = sequence
         elif self._targets:
             self._write_views(msg, sequence, source_ns)
-            self._sequence = sequence
-        if self._needs_zenoh and self.update():
+            routes.sequence = sequence
+        if routes.needs_zenoh and routes.update():
             if self._zenoh.active:
                 self._zenoh.write(msg, sequence, source_ns)
-            self._sequence = sequence
+            routes.sequence = sequence
 
     def _write_views(self, msg: Any, sequence: int, source_ns: int) -> None:
         """Send a message whose type may contain arrays over links, without copying them."""
@@ -127,7 +124,7 @@ class LinkWriter(Writer):
 
     def _targets_changed(self) -> None:
         """Decide how to send from the next message on."""
-        self._targets = tuple(self._send_queues.values())
+        self._targets = tuple(self.routes.send_queues.values())
         self._encode = None
         if self._targets and not has_views(self._msg_type):
             self._encode = cdr.encoder(self._msg_type)
@@ -148,7 +145,7 @@ class LinkWriter(Writer):
     def prepare_stop(self, stop: Any, is_last: Callable[[], bool]) -> StopSender:
         """Return an object that sends the stop of a lease."""
         payload = cdr.encoder(self._msg_type)(stop)
-        return LinkStop(self, payload, self._zenoh.prepare_stop(stop, is_last))
+        return LinkStop(self.routes, self._gid, payload, self._zenoh.prepare_stop(stop, is_last))
 
     def assert_liveliness(self) -> None:
         """Tell the subscriptions of other contexts over Zenoh, which reaches all of them."""
@@ -156,15 +153,14 @@ class LinkWriter(Writer):
 
     def has_room(self) -> bool:
         """Whether another message could be sent without dropping any."""
-        return all(send_queue.has_room() for send_queue in self._send_queues.values()) and (
-            not (self._needs_zenoh and self.update()) or self._zenoh.has_room()
+        return all(send_queue.has_room() for send_queue in self.routes.send_queues.values()) and (
+            not (self.routes.needs_zenoh and self.routes.update()) or self._zenoh.has_room()
         )
 
     async def drain(self) -> None:
         """Wait until everything was passed to the operating system, or to Zenoh."""
-        while slow := [
-            send_queue for send_queue in self._send_queues.values() if not send_queue.is_done()
-        ]:
+        send_queues = self.routes.send_queues
+        while slow := [each for each in send_queues.values() if not each.is_done()]:
             await slow[0].connection.progress()
         await self._zenoh.drain()
 
@@ -173,17 +169,17 @@ class LinkWriter(Writer):
         self._registry.remove(self._gid)
         self._zenoh.close()
         gone = Gone(self._gid).pack()
-        for send_queue in self._send_queues.values():
+        for send_queue in self.routes.send_queues.values():
             send_queue.end(gone)
             self._registry.keep(self._gid, send_queue)
-        self._send_queues.clear()
+        self.routes.send_queues.clear()
         self._targets_changed()
 
     # Control frames of subscriptions at the other end of a link
 
     def open(self, connection: Connection, asked: Open) -> None:
         """Send to a subscription from the next message on."""
-        send_queue = self._send_queues.get(connection)
+        send_queue = self.routes.send_queues.get(connection)
         if send_queue is None:
             send_queue = LinkSendQueue(
                 self._gid,
@@ -192,7 +188,7 @@ class LinkWriter(Writer):
                 depth_of(self.endpoint.qos),
                 keep_all=self.bounded,
             )
-            self._send_queues[connection] = send_queue
+            self.routes.send_queues[connection] = send_queue
         send_queue.add(
             asked.subscription,
             RemoteSubscription(
@@ -200,74 +196,46 @@ class LinkWriter(Writer):
                 if self.bounded
                 else 0,  # KEEP_LAST drops its oldest instead of waiting
                 0,
-                self._sequence,
+                self.routes.sequence,
                 confirms=asked.confirms and self._reliable,
             ),
         )
         self._targets_changed()
-        connection.send(Opened(self._gid, asked.subscription, self._sequence))
-        self.reconsider()
+        connection.send(Opened(self._gid, asked.subscription, self.routes.sequence))
+        self.routes.reconsider()
 
     def switched(self, connection: Connection, reader: bytes) -> None:
         """Stop sending to `reader` over Zenoh."""
-        send_queue = self._send_queues.get(connection)
+        send_queue = self.routes.send_queues.get(connection)
         if send_queue is not None and reader in send_queue.readers:
             send_queue.readers[reader].switched = True
-            self.reconsider()
+            self.routes.reconsider()
 
     def credit(self, connection: Connection, credit: Credit) -> None:
         """Handle credit from a subscription."""
-        send_queue = self._send_queues.get(connection)
+        send_queue = self.routes.send_queues.get(connection)
         if send_queue is not None:
             send_queue.credit(credit)
 
     def leave(self, connection: Connection, reader: bytes) -> None:
         """Stop sending to `reader`."""
-        send_queue = self._send_queues.get(connection)
+        send_queue = self.routes.send_queues.get(connection)
         if send_queue is None:
             return
         send_queue.remove(reader)
         if not send_queue.readers:
             self._forget(connection)
-        self.reconsider()
+        self.routes.reconsider()
 
     def broken(self, connection: Connection) -> Iterator[bytes]:
         """Stop using a closed `connection`; yield the frames that may not have arrived."""
         send_queue = self._forget(connection)
-        self.reconsider()
+        self.routes.reconsider()
         return iter(()) if send_queue is None else send_queue.unacked()
 
     def _forget(self, connection: Connection) -> LinkSendQueue | None:
-        send_queue = self._send_queues.pop(connection, None)
+        send_queue = self.routes.send_queues.pop(connection, None)
         if send_queue is not None:
             self._dropped += send_queue.dropped
             self._targets_changed()
         return send_queue
-
-    def reconsider(self) -> None:
-        """Make the next message check whether any subscription needs Zenoh.
-
-        Not done now: with many subscriptions to one topic, each of them would check all.
-        """
-        self._needs_zenoh = True
-        self._asked_at = -1
-
-    def update(self) -> bool:
-        """Return whether a subscription needs Zenoh: it has not switched, or is unannounced."""
-        registry = self._registry
-        if not self._send_queues:
-            self._needs_zenoh = True
-        elif self._asked_at != registry.changes:
-            self._asked_at = registry.changes
-            switched = {
-                gid
-                for send_queue in self._send_queues.values()
-                for gid, reader in send_queue.readers.items()
-                if reader.switched
-            }
-            self._needs_zenoh = any(
-                other.gid not in switched
-                for other in registry.remote(EndpointKind.SUBSCRIPTION, self.endpoint.name)
-                if self.endpoint.matches(other)
-            ) or registry.may_be_heard(self.endpoint, self.reconsider)
-        return self._needs_zenoh

@@ -68,7 +68,7 @@ async def test_a_stream_changes_to_the_link_and_leaves_zenoh() -> None:
     async with two_nodes() as nodes:
         numbers = Counting(nodes)
         await numbers.until_linked()
-        assert not writer_of(numbers.publisher).update()
+        assert not writer_of(numbers.publisher).routes.update()
         await numbers.go(500)
         assert numbers.subscription.stats.lost == 0
 
@@ -147,7 +147,7 @@ async def test_what_was_in_a_broken_link_reaches_each_reader_once() -> None:
             samples = Collector()
             subscriber = session.declare_subscriber(NUMBERS, samples)
             # until the unannounced peer is known
-            await until(lambda: writer_of(numbers.publisher).update())
+            await until(writer_of(numbers.publisher).routes.update)
             while not samples.items:
                 numbers.publish()
                 await checkpoint()
@@ -288,14 +288,14 @@ async def test_what_a_link_brings_and_nobody_can_read_has_a_number_and_a_line(
     assert sum("unknown form" in text for text in caplog.messages) == 2
 
 
-async def test_retransmissions_that_cannot_be_read_are_reported_a_few_times(
+async def test_retransmissions_that_cannot_be_read_are_reported_once_in_a_while(
     folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     """Any process on the network may send any number of them."""
     async with quiet_node("one") as node:
         for _ in range(500):
             manager_of(node).on_retransmit(b"no frame at all" * 10)
-    assert sum("retransmitted" in text for text in caplog.messages) == 3  # 1, 10 and 100
+    assert sum("retransmitted" in text for text in caplog.messages) == 1
 
 
 async def test_unknown_clients_of_the_socket_get_no_link_and_stop_nothing(folder: Path) -> None:
@@ -524,7 +524,7 @@ async def test_images_come_in_shared_memory_that_is_used_again() -> None:
     """Read in place, unchanged as long as anything refers to them, and released afterwards."""
     async with two_nodes() as nodes:
         publisher, subscription = await linked_images(nodes)
-        assert not writer_of(publisher).update()  # and Zenoh is spared
+        assert not writer_of(publisher).routes.update()  # and Zenoh is spared
         kept = []
         for number in range(1, 6):
             publisher.publish(image(number))

@@ -96,7 +96,9 @@ class Linked:
 
     async def until_it_needs_zenoh(self, needed: bool) -> None:
         """Go on until messages go to Zenoh as well, or do not."""
-        await self.numbers.go_until(lambda: writer_of(self.numbers.publisher).update() == needed)
+        await self.numbers.go_until(
+            lambda: writer_of(self.numbers.publisher).routes.update() == needed
+        )
 
     async def until_zenoh_knows_others(self) -> None:
         """Wait until the session that sends knows of a subscriber to all topics of the domain.
