@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from aionode import errors
 from aionode.arguments import parse_arguments
 from aionode.engine.context import Context
 from aionode.errors import MessageError, NameValidationException, ServiceError, brief, shortened
@@ -92,3 +95,21 @@ def test_an_error_that_quotes_another_process_shows_its_control_characters() -> 
 
     assert "\\x1b[2Jall is well\\r\\x9b31m\\u202e\n\tat line 3" in str(error)
     assert error.error_text.startswith("\x1b")
+
+
+@pytest.mark.parametrize("module", ["_calls", "_nodes"])
+def test_errors_that_commands_print_advise_no_code(module: str) -> None:
+    """Whoever calls a service or sends a goal from a terminal cannot await anything."""
+    tree = ast.parse((Path(errors.__file__).parent / f"{module}.py").read_text())
+    documented = ast.Module | ast.ClassDef | ast.FunctionDef
+    docs = {
+        ast.get_docstring(node, clean=False)
+        for node in ast.walk(tree)
+        if isinstance(node, documented)
+    }
+    texts = [
+        node.value
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    assert [text for text in texts if text not in docs and "await " in text] == []
