@@ -1,4 +1,4 @@
-"""The resources of packages: files of which only the names count.
+"""The resources of packages: marker files of which only the names matter.
 
 A package of the workspace has the resource that says that it is there, as if it were installed into
 its source folder. After the folders of AMENT_PREFIX_PATH comes Python's own, for what pip installs.

@@ -48,7 +48,7 @@ def evaluate_condition_expression(
 
 
 class IfCondition(Condition):
-    """Holds if a text says true."""
+    """Holds if a text evaluates to true."""
 
     def __init__(self, predicate_expression: SomeSubstitutionsType) -> None:
         super().__init__()
@@ -60,7 +60,7 @@ class IfCondition(Condition):
 
 
 class UnlessCondition(IfCondition):
-    """Holds if a text says false."""
+    """Holds if a text evaluates to false."""
 
     def evaluate(self, context: LaunchContext) -> bool:
         """Return whether it holds."""
@@ -68,7 +68,7 @@ class UnlessCondition(IfCondition):
 
 
 class LaunchConfigurationEquals(Condition):
-    """Holds if a launch configuration has a value; None: if there is no such configuration."""
+    """Holds if a launch configuration has a value; None means that it does not exist."""
 
     def __init__(
         self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None

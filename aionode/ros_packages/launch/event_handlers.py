@@ -65,7 +65,7 @@ class OnActionEventBase(BaseEventHandler):
 
 
 class OnMoment(OnActionEventBase):
-    """Reacts to a moment in the life of an action, as the argument says that has its name."""
+    """Reacts to a moment in the life of an action, selected by the argument with its name."""
 
     _OnMoment__argument = ""
     _OnMoment__event_cls: type[Event]

@@ -58,11 +58,11 @@ class LaunchContext:
         self.declared: set[str] = set()
         """The arguments that have been declared."""
         self.left_out: dict[str, list[Any]] | None = None
-        """The entities that were left out, by the package that is not there; None if an error."""
+        """The entities that were skipped, by missing package; None if that is an error."""
         self.ahead = False
         """Whether what is evaluated is done later."""
         self.visited = 0
-        """How many entities the present evaluation has visited."""
+        """Number of entities visited by the current evaluation."""
         self.names: dict[str, int] = {}
         """The number of processes that each name had so far."""
         self._configurations: list[dict[str, Any]] = []
@@ -151,7 +151,7 @@ class LaunchContext:
         self.environment = self._environments.pop()
 
     def reset_environment(self) -> None:
-        """Make the environment that of this process again."""
+        """Reset the environment to that of this process."""
         self.environment.clear()
         self.environment.update(os.environ)
 

@@ -28,14 +28,14 @@ class LaunchService:
         self.context = LaunchContext(argv=argv, noninteractive=noninteractive)
         self.shuts_down_when_idle = True
         self.included: list[LaunchDescriptionEntity] = []
-        """Descriptions that the engine has not taken yet."""
+        """Descriptions that the engine has not processed yet."""
         self.wake: Callable[[], object] = int
         """Called in the loop's thread when there is something more in `included`."""
         self.event_loop: asyncio.AbstractEventLoop | None = None
         self.task: asyncio.Task[Any] | None = None
 
     def include_launch_description(self, launch_description: LaunchDescriptionEntity) -> None:
-        """Run a description as well; it may be called in any thread."""
+        """Also run this description; may be called from any thread."""
         self.included.append(launch_description)
         if self.event_loop is not None:
             self.event_loop.call_soon_threadsafe(self.wake)

@@ -10,7 +10,7 @@ __all__ = ["LaunchConfig", "get_logger", "launch_config"]
 
 
 class LaunchConfig:
-    """What programs ask of launch's log."""
+    """The settings of launch's log that programs use."""
 
     @property
     def level(self) -> int:

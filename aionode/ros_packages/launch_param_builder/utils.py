@@ -23,7 +23,7 @@ __all__ = [
 ParameterValueType: TypeAlias = (
     str | int | float | bool | list[str] | list[int] | list[float] | list[bool] | bytes
 )
-"""What a parameter can be."""
+"""The possible types of a parameter."""
 
 
 class ParameterBuilderFileNotFoundError(KeyError):
@@ -43,12 +43,12 @@ def load_file(file_path: Path) -> str:
 
 
 def load_yaml(file_path: Path) -> Any:
-    """Return what a YAML file says."""
+    """Return the content of a YAML file."""
     return loaded_yaml(load_file(file_path))
 
 
 def load_xacro(file_path: Path, mappings: Mapping[str, str] | None = None) -> str:
-    """Return the XML that xacro makes of a file.
+    """Return the XML that xacro generates from a file.
 
     Raises:
         ModuleNotFoundError: xacro is not installed; the extra ``xacro`` brings it.

@@ -33,7 +33,7 @@ def text_or_none(context: LaunchContext, subs: SomeSubstitutionsType | None) -> 
 
 
 def is_absolute(namespace: str) -> bool:
-    """Return whether a namespace begins at the root."""
+    """Return whether a namespace starts at the root."""
     return namespace.startswith("/")
 
 

@@ -27,7 +27,7 @@ __path__: list[str] = []
 
 
 INDEX = "ament_index_python.packages"
-"""The module that knows packages: that of aionode, which knows the workspace as well."""
+"""The module that finds packages: aionode's, which also knows the workspace."""
 
 
 class FindPackage(Substitution):
@@ -37,7 +37,7 @@ class FindPackage(Substitution):
         self.package = normalize_to_list_of_substitutions(package)
 
     def find(self, package_name: str) -> str:
-        """Return the folder; programs call it themselves as well."""
+        """Return the folder; programs also call this directly."""
         raise NotImplementedError(f"{type(self).__name__}.find")
 
     def perform(self, context: LaunchContext) -> str:

@@ -42,13 +42,13 @@ class Stamps(message_filters.Stamps):
 
 
 class Subscriber(message_filters.Subscriber):
-    """Starts a chain: a subscription whose messages go to the filters that are connected to it.
+    """Starts a chain: a subscription that passes its messages to the connected filters.
 
     Args:
         node: The node that subscribes.
         msg_type: A message class.
         topic: Name of the topic.
-        options: What `Node.create_subscription` takes besides; `qos_profile` is 10 by default.
+        options: Further arguments of `Node.create_subscription`; `qos_profile` defaults to 10.
 
     Attributes:
         node: The node.
@@ -74,7 +74,7 @@ class Cache(message_filters.Cache):
 class TimeSynchronizer(Synchronizer):
     """Calls back with one message of each input, all with the same stamp.
 
-    The inputs may be called in several threads at once.
+    The inputs may be called from several threads at the same time.
     """
 
     def __init__(self, fs: Sequence[SimpleFilter], queue_size: int) -> None:
@@ -100,7 +100,7 @@ class TimeSynchronizer(Synchronizer):
 class ApproximateTimeSynchronizer(TimeSynchronizer):
     """Calls back with one message of each input, whose stamps differ by less than `slop` seconds.
 
-    The inputs may be called in several threads at once.
+    The inputs may be called from several threads at the same time.
     """
 
     def __init__(

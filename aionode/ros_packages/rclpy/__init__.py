@@ -82,7 +82,7 @@ class InitContextManager:
         return self
 
     def __exit__(self, *_: object) -> None:
-        # None, so that the next `init` makes a new default context.
+        # Reset to None, so that the next `init` creates a new default context.
         context = None if self.context is get_default_context() else self.context
         try_shutdown(context=context, uninstall_handlers=self.installed_signal_handlers)
 
@@ -172,8 +172,8 @@ def spin_once(
 
     Args:
         node: The node.
-        executor: What calls it; the global executor by default.
-        timeout_sec: The longest wait in seconds; None or negative for ever.
+        executor: The executor to use; the global executor by default.
+        timeout_sec: Maximum time to wait, in seconds; None or negative for no limit.
     """
     executor = get_global_executor() if executor is None else executor
     added = False
@@ -190,7 +190,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
     Args:
         node: The node.
-        executor: What calls them; the global executor by default.
+        executor: The executor to use; the global executor by default.
     """
     executor = get_global_executor() if executor is None else executor
     try:
@@ -212,8 +212,8 @@ def spin_until_future_complete(
     Args:
         node: The node.
         future: The future.
-        executor: What calls them; the global executor by default.
-        timeout_sec: The longest time in seconds; None or negative for ever.
+        executor: The executor to use; the global executor by default.
+        timeout_sec: Maximum time, in seconds; None or negative for no limit.
     """
     executor = get_global_executor() if executor is None else executor
     added = False

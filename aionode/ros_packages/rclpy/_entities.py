@@ -60,7 +60,7 @@ def in_use_by_node(
 
 
 class HandleOwner(Generic[HandleT]):
-    """Has a handle, which is destroyed at the end of ``with``."""
+    """An object with a handle, which is destroyed at the end of ``with``."""
 
     _handle: HandleT
 
@@ -124,7 +124,7 @@ def wait_until(is_ready: Callable[[], bool], context: Context, timeout_sec: floa
     Args:
         is_ready: Whether it is.
         context: Its shutdown ends the wait.
-        timeout_sec: The longest wait in seconds; None for ever.
+        timeout_sec: Maximum time to wait, in seconds; None for no limit.
 
     Returns:
         Whether it is ready.

@@ -59,10 +59,10 @@ class NodeGraph(GraphQueries):
     # Nodes
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Block the thread until a node of this name is there; return whether it is in time.
+        """Block the thread until a node with this name exists; return whether it does in time.
 
         Args:
-            fully_qualified_node_name: Namespace and name; the leading slash may be left out.
+            fully_qualified_node_name: Namespace and name; the leading slash may be omitted.
             timeout: The longest wait in seconds.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
@@ -110,7 +110,7 @@ class NodeGraph(GraphQueries):
 
 
 def info_of(endpoint: EndpointInfo) -> TopicEndpointInfo:
-    """Return what rclpy tells of an endpoint of a topic."""
+    """Return an endpoint of a topic as rclpy's info object."""
     return TopicEndpointInfo(
         node_name=endpoint.node.name,
         node_namespace=endpoint.node.namespace,
@@ -123,7 +123,7 @@ def info_of(endpoint: EndpointInfo) -> TopicEndpointInfo:
 
 
 def service_info_of(endpoint: EndpointInfo) -> ServiceEndpointInfo:
-    """Return what rclpy tells of a client or server."""
+    """Return a client or server as rclpy's info object."""
     return ServiceEndpointInfo(
         node_name=endpoint.node.name,
         node_namespace=endpoint.node.namespace,

@@ -72,7 +72,7 @@ def ready_entities(entities: list[Any], arrivals: Arrivals | None) -> list[Any]:
 
 
 def is_ready(waitable: Any, context: Any) -> bool:
-    """Whether something can be taken from a waitable."""
+    """Return whether something can be taken from a waitable."""
     wait_set = wait_set_of([waitable], context)
     wait_set.look()
     ready: bool = waitable.is_ready(wait_set)

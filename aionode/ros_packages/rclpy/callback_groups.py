@@ -39,7 +39,7 @@ class CallbackGroup:
         return weakref.ref(entity) in self.entities
 
     def can_execute(self, entity: Entity) -> bool:
-        """Return whether a call of the entity's callback may begin now."""
+        """Return whether a call of the entity's callback may start now."""
         raise NotImplementedError
 
     def beginning_execution(self, entity: Entity) -> bool:

@@ -69,7 +69,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
 
         Args:
             request: The request.
-            timeout_sec: The longest wait in seconds; None for ever.
+            timeout_sec: Maximum time to wait, in seconds; None for no limit.
 
         Raises:
             TypeError: `request` is of another class.
@@ -122,7 +122,7 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
             return self._pending_requests[sequence_number]
 
     def remove_pending_request(self, future: Future[ResponseT]) -> None:
-        """Give a request up; its future is never completed."""
+        """Give up a request; its future never completes."""
         with self._lock:
             sequence = self._sequences.get(future)
             if sequence is None:
@@ -136,13 +136,13 @@ class Client(ServiceEntity[ClientHandle], Generic[RequestT, ResponseT]):
     service_is_ready = in_use(ClientHandle.service_server_is_available)
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Block the thread until a server is there; nobody needs to spin.
+        """Block the thread until a server is available; nobody needs to spin.
 
         Args:
-            timeout_sec: The longest wait in seconds; None for ever.
+            timeout_sec: Maximum time to wait, in seconds; None for no limit.
 
         Returns:
-            Whether one is there.
+            Whether one is available.
         """
         return wait_until(self.service_is_ready, self.context, timeout_sec)
 

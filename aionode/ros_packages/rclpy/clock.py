@@ -1,4 +1,4 @@
-"""Clocks, whose sleeps block the thread."""
+"""Clocks with blocking sleeps."""
 
 from __future__ import annotations
 

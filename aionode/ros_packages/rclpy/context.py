@@ -1,4 +1,4 @@
-"""Contexts: what `init` makes, and `shutdown` ends."""
+"""Contexts, which `init` creates and `shutdown` ends."""
 
 from __future__ import annotations
 

@@ -112,7 +112,7 @@ class ServiceEndpointInfo:
 
 
 def lines_of(profile: QoSProfile, indent: str) -> list[str]:
-    """Return what a profile says, as lines."""
+    """Return the lines that describe a profile."""
     return [
         f"{indent}Reliability: {profile.reliability.name}",
         f"{indent}History (Depth): {profile.history.name} ({profile.depth})",

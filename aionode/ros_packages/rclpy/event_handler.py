@@ -101,7 +101,7 @@ class EventHandler(Waitable[Any]):
                 await result
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return how many handles it adds to a wait set: one."""
+        """Return the number of handles it adds to a wait set: one."""
         return NumberOfEntities(num_events=1)
 
     def add_to_wait_set(self, wait_set: WaitSet) -> None:

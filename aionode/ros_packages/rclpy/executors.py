@@ -181,7 +181,7 @@ class Executor:
         self._Executor__wakeup.wake()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Begin no more callbacks, and let go of the nodes.
+        """Start no more callbacks, and release the nodes.
 
         As in rclpy, it does not wait for callbacks that run: it may be called in one.
 
@@ -227,7 +227,7 @@ class Executor:
 
         Args:
             future: The future.
-            timeout_sec: The longest time in seconds; None or negative for ever.
+            timeout_sec: Maximum time, in seconds; None or negative for no limit.
         """
         # With an executor of its own, that is one of its tasks: a call more for `spin_once`.
         future.add_done_callback(lambda _: self.wake())
@@ -258,7 +258,7 @@ class Executor:
         """Wait for one callback and call it, or have a thread call it. One thread at a time may.
 
         Args:
-            timeout_sec: The longest wait in seconds; None or negative for ever.
+            timeout_sec: Maximum time to wait, in seconds; None or negative for no limit.
 
         Raises:
             NotImplementedError: it is an executor of one's own that does not define this.
@@ -305,7 +305,7 @@ class Executor:
         clients, services, of each at most one call.
 
         Args:
-            timeout_sec: The longest wait in seconds; None or negative for ever.
+            timeout_sec: Maximum time to wait, in seconds; None or negative for no limit.
             nodes: The nodes to look at; by default those of this executor.
             condition: Ends the wait when it is true.
 
@@ -409,7 +409,7 @@ class Executor:
         return find_ready(nodes, self.can_execute, self._Executor__context_handle)
 
     def _Executor__unfinished(self, nodes: list[NodeLike]) -> Iterable[Work]:
-        """Yield the tasks that can go on, and forget those that are done."""
+        """Yield the tasks that can continue, and forget those that are done."""
         with self._tasks_lock:
             self._tasks = [
                 work for work in self._tasks if not (work[0].done() or work[0].cancelled())

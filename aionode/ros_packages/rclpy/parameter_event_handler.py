@@ -143,7 +143,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any | None:
-        """Return a parameter that an event says is new or changed, or None."""
+        """Return a parameter that an event reports as new or changed, or None."""
         if event.node != node_name:
             return None
         for parameter in ParameterEventHandler.get_parameters_from_event(event):
@@ -153,7 +153,7 @@ class ParameterEventHandler:
 
     @staticmethod
     def get_parameters_from_event(event: Any) -> Iterable[Any]:
-        """Yield the parameters that an event says are new or changed."""
+        """Yield the parameters that an event reports as new or changed."""
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def add_parameter_callback(

@@ -23,7 +23,7 @@ T = TypeVar("T")
 
 
 class Stepping(threading.local):
-    """The task of which this thread takes one step."""
+    """The task that this thread is currently stepping."""
 
     task: Task[Any] | None = None
 
@@ -94,7 +94,7 @@ class Future(Generic[T]):
         return self._state is FutureState.FINISHED
 
     def result(self) -> T | None:
-        """Return the result, None while there is none.
+        """Return the result, or None if there is none yet.
 
         Raises:
             Exception: the exception that was set instead.
@@ -117,7 +117,7 @@ class Future(Generic[T]):
         self._schedule_or_invoke_done_callbacks()
 
     def set_exception(self, exception: BaseException) -> None:
-        """Set an exception in place of a result."""
+        """Set an exception instead of a result."""
         with self._lock:
             self._exception = exception
             self._exception_fetched = False
@@ -144,11 +144,11 @@ class Future(Generic[T]):
         return None if self._executor is None else self._executor()
 
     def _set_executor(self, executor: ExecutorLike | None) -> None:
-        """Set the executor whose tasks the done callbacks will be."""
+        """Set the executor that runs the done callbacks as tasks."""
         self._executor = None if executor is None else weakref.ref(executor)
 
     def _wake_when_done(self, waker: Callable[[], None]) -> None:
-        """Call `waker` in the thread that completes the future; at once if it is complete."""
+        """Call `waker` in the thread that completes the future; now if it is complete."""
         with self._lock:
             if self._pending():
                 if waker not in self._wakers:
@@ -238,7 +238,7 @@ class Task(Future[T]):
             self._task_lock.release()
 
     def _step(self, coroutine: Coroutine[Any, Any, T]) -> None:
-        """Take a coroutine to its next wait, and have the executor come back when that is over."""
+        """Run a coroutine to its next wait, and have the executor resume it afterwards."""
         self._awaited = None
         outer, stepping.task = stepping.task, self
         try:

@@ -76,7 +76,7 @@ class TimeSource:
             self._clock_sub = None
 
     def attach_node(self, node: NodeLike) -> None:
-        """Follow the parameter `use_sim_time` of a node, in place of the former one.
+        """Follow the parameter `use_sim_time` of a node, replacing the previous node.
 
         Raises:
             TypeError: it is no node.
@@ -114,7 +114,7 @@ class TimeSource:
         self._node_weak_ref = None
 
     def attach_clock(self, clock: ROSClock) -> None:
-        """Set a clock as well.
+        """Also set this clock.
 
         Raises:
             ValueError: it is no clock of ROS time.
@@ -126,7 +126,7 @@ class TimeSource:
         self._associated_clocks.add(clock)
 
     def clock_callback(self, message: Any) -> None:
-        """Take the time from a message, if it holds one."""
+        """Set the time from a message, if it holds a valid one."""
         problem = why_no_time(message.clock)
         if problem:
             self._refuse(problem)
@@ -136,7 +136,7 @@ class TimeSource:
             clock.set_ros_time_override(self._last_time_set)
 
     def _refuse(self, problem: str) -> None:
-        """Say once that a message of ``/clock`` was left out."""
+        """Log once that a message of ``/clock`` was ignored."""
         node = self._get_node()
         if node is not None and not self._warned:
             self._warned = True

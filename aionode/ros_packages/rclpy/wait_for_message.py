@@ -24,14 +24,14 @@ def wait_for_message(
     qos_profile: QoSProfile | int = 1,
     time_to_wait: float = -1,
 ) -> tuple[Literal[True], Any] | tuple[Literal[False], None]:
-    """Block the thread until a message comes; nobody needs to spin.
+    """Block the thread until a message arrives; nobody needs to spin.
 
     Args:
         msg_type: The class of the message.
         node: The node that subscribes.
         topic: The topic.
         qos_profile: QoS of the subscription, or a depth.
-        time_to_wait: The longest wait in seconds; negative for ever.
+        time_to_wait: Maximum time to wait, in seconds; negative for no limit.
 
     Returns:
         True and the message, or False and None.

@@ -101,7 +101,7 @@ class Waitable(Generic[T]):
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> T:
-        """Take what is ready, so that it is no longer."""
+        """Take what is ready, so that it is no longer ready."""
         raise NotImplementedError("Must be implemented by subclass")
 
     async def execute(self, taken_data: T) -> None:
@@ -109,7 +109,7 @@ class Waitable(Generic[T]):
         raise NotImplementedError("Must be implemented by subclass")
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return how many handles it adds."""
+        """Return the number of handles it adds."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def add_to_wait_set(self, wait_set: WaitSet) -> None:

@@ -339,7 +339,7 @@ class SequentialReader:
         ]
 
     def get_metadata(self) -> BagMetadata:
-        """Return what ``metadata.yaml`` says of the bag."""
+        """Return the contents of the bag's ``metadata.yaml``."""
         return metadata_of(self._opened())
 
     def has_next_file(self) -> bool:
@@ -502,7 +502,7 @@ class SequentialWriter:
         )
 
     def remove_topic(self, topic: TopicMetadata) -> None:
-        """Take no more messages of a topic."""
+        """Accept no more messages of a topic."""
         self._numbers.pop(topic.name, None)
 
     def write(
@@ -541,7 +541,7 @@ class SequentialWriter:
         )
 
     def take_snapshot(self) -> bool:
-        """Whether a snapshot was written; there is no snapshot mode here."""
+        """Return whether a snapshot was written; there is no snapshot mode here."""
         return False
 
     def split_bagfile(self) -> None:

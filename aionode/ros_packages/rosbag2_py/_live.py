@@ -38,7 +38,7 @@ NOT_CONFIGURED: Final = "give it storage options, and options, when it is create
 
 
 class ServiceRequestsSource:
-    """Whose events tell of service requests."""
+    """The events to take service requests from."""
 
     SERVICE_INTROSPECTION = "service_introspection"
     CLIENT_INTROSPECTION = "client_introspection"
@@ -91,7 +91,7 @@ class RecordOptions(msgspec.Struct):
     repeat_all_transient_local_depth: int = 0
 
     def repeated(self) -> dict[str, int]:
-        """Return how many messages of which latched topics further files begin with."""
+        """Return the latched topics repeated at the start of further files, with their counts."""
         depth = self.repeat_all_transient_local_depth
         return ({"*": depth} if depth > 0 else {}) | self.repeat_transient_local_messages
 
@@ -171,7 +171,7 @@ class PlayOptions(msgspec.Struct):
         )
 
     def clock_with(self) -> list[str]:
-        """Return with the messages of which topics ``/clock`` is published."""
+        """Return the topics with whose messages ``/clock`` is published."""
         if not self.clock_publish_on_topic_publish:
             return []
         return self.clock_topics or ["*"]

@@ -21,7 +21,7 @@ class Place(Protocol):
 
 
 def bag_rewrite(input_options: Sequence[Place], output_config_file: str, /) -> None:
-    """Write bags anew, as one or several others.
+    """Rewrite bags as one or several others.
 
     Args:
         input_options: The bags.
@@ -39,7 +39,7 @@ def bag_rewrite(input_options: Sequence[Place], output_config_file: str, /) -> N
 
 
 class Reindexer:
-    """Writes the metadata of bags anew."""
+    """Rebuilds the metadata of bags."""
 
     def reindex(self, storage_options: Place) -> None:
         """Write ``metadata.yaml`` from the files of a bag.

@@ -1,4 +1,4 @@
-"""The checks of assignments that rosidl makes when ``check_fields`` is on, with its texts."""
+"""rosidl's checks of assignments when ``check_fields`` is on, with its messages."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def own_array_check(name: str, type_: FieldType) -> Check | None:
 
 
 def fits_length(type_: FieldType, length: int) -> bool:
-    """Return whether a field of this type may have so many elements."""
+    """Return whether a field of this type may have this many elements."""
     if type_.container == "array":
         return length == type_.size
     return type_.container == "unbounded" or length <= type_.size

@@ -52,7 +52,7 @@ def aionode_class(cls: type[Any]) -> type[Any] | None:
 
 
 def register(cls: type[Any]) -> type[Any]:
-    """Make the class for a class of aionode."""
+    """Create the class for an aionode class."""
     package, kind, name = type_name(cls).split("/")
     # A part of a service or action is in the module of the whole, whose name has no underscore.
     module = module_name(package, kind, name.partition("_")[0])
@@ -123,7 +123,7 @@ def itself(value: Any) -> Any:
 
 
 def message_of(cls: type[Message], name: str, module: str) -> type[Any]:
-    """Make a message class."""
+    """Create a message class."""
     constants = {constant.name: constant.value for constant in constants_of(cls)}
     defaults: dict[str, Callable[[], Any]] = {
         f"{field.name.upper()}__DEFAULT": default_of(field)
@@ -266,7 +266,7 @@ class ClassSource:
 
 
 def default_of(field: Field) -> Callable[[], Any]:
-    """Return a function that makes the default value of a field anew."""
+    """Return a function that creates the default value of a field."""
     type_, default = field.type, field.default
     if type_.container == "single":
         return lambda: default
@@ -314,7 +314,7 @@ def not_instantiated(kind: str) -> Callable[[Any], None]:
 
 
 def service_of(cls: Any, name: str, module: str) -> type[Any]:
-    """Make a service class."""
+    """Create a service class."""
     metaclass = metaclass_of("service", name, module, cls, {})
     body = {
         "__module__": module,

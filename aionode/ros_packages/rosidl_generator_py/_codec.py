@@ -135,7 +135,7 @@ def adopted_element(value: Any, type_: FieldType) -> Any:
 
 @cache
 def constructor(cls: type[Message]) -> Callable[..., Any]:
-    """Return a function that makes a message from its fields, without the checks of ``__init__``.
+    """Return a function that creates a message from its fields, without the checks of ``__init__``.
 
     Its source holds validated field names and numbers only.
     """

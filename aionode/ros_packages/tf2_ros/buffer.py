@@ -69,7 +69,7 @@ class Buffer(BufferCore, BufferInterface):
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Duration = NOW
     ) -> Any:
-        """Return the transform between two frames, after a wait of `timeout` at most."""
+        """Return the transform between two frames, after waiting for at most `timeout`."""
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -82,7 +82,7 @@ class Buffer(BufferCore, BufferInterface):
         fixed_frame: str,
         timeout: Duration = NOW,
     ) -> Any:
-        """Return the transform between two times, after a wait of `timeout` at most."""
+        """Return the transform between two times, after waiting for at most `timeout`."""
         question = target_frame, target_time, source_frame, source_time, fixed_frame
         self.can_transform_full(*question, timeout)
         return self.lookup_transform_full_core(*question)
@@ -95,7 +95,7 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Duration = NOW,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Return whether a transform is available, after a wait of `timeout` at most."""
+        """Return whether a transform is available, after waiting for at most `timeout`."""
         answer = self._BufferCore__until(
             lambda: self.can_transform_core(target_frame, source_frame, time), timeout
         )

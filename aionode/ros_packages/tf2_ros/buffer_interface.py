@@ -70,23 +70,23 @@ class ConvertRegistration:
     __convert_map: dict[Any, Callable[[Any], Any]] = {}  # noqa: RUF012  # one for all
 
     def add_from_msg(self, key: Any, callback: Callable[[Any], Any]) -> None:
-        """Register what makes an object of a message."""
+        """Register a function that converts a message to an object."""
         ConvertRegistration.__from_msg_map[key] = callback
 
     def add_to_msg(self, key: Any, callback: Callable[[Any], Any]) -> None:
-        """Register what makes a message of an object."""
+        """Register a function that converts an object to a message."""
         ConvertRegistration.__to_msg_map[key] = callback
 
     def add_convert(self, key: Any, callback: Callable[[Any], Any]) -> None:
-        """Register what makes an object of one type of one of another."""
+        """Register a function that converts an object of one type to another."""
         ConvertRegistration.__convert_map[key] = callback
 
     def get_from_msg(self, key: Any) -> Callable[[Any], Any]:
-        """Return what makes an object of a message; TypeException if nothing does."""
+        """Return the function that converts a message; TypeException if there is none."""
         return entry_of(ConvertRegistration.__from_msg_map, key)
 
     def get_to_msg(self, key: Any) -> Callable[[Any], Any]:
-        """Return what makes a message of an object; TypeException if nothing does."""
+        """Return the function that converts to a message; TypeException if there is none."""
         return entry_of(ConvertRegistration.__to_msg_map, key)
 
     def get_convert(self, key: Any) -> Callable[[Any], Any]:

@@ -25,7 +25,7 @@ class TransformListener:
     """Puts the transforms of /tf and /tf_static into a buffer.
 
     Args:
-        buffer: Where the transforms go.
+        buffer: The buffer that receives the transforms.
         node: The node that subscribes.
         spin_thread: Whether a thread of the listener spins the node.
         qos: A profile or depth for /tf.

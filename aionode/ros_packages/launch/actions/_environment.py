@@ -54,7 +54,7 @@ class UnsetEnvironmentVariable(Action):
 
 
 class AppendEnvironmentVariable(Action):
-    """Adds to the end, or the beginning, of a list in a variable."""
+    """Appends or prepends to a list in an environment variable."""
 
     _AppendEnvironmentVariable__at_front = False
 
@@ -82,7 +82,7 @@ class AppendEnvironmentVariable(Action):
 
 
 class PrependEnvironmentVariable(AppendEnvironmentVariable):
-    """Adds to the beginning of a list in a variable."""
+    """Prepends to a list in an environment variable."""
 
     _AppendEnvironmentVariable__at_front = True
 
@@ -104,7 +104,7 @@ class PopEnvironment(Action):
 
 
 class ResetEnvironment(Action):
-    """Restores the environment of the beginning."""
+    """Restores the initial environment."""
 
     def execute(self, context: LaunchContext) -> None:
         """Restore it."""

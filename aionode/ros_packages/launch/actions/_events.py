@@ -1,4 +1,4 @@
-"""Actions that wait, that react, and that say something."""
+"""Actions that wait, react to events, or log."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ class ExecuteLocal(Action):
         return [*words, *(perform_substitutions(context, word) for word in rest)]
 
     def _ExecuteLocal__program_name(self, context: LaunchContext, words: list[str]) -> str:
-        """Return the name of the program, by which the process is called."""
+        """Return the name of the program, after which the process is named."""
         names = getattr(self.process_description.cmd[0][0], "_ExecutableInPackage__names", None)
         return str(names(context)[1]) if callable(names) else Path(words[0]).name
 
@@ -93,7 +93,7 @@ class ExecuteLocal(Action):
         return False
 
     def execute(self, context: LaunchContext) -> None:
-        """Note what is to be started."""
+        """Record what to start."""
         described = self.process_description
         words = self._ExecuteLocal__executable_words(context)
         program = self._ExecuteLocal__program_name(context, words)
@@ -133,7 +133,7 @@ class ExecuteLocal(Action):
         )
 
     def _ExecuteLocal__limits(self, context: LaunchContext) -> dict[str, float]:
-        """Return how long signals are waited for, in seconds, as far as that is said."""
+        """Return the signal timeouts that are set, in seconds."""
         times = {}
         for name, option in (("sigterm", "term_after_sec"), ("sigkill", "kill_after_sec")):
             configured = context.launch_configurations.get(f"{name}_timeout")

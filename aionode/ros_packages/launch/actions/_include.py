@@ -18,7 +18,7 @@ __all__ = ["IncludeLaunchDescription"]
 
 
 class IncludeLaunchDescription(Action):
-    """Does what another launch file says, with arguments."""
+    """Includes another launch file, with arguments."""
 
     def __init__(
         self,

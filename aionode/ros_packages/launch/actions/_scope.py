@@ -161,7 +161,7 @@ class GroupAction(Action):
         self._GroupAction__launch_configurations = dict(launch_configurations or {})
 
     def get_sub_entities(self) -> list[Any]:
-        """Return the actions, and those that begin and end the scope."""
+        """Return the actions, between those that start and end the scope."""
         given = self._GroupAction__launch_configurations
         sets: list[Action] = [SetLaunchConfiguration(*pair) for pair in given.items()]
         if not self._GroupAction__scoped:

@@ -33,7 +33,7 @@ class TimerEvent(Event):
 
 
 class ExecutionComplete(Event):
-    """An action has done what it had to do."""
+    """An action has completed."""
 
     name = "launch.events.ExecutionComplete"
 

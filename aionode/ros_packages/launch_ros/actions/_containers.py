@@ -22,7 +22,7 @@ __all__ = ["ComposableNodeContainer", "LoadComposableNodes"]
 class ComposableNodeContainer(Node):
     """Starts a container, and gives it nodes.
 
-    A container of which all nodes are classes of aionode needs no process: they run as tasks.
+    A container whose nodes are all aionode classes needs no process: they run as tasks.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class ComposableNodeContainer(Node):
         )
 
     def execute(self, context: LaunchContext) -> Any:
-        """Note the container, if it needs a process, and its nodes."""
+        """Record the container, if it needs a process, and its nodes."""
         components = components_of(
             context, self._ComposableNodeContainer__composable_node_descriptions
         )
@@ -64,7 +64,7 @@ class ComposableNodeContainer(Node):
     def __leave_out(
         self, context: LaunchContext, components: list[Component], error: PackageNotFoundError
     ) -> None:
-        """Note the nodes that need the container, which is not there.
+        """Record the nodes that need the container, which does not exist.
 
         Raises:
             PackageNotFoundError: Nothing may be left out. It is of the package of such a node if
@@ -109,7 +109,7 @@ class LoadComposableNodes(Action):
         self._LoadComposableNodes__target_container = target_container
 
     def execute(self, context: LaunchContext) -> None:
-        """Note the nodes."""
+        """Record the nodes."""
         target = self._LoadComposableNodes__target_container
         if isinstance(target, ComposableNodeContainer):
             name: str | None = target.node_name

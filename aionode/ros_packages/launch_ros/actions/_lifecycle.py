@@ -37,7 +37,7 @@ class LifecycleNode(Node):
 
 
 class LifecycleTransition(Action):
-    """Has nodes make transitions."""
+    """Triggers transitions of managed nodes."""
 
     def __init__(
         self,

@@ -111,7 +111,7 @@ class SetROSLogDir(Action):
         self.log_dir = normalize_to_list_of_substitutions(new_log_dir)
 
     def execute(self, context: LaunchContext) -> None:
-        """Tell the nodes that start later."""
+        """Apply the setting to nodes that start later."""
         context.environment["ROS_LOG_DIR"] = perform_substitutions(context, self.log_dir)
 
 

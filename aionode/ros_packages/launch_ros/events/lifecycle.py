@@ -11,7 +11,7 @@ __all__ = ["ChangeState", "StateTransition", "matches_node_name"]
 
 
 class ChangeState(Event):
-    """The request to make a transition."""
+    """A request to trigger a transition."""
 
     name = "launch_ros.events.lifecycle.ChangeState"
 
@@ -23,7 +23,7 @@ class ChangeState(Event):
 
 
 class StateTransition(Event):
-    """A managed node has another state."""
+    """A managed node has changed its state."""
 
     name = "launch_ros.events.lifecycle.StateTransition"
 

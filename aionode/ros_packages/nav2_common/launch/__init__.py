@@ -29,7 +29,7 @@ Texts = Mapping[str, SomeSubstitutionsType]
 
 
 class OfFile(Substitution):
-    """What is made of a file."""
+    """A substitution derived from a file."""
 
     def __init__(self, source_file: SomeSubstitutionsType) -> None:
         self._source_file = normalize_to_list_of_substitutions(source_file)
@@ -48,7 +48,7 @@ class OfFile(Substitution):
         return FileContent(self._source_file).perform(context)
 
     def content(self, context: LaunchContext) -> Any:
-        """Return what the YAML of the file says.
+        """Return the content of the YAML file.
 
         Raises:
             SubstitutionFailure: It cannot be read.
@@ -188,14 +188,14 @@ def add(content: Any, keys: list[str], value: Any) -> None:
 
 
 def with_keys(content: Any, keys: Mapping[str, str]) -> Any:
-    """Return what a file says, with other keys."""
+    """Return the content of a file with other keys."""
     if not isinstance(content, dict):
         return content
     return {keys.get(key, key): with_keys(value, keys) for key, value in content.items()}
 
 
 def with_values(content: Any, replace: Callable[[Any], Any]) -> Any:
-    """Return what a file says, with other values."""
+    """Return the content of a file with other values."""
     if isinstance(content, dict):
         return {key: with_values(value, replace) for key, value in content.items()}
     if isinstance(content, list):
@@ -205,7 +205,7 @@ def with_values(content: Any, replace: Callable[[Any], Any]) -> Any:
 
 @cache
 def folder_of_copies() -> tempfile.TemporaryDirectory[str]:
-    """Return the folder of the copies, which goes with this process."""
+    """Return the folder for modified copies, which is removed with this process."""
     return tempfile.TemporaryDirectory(prefix="aionode_launch_")
 
 

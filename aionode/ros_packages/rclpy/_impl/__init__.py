@@ -1,1 +1,1 @@
-"""The parts of which rclpy's modules are made: handles, queues, and the thread of a context."""
+"""The parts from which rclpy's modules are built: handles, queues, and a context's thread."""

@@ -98,7 +98,7 @@ class ActionHandle(Destroyable):
         self.status = add(topic_class, impl.GoalStatusMessage, "status", status_qos)
 
     def add_to_waitset(self, wait_set: Any) -> None:
-        """Add the handles whose readiness counts."""
+        """Add the handles whose readiness matters."""
         for part in self.parts:
             if isinstance(part, SubscriptionHandle):
                 wait_set.add_subscription(part)
@@ -115,7 +115,7 @@ class ActionHandle(Destroyable):
         service_event_qos_profile: QoSProfile,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Tell of the calls of the three services on ``…/_service_event``."""
+        """Publish the calls of the three services on ``…/_service_event``."""
         for service in (self.goal, self.result, self.cancel):
             service.configure_introspection(clock, service_event_qos_profile, introspection_state)
 
@@ -134,7 +134,7 @@ class ActionClientHandle(ActionHandle):
         self.context_handle = node.context_handle
 
     def is_action_server_available(self) -> bool:
-        """Return whether all that belongs to a server is there.
+        """Return whether everything that belongs to a server exists.
 
         Raises:
             RCLError: the context is shut down.
@@ -151,7 +151,7 @@ class Expiry(Destroyable):
 
     Attributes:
         goals: The goals.
-        forgotten: Those that had to make room for others, until an executor has learnt of them.
+        forgotten: Goals that had to make room for others, until an executor has handled them.
     """
 
     def __init__(self, node: NodeHandle, clock: ClockHandle, goals: GoalStore) -> None:
@@ -178,7 +178,7 @@ class Expiry(Destroyable):
         return max(0, due_ns - self._clock.now_ns())
 
     def take(self) -> list[Any]:
-        """Forget the goals whose time is over; return all that were forgotten."""
+        """Forget expired goals; return all that were forgotten."""
         forgotten, self.forgotten = self.forgotten, []
         return forgotten + self.goals.expire()
 
@@ -192,8 +192,8 @@ class ActionServerHandle(ActionHandle):
         action_type: The action class.
         action_name: Its name.
         qos: The profiles, in the order of `ActionHandle`.
-        result_timeout: For how many seconds results are kept; negative for ever.
-        max_goals: How many goals may be active at once.
+        result_timeout: How long to keep results, in seconds; negative for no limit.
+        max_goals: Maximum number of active goals.
     """
 
     def __init__(
@@ -239,7 +239,7 @@ class ActionServerHandle(ActionHandle):
         self.goals[goal_id] = goal
 
     def publish_status(self) -> None:
-        """Publish the states of all goals: at once, or after a while if they are many."""
+        """Publish the states of all goals: now, or after a delay if there are many."""
         with self._status_lock:
             self._has_newer_status = True
             if self._is_sending_status or self._waits_to_send:

@@ -37,7 +37,7 @@ steady_ns = MachineTime().steady_ns
 
 def living_contexts() -> list[ContextHandle]:
     """Return those that are not shut down; any thread, or handler of a signal, may ask."""
-    # Not iterated over: other threads make contexts meanwhile.
+    # Not iterated over, as other threads create contexts meanwhile.
     contexts = [reference() for reference in contexts_by_id.valuerefs()]
     return [context for context in contexts if context is not None]
 
@@ -84,7 +84,7 @@ class ContextHandle(Destroyable):
 
     def __init__(self, args: Sequence[str], domain_id: int | None) -> None:
         super().__init__()
-        # Flags that go from False to True once, in any thread or handler of a signal.
+        # Flags that change from False to True once, in any thread or signal handler.
         self.is_shut_down = False
         self.logs = False
         self._closed = False
@@ -149,7 +149,7 @@ class ContextHandle(Destroyable):
             )
 
     def refuse_after_shutdown(self, failure: str, user: str = "rcl node") -> None:
-        """Raise after shutdown, in rcl's words: a program that asks in a loop ends by that.
+        """Raise after shutdown with rcl's message, which ends programs that retry in a loop.
 
         Args:
             failure: What fails.
@@ -164,7 +164,7 @@ class ContextHandle(Destroyable):
             raise RCLError(f"{failure}: {user}'s context is invalid")
 
     def mark_shut_down(self) -> None:
-        """Shut down as far as a signal handler may: no lock is taken, nothing is waited for."""
+        """Shut down as far as a signal handler may: without taking locks or waiting."""
         self.is_shut_down = True
         self.signal.notify()
 

@@ -24,13 +24,13 @@ steady_ns = MachineTime().steady_ns
 
 
 class Wakeup:
-    """Wakes one thread; a wake-up that comes before the wait is kept.
+    """Wakes one thread; a wake-up that arrives before the wait is kept.
 
     A single C call on each side, which a signal handler may interrupt anywhere.
 
     Attributes:
         rouse: Wakes the thread if it waits for something else meanwhile.
-        take: ``take(False)`` returns whether a wake-up has come, without waiting.
+        take: ``take(False)`` returns whether a wake-up has arrived, without waiting.
     """
 
     __slots__ = ("_lock", "rouse", "take")
@@ -52,7 +52,7 @@ class Wakeup:
             rouse()
 
     def wait(self, timeout_sec: float | None) -> bool:
-        """Wait for a wake-up; return whether one came within the limit. None waits for ever."""
+        """Wait for a wake-up; return whether one arrived within the limit. None means no limit."""
         if timeout_sec is None:
             return self._lock.acquire()
         ends_ns = steady_ns() + timeout_sec * 1e9
@@ -98,12 +98,12 @@ class Signal:
 
 
 class Arrivals:
-    """Whether anything has come for a node's handles of one kind since none of them was ready.
+    """Whether anything has arrived for a node's handles of one kind since none was ready.
 
     With it, an executor looks at the handles of those kinds only for which something has come.
 
     Attributes:
-        last: Stands for what has come last.
+        last: Stands for the latest arrival.
         seen: What had come last when an executor looked at all of them, and none was ready.
     """
 
@@ -123,7 +123,7 @@ class Arrivals:
 
 
 class Destroyable:
-    """A handle, as rclpy's extension module has them.
+    """A handle, like those of rclpy's extension module.
 
     Inside ``with handle:`` it is not destroyed, however often that is asked for meanwhile; after
     `destroy_when_not_in_use`, ``with`` raises InvalidHandle.
@@ -165,7 +165,7 @@ class Destroyable:
 
     @property
     def pointer(self) -> int:
-        """A number that no other living handle has."""
+        """A number that no other live handle has."""
         return id(self)
 
     @property
@@ -174,7 +174,7 @@ class Destroyable:
         return not self._unwanted
 
     def destroy_when_not_in_use(self) -> None:
-        """Destroy it at the end of the last ``with``, or at once; again has no effect."""
+        """Destroy it at the end of the last ``with``, or immediately; repeating has no effect."""
         if not self._unwanted:
             self._unwanted = True
             self._destroy_if_unused()

@@ -69,7 +69,7 @@ class EndpointHandle(Destroyable, Generic[BareT]):
         return self._node.logger_name()
 
     def _count_matched(self) -> int:
-        """Return how many endpoints of the opposite kind are matched."""
+        """Count the matched endpoints of the opposite kind."""
         return len(self.io.call(self.bare.matched))
 
     def _destroy(self) -> None:

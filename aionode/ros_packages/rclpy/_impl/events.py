@@ -79,7 +79,7 @@ class EventHandle(Destroyable):
         self._io.call(self._watch.start)
 
     def ready(self) -> bool:
-        """Return whether something has happened that was not taken."""
+        """Return whether there is an event that was not taken."""
         return self._watch.changed and not self._unwanted
 
     def take_event(self) -> Any:
@@ -115,7 +115,7 @@ class Watch:
     Attributes:
         name: The kind of event, as the arguments of event callbacks call it.
         empty: The status before anything has happened.
-        aspects: The mismatches that its callback, or else the log, tells of.
+        aspects: The mismatches reported to its callback, or otherwise logged.
     """
 
     name = ""
@@ -145,7 +145,7 @@ class Watch:
             end()
 
     def tell(self, event: Any) -> None:
-        """Take an event: the status has its counts; changes add up until they are taken."""
+        """Handle an event: the status has its counts; changes add up until they are taken."""
         added = {
             name: getattr(self.status, name) + getattr(event, name) for name in changes_in(event)
         }
@@ -154,7 +154,7 @@ class Watch:
         self._notify()
 
     def count(self, more: int) -> None:
-        """Take an event of a status that counts one thing, of which there are `more` now."""
+        """Handle an event of a status that counts one thing, given the increment."""
         self.tell(type(self.empty)(self.status.total_count + more, more))
 
     def take(self) -> Any:
@@ -177,13 +177,13 @@ class Watch:
         self.ends.append(partial(listeners.remove, listener))
 
     def watch_opposites(self, watcher: Callable[[EndpointInfo, bool], None]) -> None:
-        """Tell `watcher` of the endpoints of the opposite kind that come and go."""
+        """Call `watcher` when endpoints of the opposite kind appear or leave."""
         endpoint = self.endpoint
         self.ends.append(self.graph.watch(endpoint.kind.opposite, endpoint.name, watcher))
 
 
 def changes_in(status: Any) -> list[str]:
-    """Return the names of the fields of a status that tell of changes."""
+    """Return the names of the fields of a status that hold changes."""
     return [field.name for field in fields(status) if field.name.endswith("_change")]
 
 
@@ -207,7 +207,7 @@ class MatchedWatch(Watch):
 
 
 class IncompatibleQoSWatch(MatchedWatch):
-    """Counts endpoints whose QoS does not fit."""
+    """Counts endpoints with incompatible QoS."""
 
     name = "incompatible_qos"
     empty: Any = QoSRequestedIncompatibleQoSInfo(0, 0, QoSPolicyKind.INVALID)

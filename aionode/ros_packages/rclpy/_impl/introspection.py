@@ -1,4 +1,4 @@
-"""Service introspection over handles: each end of a call tells of it, as aionode's do."""
+"""Service introspection over handles: each end of a call publishes events, as in aionode."""
 
 from __future__ import annotations
 
@@ -33,6 +33,6 @@ class Introspection(core.Introspection):
         super().__init__(srv_type, service, partial(EventPublisher, node))
 
     def tell(self, event_type: int, client_gid: bytes, sequence: int, content: Any) -> None:
-        """Tell of one step of a call; its content is the request or the response."""
+        """Publish one step of a call; its content is the request or the response."""
         if self._publisher is not None:  # as for most, which need no `SampleInfo` either
             self.publish(event_type, SampleInfo(client_gid, sequence, 0), content)

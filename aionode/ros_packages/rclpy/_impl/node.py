@@ -50,9 +50,9 @@ class NodeHandle(Destroyable):
         context_handle: Its context.
         io: The thread that works for it.
         bare: The node in the core; used in that thread only.
-        messages: Whether messages have come for its subscriptions.
-        requests: Whether requests have come for its service servers.
-        responses: Whether responses have come for its clients.
+        messages: Whether messages have arrived for its subscriptions.
+        requests: Whether requests have arrived for its service servers.
+        responses: Whether responses have arrived for its clients.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class NodeHandle(Destroyable):
         return self._name
 
     def get_namespace(self) -> str:
-        """Return the namespace, which begins with a slash."""
+        """Return the namespace, which starts with a slash."""
         return self._namespace
 
     def get_fully_qualified_name(self) -> str:
@@ -174,7 +174,7 @@ class NodeHandle(Destroyable):
                 ) from None
 
     def count(self, kind: EndpointKind, name: str) -> int:
-        """Return how many endpoints of `kind` have a name, which is not remapped."""
+        """Count the endpoints of `kind` with a name, which is not remapped."""
         with self:
             full_name = self._expected(name, only_expand=True, is_service=kind in SERVICE_KINDS)
             return self.ask(

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 __all__ = ["ClientHandle", "ServiceHandle", "rmw_request_id_t", "rmw_service_info_t"]
 
 MOST_REQUESTS = 1000
-"""Most requests that a service keeps until they are taken, whatever its QoS says."""
+"""Maximum number of requests that a service keeps until they are taken, whatever its QoS."""
 
 logger = logging.getLogger("aionode.rclpy")
 
@@ -72,7 +72,7 @@ class Requests:
         self._arrivals = arrivals
 
     def serve(self, request: Request, inline_deadline_ns: int = 0) -> None:
-        """Take one request; the oldest makes room, and its client learns that."""
+        """Accept a request; the oldest one makes room, and its client is told."""
         while self.items and (len(self.items) >= self._limit or self._is_heavy(request)):
             if len(self.items) < self._limit and self._on_heavy is not None:
                 on_heavy, self._on_heavy = self._on_heavy, None
@@ -113,7 +113,7 @@ class CallHandle(EndpointHandle[BareT]):
         service_event_qos_profile: QoSProfile,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Tell of calls on ``<service>/_service_event``.
+        """Publish events of calls on ``<service>/_service_event``.
 
         Args:
             clock: The clock that shows the stamps of events.
@@ -133,7 +133,7 @@ MOST_TAKEN = 10_000
 
 
 class ServiceHandle(CallHandle[BareEndpoint]):
-    """A service server: requests wait in it until they are taken."""
+    """A service server, in which requests wait until they are taken."""
 
     def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
         super().__init__(node, srv_type, srv_name, qos_profile, "service")
@@ -192,13 +192,13 @@ class ServiceHandle(CallHandle[BareEndpoint]):
         )
 
     def service_send_error(self, error_type: str, text: str, request_id: rmw_request_id_t) -> None:
-        """Send an error in place of a response; only clients of aionode learn of it."""
+        """Send an error instead of a response; only aionode clients are told."""
         request = self._taken.pop(request_id, None)
         if request is not None:
             self.io.send(partial(request.fail, error_type, text))
 
     def give_up(self, request_id: rmw_request_id_t) -> None:
-        """Leave the request of this id without an answer; its client goes on waiting.
+        """Leave a request without an answer; its client keeps waiting.
 
         As in rclpy, whose clients are not told that a callback has failed.
         """
@@ -216,7 +216,7 @@ class Replies:
         self._arrivals = arrivals
 
     def take(self, sequence: int, response: Any) -> None:
-        """Take a response: a thread that waits for it gets it at once."""
+        """Handle a response; a thread that waits for it gets it immediately."""
         waiting = self.blocked.pop(sequence, None)
         if waiting is not None:
             waiting(response.data)
@@ -226,7 +226,7 @@ class Replies:
 
 
 class ClientHandle(CallHandle[BareClient]):
-    """A client: responses wait in it until they are taken."""
+    """A client, in which responses wait until they are taken."""
 
     def __init__(self, node: NodeHandle, srv_type: Any, srv_name: str, qos_profile: Any) -> None:
         super().__init__(node, srv_type, srv_name, qos_profile, "client")
@@ -285,7 +285,7 @@ class ClientHandle(CallHandle[BareClient]):
         return response
 
     def forget(self, sequence: int) -> None:
-        """Forget a request: the server need not begin with it, and its response is dropped."""
+        """Forget a request: the server need not start it, and its response is dropped."""
         self._replies.blocked.pop(sequence, None)
 
         def cancel() -> None:

@@ -35,7 +35,7 @@ class GuardConditionHandle(Destroyable):
     def __init__(self, context: ContextHandle) -> None:
         super().__init__()
         context.refuse_if_over("guard_condition")
-        self._triggered = False  # any thread sets it, the one that takes it resets it
+        self._triggered = False  # set by any thread, reset by the one that takes it
 
     def trigger_guard_condition(self) -> None:
         """Trigger it; any thread may."""
@@ -100,7 +100,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         return self.time_until_next_call()
 
     def call_timer_with_info(self) -> dict[str, int]:
-        """Note a call; return when it was expected and when it was, in nanoseconds.
+        """Record a call; return its expected and actual time, in nanoseconds.
 
         Raises:
             TimerCancelledError: it is cancelled.
@@ -113,7 +113,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         return {"expected_call_time": expected_ns, "actual_call_time": now_ns}
 
     def call_timer(self) -> None:
-        """Note a call."""
+        """Record a call."""
         self.call_timer_with_info()
 
     def cancel_timer(self) -> None:
@@ -143,7 +143,7 @@ class TimerHandle(Destroyable, ClockedSchedule):
         self.schedule.change_period(period_ns)
 
     def time_since_last_call(self) -> int:
-        """Return nanoseconds since the last call, or since the beginning."""
+        """Return the nanoseconds since the last call, or since the start."""
         return self.schedule.since_last_ns(self.clock.now_ns())
 
     def time_until_next_call(self) -> int | None:

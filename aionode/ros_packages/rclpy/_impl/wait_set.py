@@ -100,7 +100,7 @@ class WaitSet(Destroyable):
         """Wait until a handle is ready, the context is shut down, or the time has passed.
 
         Args:
-            timeout_nsec: The longest wait in nanoseconds; negative for ever.
+            timeout_nsec: Maximum time to wait, in nanoseconds; negative for no limit.
         """
         wakeup = Wakeup()
         ends_ns = steady_ns() + timeout_nsec

@@ -1,4 +1,4 @@
-"""Actions: goals that take their time, with feedback, and can be cancelled."""
+"""Actions: long-running goals with feedback, which can be canceled."""
 
 from rclpy.action.client import ActionClient
 from rclpy.action.graph import (

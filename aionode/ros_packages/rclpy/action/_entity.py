@@ -41,7 +41,7 @@ class ActionEntity(Waitable[dict[str, Any]], Generic[HandleT]):
         service_event_qos_profile: QoSProfile,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Tell of the calls of its three services on ``…/_service_event``."""
+        """Publish events of calls of its three services on ``…/_service_event``."""
         with self._ActionEntity__handle as handle:
             handle.configure_introspection(clock, service_event_qos_profile, introspection_state)
 

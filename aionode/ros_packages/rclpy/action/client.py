@@ -95,7 +95,7 @@ class ClientGoalHandle(Generic[GoalT, ResultT, FeedbackT]):
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
-        """Ask for its result; block until it is there, while another thread spins."""
+        """Request its result; block until it arrives, while another thread spins."""
         return blocked(self.get_result_async())
 
     def get_result_async(self) -> Future[Any]:
@@ -170,7 +170,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
     # Sending
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
-        """Send a goal; block until its result is there, while another thread spins.
+        """Send a goal; block until its result arrives, while another thread spins.
 
         Raises:
             TypeError: `goal` is of another class.
@@ -188,7 +188,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
 
         Args:
             goal: The goal.
-            feedback_callback: Called with each feedback message until the result is there.
+            feedback_callback: Called with each feedback message until the result arrives.
             goal_uuid: Its id; a random one by default.
 
         Raises:
@@ -242,7 +242,7 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
     # For executors to call
 
     def is_ready(self, wait_set: WaitSet) -> bool:
-        """Return whether an answer, feedback or status has come."""
+        """Return whether an answer, feedback or status has arrived."""
         return any(part.ready() for part in self._ActionEntity__handle.parts)
 
     def take_data(self) -> dict[str, Any]:
@@ -316,24 +316,24 @@ class ActionClient(ActionEntity[ActionClientHandle], Generic[GoalT, ResultT, Fee
             del self._goal_handles[goal_id]
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return how many handles it adds to a wait set."""
+        """Return the number of handles it adds to a wait set."""
         return NumberOfEntities(num_subs=2, num_clients=3)
 
     # The server
 
     def server_is_ready(self) -> bool:
-        """Return whether a server is there."""
+        """Return whether a server is available."""
         with self._node.handle:
             return self._ActionEntity__handle.is_action_server_available()
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Block the thread until a server is there; nobody needs to spin.
+        """Block the thread until a server is available; nobody needs to spin.
 
         Args:
-            timeout_sec: The longest wait in seconds; None for ever.
+            timeout_sec: Maximum time to wait, in seconds; None for no limit.
 
         Returns:
-            Whether one is there.
+            Whether one is available.
         """
         return wait_until(self.server_is_ready, self._node.context, timeout_sec)
 

@@ -191,7 +191,7 @@ AnyGoalHandle = ServerGoalHandle[Any, Any, Any]
 
 
 def default_handle_accepted_callback(goal_handle: AnyGoalHandle) -> None:
-    """Execute the goal at once."""
+    """Execute the goal immediately."""
     goal_handle.execute()
 
 
@@ -220,7 +220,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         cancel_callback: Says whether a goal may be cancelled; by default it may not.
         goal_service_qos_profile, result_service_qos_profile, cancel_service_qos_profile,
             feedback_pub_qos_profile, status_pub_qos_profile: QoS of its services and topics.
-        result_timeout: For how many seconds results are kept; negative for ever.
+        result_timeout: How long to keep results, in seconds; negative for no limit.
         max_goals: How many goals may be active at once; those beyond are rejected before
             `goal_callback` is asked. So many results are kept, too. rclpy has no such argument.
     """
@@ -313,7 +313,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
             await await_or_execute(self._handle_accepted_callback, goal_handle)
 
     def _ActionServer__is_full(self, request: Any) -> bool:
-        """Return whether there is no room for a goal; if so, say why it is rejected."""
+        """Return whether there is no room for a goal; if so, log why it is rejected."""
         why: str = self._handle.goals.refusal(request.goal)
         if why:
             tell_full(self._logger, f"action server {self._ActionServer__action_name}", why)
@@ -408,7 +408,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
     # For executors to call
 
     def is_ready(self, wait_set: WaitSet) -> bool:
-        """Return whether a request has come, or a goal is to be forgotten."""
+        """Return whether a request has arrived, or a goal must be forgotten."""
         handle = self._handle
         return any(
             part.ready() for part in (handle.goal, handle.cancel, handle.result, handle.expiry)
@@ -446,7 +446,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         self._ActionServer__expire_goals()  # last: a result may have been asked for just before
 
     def get_num_entities(self) -> NumberOfEntities:
-        """Return how many handles it adds to a wait set."""
+        """Return the number of handles it adds to a wait set."""
         return NumberOfEntities(num_timers=1, num_services=3)
 
     # For goals
@@ -494,7 +494,7 @@ class ActionServer(ActionEntity[ActionServerHandle], Generic[GoalT, ResultT, Fee
         self._execute_callback = execute_callback
 
     def destroy(self) -> None:
-        """Destroy it; what it executes goes on, without effect on clients."""
+        """Destroy it; goals being executed continue, without effect on clients."""
         for goal_handle in list(self._goal_handles.values()):
             goal_handle.destroy()
             self.remove_future(goal_handle._result)

@@ -49,7 +49,7 @@ class AsyncClock(ROSClock):
 
 
 class AsyncClient(Client[Any, Any]):
-    """A client whose calls are awaited."""
+    """A client with awaitable calls."""
 
     async def call(self, request: Any) -> Any:  # type: ignore[override] # that is the point
         """Send a request and wait for the response. Cancelling forgets the request.
@@ -74,7 +74,7 @@ class AsyncClient(Client[Any, Any]):
                 self._handle.forget(sequence)
 
     async def wait_for_service(self, *, check_interval: float = 0.1) -> None:  # type: ignore[override] # as above
-        """Wait until a server is there.
+        """Wait until a server is available.
 
         Args:
             check_interval: How often to look, in seconds.
@@ -90,7 +90,7 @@ def complete(future: asyncio.Future[Any], result: Any) -> None:
 
 
 async def pause(seconds: float) -> None:
-    """Wait for so many seconds."""
+    """Wait for some seconds."""
     loop = asyncio.get_running_loop()
     over = loop.create_future()
     handle = loop.call_later(seconds, complete, over, None)
@@ -195,10 +195,10 @@ class AsyncNode(Node):
     async def wait_for_node(  # type: ignore[override] # awaited, and without a limit
         self, fully_qualified_node_name: str, *, check_interval: float = 0.1
     ) -> None:
-        """Wait until a node of this name is there.
+        """Wait until a node with this name exists.
 
         Args:
-            fully_qualified_node_name: Namespace and name; the leading slash may be left out.
+            fully_qualified_node_name: Namespace and name; the leading slash may be omitted.
             check_interval: How often to look, in seconds.
         """
         wanted = "/" + fully_qualified_node_name.removeprefix("/")
@@ -259,7 +259,7 @@ class AsyncNode(Node):
         qos_profile: QoSProfile = qos_profile_services_default,
         **options: Any,
     ) -> AsyncClient:
-        """Return a client whose `call` is awaited."""
+        """Return a client whose `call` is awaitable."""
         plain = super().create_client(srv_type, srv_name, qos_profile=qos_profile, **options)
         client = AsyncClient(
             self.context, plain.handle, srv_type, srv_name, qos_profile, plain.callback_group

@@ -1,4 +1,4 @@
-"""Modules that rclpy keeps for itself, and some programs use all the same."""
+"""Modules that are internal to rclpy, but that some programs use anyway."""
 
 from rclpy._reexports import add_names
 
