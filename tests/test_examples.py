@@ -216,7 +216,11 @@ def test_a_late_subscription_gets_what_is_still_valid() -> None:
 
     heard = [int(number) for number in re.findall(r"I heard: Talker says (\d)", text)]
     assert heard == list(range(heard[0], 8))
-    assert f"{len(heard)} were valid, {8 - len(heard)} had expired" in text
+    counted = re.search(r"(\d) were valid, (\d) had expired", text)
+    assert counted is not None
+    assert int(counted[1]) == len(heard)
+    # The publisher has dropped some of them itself, as it published newer ones.
+    assert 0 < int(counted[2]) <= 8 - len(heard)
     assert 0 < len(heard) < 8
     assert program.process.returncode == 0
 
