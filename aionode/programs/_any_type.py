@@ -57,7 +57,7 @@ class AnyTypeNode(Node):
         """Return the value of a parameter that has no default.
 
         Raises:
-            CommandError: It has none.
+            CommandError: It has no value.
         """
         parameter = self.declare_parameter(name, kind)
         if parameter.type_ is ParameterType.NOT_SET:
@@ -93,7 +93,7 @@ class AnyTypeNode(Node):
         self.__input = self.output = self.__found = None
 
     def listen(self, topic: str) -> None:
-        """Read a different topic from now on."""
+        """Switch to a different input topic."""
         full = self.resolve_topic_name(topic)
         if self.__input is not None and full != self.resolve_topic_name(self.input_topic):
             self.__input.destroy()
@@ -163,7 +163,7 @@ def given_number(text: str, kind: type[int | float], name: str) -> int | float:
     """Parse a number in an argument.
 
     Raises:
-        CommandError: It is none.
+        CommandError: It is not a number.
     """
     try:
         return kind(text)

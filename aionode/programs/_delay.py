@@ -1,4 +1,4 @@
-"""``topic_tools delay``: what is published on a topic is published on another one later."""
+"""``topic_tools delay``: republishes a topic on another one after a delay."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from aionode.programs._any_type import AnyTypeNode, given_number
 __all__ = ["MOST_BYTES", "Delay", "main"]
 
 MOST_BYTES = 512_000_000
-"""Most bytes of messages that wait; the oldest are dropped then."""
+"""Limit of the bytes of waiting messages; beyond it the oldest are dropped."""
 
 
 class Delay(AnyTypeNode):
-    """Publishes each message again after a time.
+    """Republishes each message after a delay.
 
     Args:
         *words: The input topic, the delay in seconds, and the output topic.
@@ -38,7 +38,7 @@ class Delay(AnyTypeNode):
         self.timer: Timer | None = None
 
     def process(self, data: bytes) -> None:
-        """Keep a message until its time has come."""
+        """Keep a message until it is due."""
         self.waiting.append((self.clock.now().nanoseconds + self.delay_ns, bytes(data)))
         self.bytes += len(data)
         while self.bytes > MOST_BYTES:
@@ -48,7 +48,7 @@ class Delay(AnyTypeNode):
             self.send_due()
 
     def send_due(self) -> None:
-        """Publish what is due, and come again for what is not."""
+        """Publish the messages that are due, and set a timer for the others."""
         if self.timer is not None:
             self.timer.destroy()
             self.timer = None

@@ -1,4 +1,4 @@
-"""``topic_tools demux``: a topic is published on one of several others; services say which."""
+"""``topic_tools demux``: republishes a topic on one of several others, selected by services."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ SERVICES: Final = services_of("demux")
 
 
 class Demux(Selector):
-    """Publishes the messages of its input on the output that is selected, at first the first one.
+    """Publishes the messages of its input on the selected output, initially the first one.
 
     Args:
-        *words: The input topic, and the outputs; fewer than two say nothing.
+        *words: The input topic, and the outputs; fewer than two are ignored.
     """
 
     def __init__(self, *words: str) -> None:
@@ -31,7 +31,7 @@ class Demux(Selector):
         self.declare_selection("output_topics")
 
     def use(self, topic: str) -> None:
-        """Publish on another output from now on."""
+        """Switch to another output."""
         super().use(topic)
         self.forget()
         self.output_topic = topic
@@ -41,7 +41,7 @@ def main() -> None:
     """Run the node until Ctrl-C.
 
     Raises:
-        SystemExit: With status 1: there are too few arguments.
+        SystemExit: With status 1, if there are too few arguments.
     """
     words = remove_ros_args(sys.argv)[1:]
     if len(words) < 2:

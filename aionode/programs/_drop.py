@@ -1,4 +1,4 @@
-"""``topic_tools drop``: of each Y messages, the first X are left out."""
+"""``topic_tools drop``: republishes a topic without the first X of every Y messages."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ __all__ = ["Drop", "main"]
 
 
 class Drop(AnyTypeNode):
-    """Publishes some of the messages again.
+    """Republishes some of the messages.
 
     Args:
-        *words: The input topic, X, Y, and the output topic; fewer than three say nothing.
+        *words: The input topic, X, Y, and the output topic; fewer than three are ignored.
     """
 
     def __init__(self, *words: str) -> None:

@@ -19,7 +19,7 @@ __all__ = ["Manager", "main"]
 WATCH_SEC: Final = 0.2
 DIAGNOSTICS_SEC: Final = 1.0
 PATIENCE_SEC: Final = 20.0
-"""After how long it says again for which node it waits."""
+"""How often it logs again for which node it is waiting."""
 
 HEALTH: Final = {
     "active": (DiagnosticStatus.OK, "Managed nodes are active"),
@@ -31,9 +31,9 @@ HEALTH: Final = {
 
 
 class Manager(Node):
-    """Manages the nodes of the parameter `node_names`, as its service `~/manage_nodes` is told.
+    """Manages the nodes of the parameter `node_names`, on requests to its service `~/manage_nodes`.
 
-    A node that has gone brings all others down; when all are back within
+    When a node is lost, all others are brought down; when all are back within
     `bond_respawn_max_duration`, they are brought up again.
     """
 
@@ -66,12 +66,12 @@ class Manager(Node):
         self.beginning: Timer = self.create_timer(0.001, self.begin)
 
     def tell(self, state: str) -> None:
-        """Note the common state of the nodes, and say whether they are active."""
+        """Record the common state of the nodes, and publish whether they are active."""
         self.state = state
         self.activity.publish(Bool(data=state == "active"))
 
     async def begin(self) -> None:
-        """Wait for the nodes, and bring them up if that is wanted."""
+        """Wait for the nodes, and bring them up if `autostart` is set."""
         self.beginning.cancel()
         for name, client in self.changers.items():
             while not await client.wait_for_service(PATIENCE_SEC):
@@ -80,7 +80,7 @@ class Manager(Node):
             await self.startup()
 
     async def manage(self, request: Any, response: Any) -> Any:
-        """Do what a request says."""
+        """Carry out a request."""
         kind = ManageLifecycleNodes.Request
         action = {
             kind.STARTUP: self.startup,
@@ -95,12 +95,12 @@ class Manager(Node):
         return response
 
     def answer(self, _request: Any, response: Any) -> Any:
-        """Say whether the nodes are active."""
+        """Answer whether the nodes are active."""
         response.success = self.state == "active"
         return response
 
     async def change(self, label: str, doing: str, *, reverse: bool = False) -> bool:
-        """Have all nodes make a transition; return whether all have."""
+        """Request a transition from all nodes; return whether all succeeded."""
         for name in reversed(self.names) if reverse else self.names:
             self.get_logger().info(f"{doing} {name}")
             try:
@@ -146,7 +146,7 @@ class Manager(Node):
         return self.concluded(done, "active", "resumed")
 
     async def reset(self) -> bool:
-        """Bring all nodes down, whatever states they are in."""
+        """Bring all nodes down, from any state."""
         try:
             await self.manager.reset()
         except ExceptionGroup as group:
@@ -156,7 +156,7 @@ class Manager(Node):
         return self.concluded(True, "unconfigured", "reset")
 
     async def shutdown(self) -> bool:
-        """Bring all nodes down, and end their lives."""
+        """Bring all nodes down, and finalize them."""
         done = await self.reset()
         return self.concluded(
             done and await self.change("shutdown", "Shutting down", reverse=True),
@@ -165,14 +165,14 @@ class Manager(Node):
         )
 
     def concluded(self, done: bool, state: str, what: str) -> bool:
-        """Note the end of a step, and return whether it succeeded."""
+        """Log the end of a step, and return whether it succeeded."""
         if done:
             self.get_logger().info(f"Managed nodes have been {what}")
             self.tell(state)
         return done
 
     async def watch(self) -> None:
-        """Bring all nodes down if one has gone, and up again if all are back in time."""
+        """Bring all nodes down if one is lost, and up again if all return in time."""
         if self.bond_timeout <= 0:
             return
         gone = [name for name, client in self.changers.items() if not client.service_is_ready()]
@@ -200,7 +200,7 @@ class Manager(Node):
                 )
 
     def diagnose(self) -> None:
-        """Publish how the nodes are."""
+        """Publish the health of the nodes."""
         level, message = HEALTH[self.state]
         status = DiagnosticStatus(
             level=level,

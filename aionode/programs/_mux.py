@@ -1,4 +1,4 @@
-"""``topic_tools mux``: one of several topics is published on another one; services say which."""
+"""``topic_tools mux``: republishes one of several topics, selected by services, on another one."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from aionode.programs._any_type import AnyTypeNode
 __all__ = ["SERVICES", "Mux", "Selector", "main", "services_of"]
 
 NONE_TOPIC: Final = "__none"
-"""Stands for no topic."""
+"""The name that selects no topic."""
 
 
 def services_of(tool: str) -> dict[str, Any]:
-    """Return the types of the services of ``mux`` or ``demux``, by their names below the node's."""
+    """Return the service types of ``mux`` or ``demux``, by their names below the node's name."""
     prefix = f"topic_tools_interfaces/srv/{tool.capitalize()}"
     return {
         "add": define(f"{prefix}Add", "string topic\n---\nbool success"),
@@ -34,16 +34,16 @@ SERVICES: Final = services_of("mux")
 
 
 class Selector(AnyTypeNode):
-    """Has one of several topics selected, and services that say which.
+    """Keeps one of several topics selected, and serves requests to change the selection.
 
     Args:
         tool: ``mux`` or ``demux``.
         services: The types of its services.
-        given: The parameters that arguments say.
+        given: The parameters given as arguments.
 
     Attributes:
-        topics: Those that can be selected.
-        selected: The one that is.
+        topics: The topics that can be selected.
+        selected: The selected topic.
     """
 
     def __init__(self, tool: str, services: dict[str, Any], given: dict[str, Any]) -> None:
@@ -61,10 +61,10 @@ class Selector(AnyTypeNode):
             self.create_service(services[name], f"~/{name}", callback)
 
     def declare_selection(self, name: str) -> None:
-        """Declare which topics there are, and which one is selected at first.
+        """Declare the topics and the initial selection.
 
         Raises:
-            CommandError: There is none.
+            CommandError: There is no topic.
         """
         initial = self.declare_parameter("initial_topic", "").value
         self.topics = list(self.needed(name, Parameter.Type.STRING_ARRAY))
@@ -84,7 +84,7 @@ class Selector(AnyTypeNode):
             await super().discover()
 
     def known(self, topic: str) -> str | None:
-        """Return a topic by its name, however it is written."""
+        """Return the known topic that a name resolves to."""
         full = self.resolve_topic_name(topic)
         return next((each for each in self.topics if self.resolve_topic_name(each) == full), None)
 
@@ -147,10 +147,10 @@ class Selector(AnyTypeNode):
 
 
 class Mux(Selector):
-    """Publishes the messages of the input that is selected; the first one at the beginning.
+    """Publishes the messages of the selected input, which is initially the first one.
 
     Args:
-        *words: The output topic, and the inputs; fewer than two say nothing.
+        *words: The output topic, and the inputs; fewer than two are ignored.
     """
 
     def __init__(self, *words: str) -> None:
@@ -163,7 +163,7 @@ class Mux(Selector):
         self.declare_selection("input_topics")
 
     def use(self, topic: str) -> None:
-        """Read another input from now on."""
+        """Switch to another input."""
         super().use(topic)
         self.listen(topic)
 
@@ -172,7 +172,7 @@ def main() -> None:
     """Run the node until Ctrl-C.
 
     Raises:
-        SystemExit: With status 1: there are too few arguments.
+        SystemExit: With status 1, if there are too few arguments.
     """
     words = remove_ros_args(sys.argv)[1:]
     if len(words) < 2:

@@ -1,4 +1,4 @@
-"""``topic_tools relay``: what is published on a topic is published on another one, too."""
+"""``topic_tools relay``: republishes a topic on another one."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ __all__ = ["Relay", "main"]
 
 
 class Relay(AnyTypeNode):
-    """Publishes each message again.
+    """Republishes each message.
 
     Args:
-        *words: The input topic, and the output topic; parameters say what is left out.
+        *words: The input topic, and the output topic; what is left out comes from parameters.
     """
 
     def __init__(self, *words: str) -> None:

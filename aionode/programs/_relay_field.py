@@ -1,4 +1,4 @@
-"""``topic_tools relay_field``: a message is filled with what expressions make of another one."""
+"""``topic_tools relay_field``: publishes a message whose fields are expressions of another one."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ class RelayField(Transform):
     """Publishes a message whose fields are expressions of each message, ``m``.
 
     Args:
-        arguments: What `parser` returns.
+        arguments: The parsed arguments of `parser`.
 
     Raises:
-        CommandError: The expression is no YAML of fields, or the type is none.
+        CommandError: The expression is not a YAML mapping of fields, or the type is invalid.
     """
 
     tool = "relay_field"
 
     def compiled(self, arguments: argparse.Namespace) -> Callable[[Any], Any]:
-        """Return what makes the fields of the output."""
+        """Return a function that computes the fields of the output."""
         try:
             template = yaml.safe_load(arguments.expression)
         except yaml.YAMLError as error:
@@ -52,7 +52,7 @@ class RelayField(Transform):
         return filled
 
     def evaluated(self, template: dict[str, Any], message: Any) -> dict[str, Any]:
-        """Return fields in which each text that is an expression has become its value."""
+        """Return the fields with each string that is an expression replaced by its value."""
         values = dict(template)
         for name, value in template.items():
             if isinstance(value, dict):
@@ -68,14 +68,14 @@ class RelayField(Transform):
 
 
 def plain(value: Any) -> Any:
-    """Return a value of a message without classes."""
+    """Return a value of a message as plain Python data."""
     if isinstance(value, Message):
         return to_builtins(value)
     return value.tolist() if hasattr(value, "tolist") else value
 
 
 def parser() -> argparse.ArgumentParser:
-    """Return what parses the arguments."""
+    """Return the argument parser."""
     found = argparse.ArgumentParser(
         prog="relay_field", description="Allows to relay field data from one topic to another."
     )

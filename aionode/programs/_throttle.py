@@ -1,4 +1,4 @@
-"""``topic_tools throttle``: at most so many messages, or so many bytes, are published again."""
+"""``topic_tools throttle``: republishes a topic at a limited rate of messages or bytes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ __all__ = ["Throttle", "main"]
 
 
 class Throttle(AnyTypeNode):
-    """Publishes messages again, but no more than a rate of messages or of bytes.
+    """Republishes messages, up to a rate of messages or bytes.
 
     Args:
         *words: ``messages``, the input topic and the rate in Hz; or ``bytes``, the input topic, the
@@ -63,10 +63,10 @@ class Throttle(AnyTypeNode):
 
 
 def given_by(words: tuple[str, ...]) -> dict[str, str | float]:
-    """Return the parameters that arguments say.
+    """Return the parameters given as arguments.
 
     Raises:
-        CommandError: A number is none.
+        CommandError: A number is invalid.
     """
     match words:
         case ["messages", topic, rate, *rest]:

@@ -1,4 +1,4 @@
-"""``topic_tools transform``: a Python expression of each message is published on another topic."""
+"""``topic_tools transform``: publishes a Python expression of each message on another topic."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from aionode.qos import qos_profile_sensor_data
 __all__ = ["Transform", "add_qos", "main", "parser"]
 
 SEARCH_SEC = 0.1
-"""How often the type of the input is asked for."""
+"""How often the type of the input is looked up."""
 
 
 class Transform(Node):
-    """Publishes what an expression makes of each message, or of one of its fields, ``m``.
+    """Publishes the value of an expression of each message, or of one of its fields, ``m``.
 
     Args:
-        arguments: What `parser` returns.
+        arguments: The parsed arguments of `parser`.
 
     Raises:
-        CommandError: The expression, a module or a type is none.
+        CommandError: The expression, a module or a type is invalid.
     """
 
     tool = "transform"
@@ -46,10 +46,10 @@ class Transform(Node):
         self.timer = self.create_timer(SEARCH_SEC, self.begin)
 
     def compiled(self, arguments: argparse.Namespace) -> Callable[[Any], Any]:
-        """Return the expression as a function.
+        """Compile the expression to a function.
 
         Raises:
-            CommandError: It is none, or a module is.
+            CommandError: The expression or a module is invalid.
         """
         names: dict[str, Any] = {}
         for module in arguments.modules:
@@ -91,7 +91,7 @@ class Transform(Node):
         self.create_subscription(message, given.input, self.on_message, qos)
 
     def on_message(self, message: Any) -> None:
-        """Publish what the expression makes of a message."""
+        """Publish the value of the expression for a message."""
         for field in self.fields:
             try:
                 message = getattr(message, field)
@@ -104,7 +104,7 @@ class Transform(Node):
 
 
 def module_named(name: str) -> Any:
-    """Return the module that an expression finds under the first part of a name.
+    """Return the module to which the first part of a name refers in an expression.
 
     ``std_msgs`` is aionode's package of messages; its ``msg`` is imported with it.
     """
@@ -117,7 +117,7 @@ def module_named(name: str) -> Any:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Return what parses the arguments."""
+    """Return the argument parser."""
     found = argparse.ArgumentParser(
         prog="transform", description="Apply a Python operation to a topic."
     )
@@ -134,7 +134,7 @@ def parser() -> argparse.ArgumentParser:
 
 
 def add_qos(found: argparse.ArgumentParser) -> None:
-    """Add the options on how the input is subscribed to."""
+    """Add the options for the QoS of the subscription."""
     found.add_argument(
         "--wait-for-start", action="store_true", help="Accepted: the input is always waited for."
     )

@@ -24,7 +24,7 @@ class Source:
     Args:
         name: Its name in the parameters.
         topic: The topic.
-        timeout: How long a message is valid, in seconds; 0 for ever.
+        timeout: How long a message is valid, in seconds; 0 means forever.
         priority: From 0 to 255.
         now: Returns the time in nanoseconds.
     """
@@ -52,7 +52,7 @@ class Source:
 
     @property
     def is_locked(self) -> bool:
-        """Whether it locks: its value says so, or it has fallen silent."""
+        """Whether the lock is active: its value is true, or it has fallen silent."""
         return self.has_expired or self.is_set
 
 
@@ -140,7 +140,7 @@ class TwistMux(Node):
         return max((lock.priority for lock in self.locks if lock.is_locked), default=0)
 
     def leader(self) -> Source | None:
-        """Return the source whose commands count: the highest priority, the first of several."""
+        """Return the source in command: the first of those with the highest priority."""
         lowest = self.lock_priority()
         heard = [
             source

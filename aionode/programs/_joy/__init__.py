@@ -1,1 +1,1 @@
-"""Joysticks: what reads them, and what drives a base by them."""
+"""Joysticks: a node that reads one, and a node that drives a base with it."""

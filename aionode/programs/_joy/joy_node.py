@@ -1,4 +1,4 @@
-"""``joy joy_node``: publishes where the axes of a joystick are, and which buttons are pressed."""
+"""``joy joy_node``: publishes the positions of a joystick's axes and the state of its buttons."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from aionode.programs._joy.joystick import Device, Joystick, input_devices
 __all__ = ["JoyNode", "main"]
 
 SEARCH_SEC: Final = 0.5
-"""How often a joystick is looked for while there is none."""
+"""How often to search for a joystick while there is none."""
 
 FASTEST_HZ: Final = 1000.0
 
 
 class JoyNode(Node):
-    """Publishes a joystick on `joy`, as soon as it is plugged in and until it is pulled out.
+    """Publishes a joystick on `joy` while it is plugged in.
 
     Args:
         devices: Returns the devices of this machine.
@@ -61,7 +61,7 @@ class JoyNode(Node):
         self.search()
 
     def search(self) -> None:
-        """Look for the joystick, if there is none."""
+        """Search for the joystick, unless one is open."""
         if self.joystick is not None:
             return
         devices = list(self.devices())
@@ -84,13 +84,13 @@ class JoyNode(Node):
             self.has_warned = True
 
     def open(self, device: Device) -> None:
-        """Read a device from now on."""
+        """Start reading a device."""
         self.joystick = Joystick(device, self.deadzone, is_sticky=self.is_sticky)
         self.loop.add_reader(device.fd, self.read)
         self.get_logger().info(f"Opened joystick: {device.name!r}.  deadzone: {self.deadzone:f}")
 
     def read(self) -> None:
-        """Take the events that have come; publish at once if a button has changed."""
+        """Process the pending events; publish at once if a button has changed."""
         joystick = self.joystick
         if joystick is None:
             return
@@ -110,7 +110,7 @@ class JoyNode(Node):
                 self.soon.reset()
 
     def publish_once(self) -> None:
-        """Publish now what has changed."""
+        """Publish the changes now."""
         self.soon.cancel()
         self.publish()
 
@@ -122,7 +122,7 @@ class JoyNode(Node):
             self.publisher.publish(Joy(header=header, axes=axes, buttons=buttons))
 
     def close(self) -> None:
-        """Read the device no more."""
+        """Stop reading the device."""
         if self.joystick is not None:
             self.loop.remove_reader(self.joystick.device.fd)
             self.joystick.device.close()

@@ -18,13 +18,13 @@ EV_FF: Final = 0x15
 ABS_X: Final = 0x00
 ABS_Y: Final = 0x01
 HATS: Final = range(0x10, 0x18)
-"""Codes of hats, two for each: its place from left to right, and from above to below."""
+"""Codes of hats, two for each: the horizontal position, then the vertical one."""
 
 BUTTONS: Final = range(0x120, 0x300)
-"""Codes of buttons; those below come after these, as SDL counts them."""
+"""Codes of buttons; lower codes are numbered after these, as in SDL."""
 
 FIRST_BUTTONS: Final = {0x101, 0x120, 0x130}
-"""A device with axes and one of these buttons is a joystick, as udev decides."""
+"""A device with axes and one of these buttons is a joystick, by udev's rule."""
 
 LEAST: Final = -32768
 SPAN: Final = 65535
@@ -32,16 +32,16 @@ FULL: Final = 32767.0
 
 
 class Device(Protocol):
-    """What is used of an `evdev.InputDevice`."""
+    """The part of `evdev.InputDevice` that is used."""
 
     fd: int
     name: str
 
     def capabilities(self, verbose: bool = ..., absinfo: bool = ...) -> dict[int, list[Any]]:
-        """Return the codes of each type of event; of axes, with their limits."""
+        """Return the codes of each type of event, with the limits of axes."""
 
     def read(self) -> Iterable[Any]:
-        """Return the events that have come."""
+        """Return the pending events."""
 
     def close(self) -> None:
         """Close the device."""
@@ -71,11 +71,11 @@ class Joystick:
 
     Args:
         device: Where the events come from.
-        deadzone: What part of an axis around its middle counts as the middle.
+        deadzone: The fraction of an axis around its middle that counts as the middle.
         is_sticky: Whether a button changes with each press, and not with its release.
 
     Attributes:
-        axes: Where each axis is, from -1 to 1; those of hats come last.
+        axes: The position of each axis, from -1 to 1; those of hats come last.
         buttons: Whether each button is pressed, as 0 or 1.
     """
 
@@ -106,7 +106,7 @@ class Joystick:
         return {ABS_X, ABS_Y} <= axes and not FIRST_BUTTONS.isdisjoint(keys)
 
     def place(self, code: int, value: int) -> float:
-        """Return where an axis is."""
+        """Return the position of an axis."""
         if code in HATS:
             return float((value < 0) - (value > 0))
         least, greatest = self.limits[code]
@@ -120,7 +120,7 @@ class Joystick:
         return -math.copysign(beyond / (1.0 - self.deadzone), part)
 
     def take(self, event: Any) -> tuple[bool, bool]:
-        """Take an event; return whether an axis has changed by it, and whether a button has."""
+        """Process an event; return whether it changed an axis, and whether it changed a button."""
         if event.type == EV_ABS and event.code in self.axis_numbers:
             at = self.axis_numbers[event.code]
             before, self.axes[at] = self.axes[at], self.place(event.code, event.value)

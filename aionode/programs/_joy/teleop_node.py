@@ -1,4 +1,4 @@
-"""``teleop_twist_joy teleop_node``: drives a base by a joystick while a button is held."""
+"""``teleop_twist_joy teleop_node``: drives a base with a joystick while a button is held."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ ANGULAR: Final = {"yaw": (2, 0.5, 1.0), "pitch": (-1, 0.0, 0.0), "roll": (-1, 0.
 START_SEC: Final = 0.01
 
 TTL_SEC: Final = 0.3
-"""After how long without a message of the joystick the wheels stop."""
+"""The time without a joystick message after which the wheels stop."""
 
 
 class TeleopTwistJoy(Node):
-    """Publishes on `cmd_vel` what the joystick says while its button is held, under a lease."""
+    """Publishes the joystick's command on `cmd_vel`, under a lease, while its button is held."""
 
     def __init__(self) -> None:
         super().__init__("teleop_twist_joy_node")
@@ -75,7 +75,7 @@ class TeleopTwistJoy(Node):
                     log.info(f"Turbo for {kind} axis {name} is scale {scale:f}.")
 
     def on_joy(self, joy: Joy) -> None:
-        """Command what a joystick says, or stop."""
+        """Publish the joystick's command, or stop."""
         if self.is_pressed(joy, "enable_turbo_button"):
             self.command = self.twist(joy, "_turbo")
         elif not self.value("require_enable_button") or self.is_pressed(joy, "enable_button"):
@@ -94,7 +94,7 @@ class TeleopTwistJoy(Node):
         return 0 <= number < len(joy.buttons) and bool(joy.buttons[number])
 
     def twist(self, joy: Joy, which: str) -> Twist:
-        """Return the command that the axes say."""
+        """Return the command for the axes."""
         x, y, z = (self.scaled(joy, "linear", name, which) for name in LINEAR)
         yaw, pitch, roll = (self.scaled(joy, "angular", name, which) for name in ANGULAR)
         if x < 0 and self.value("inverted_reverse"):
@@ -102,7 +102,7 @@ class TeleopTwistJoy(Node):
         return Twist(linear=Vector3(x=x, y=y, z=z), angular=Vector3(x=roll, y=pitch, z=yaw))
 
     def scaled(self, joy: Joy, kind: str, name: str, which: str) -> float:
-        """Return the part of a command that an axis says; 0 if there is none, or no number."""
+        """Return the part of a command from an axis; 0 if there is none, or it is not finite."""
         axis = self.value(f"axis_{kind}.{name}")
         if not 0 <= axis < len(joy.axes):
             return 0.0
@@ -110,7 +110,7 @@ class TeleopTwistJoy(Node):
         return value if math.isfinite(value) else 0.0
 
     def message(self, twist: Twist) -> Any:
-        """Return a command as the robot takes it."""
+        """Return a command in the message type of the robot."""
         if not self.is_stamped:
             return twist
         stamped = TwistStamped(twist=twist)
@@ -119,7 +119,7 @@ class TeleopTwistJoy(Node):
         return stamped
 
     async def drive(self) -> None:
-        """Publish commands until the node ends; whatever ends them, a stop goes out."""
+        """Publish commands until the node ends; a stop is sent in any case."""
         while True:
             await self.is_due.wait()
             self.is_due.clear()
