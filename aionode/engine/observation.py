@@ -127,9 +127,14 @@ class ProcessReport(msgspec.Struct):
 
 
 @cache
-def own_version() -> str:
-    """Return the version of aionode; looking it up reads files."""
-    return version("aionode")
+def unchanging() -> dict[str, str]:
+    """Return what stays the same while the process runs; looking it up takes a while."""
+    return {
+        "host": socket.gethostname(),
+        "program": " ".join(sys.argv)[:MOST_TEXT] or sys.executable,
+        "version": version("aionode"),
+        "python": platform.python_version(),
+    }
 
 
 def process_report(
@@ -138,11 +143,7 @@ def process_report(
     """Return the report of a context, whose nodes are told by `reporters`."""
     return ProcessReport(
         participant=participant,
-        host=socket.gethostname(),
         pid=os.getpid(),
-        program=" ".join(sys.argv)[:MOST_TEXT] or sys.executable,
-        version=own_version(),
-        python=platform.python_version(),
         now_ns=perf_ns(),
         cpu_ns=process_ns(),
         memory_bytes=memory_bytes(),
@@ -152,6 +153,7 @@ def process_report(
         processor_waited_ns=WAITS.total_ns,
         dropped=dict(dropped),
         nodes=[report() for report in reporters],
+        **unchanging(),
     )
 
 

@@ -154,7 +154,8 @@ async def test_a_stopped_process_is_named_and_delays_nobody(
             node.create_publisher(Int32, "numbers", 10)
             async with asyncio.timeout(PATIENCE_S):
                 await node.graph.until(lambda: node.count_publishers("/chatter") == 1)
-                before = await observe(node)
+                while len((before := await observe(node)).processes) < 2:
+                    pass  # its nodes are known before it can be asked
                 talker.send_signal(signal.SIGSTOP)
                 after = await observe(node)
     finally:

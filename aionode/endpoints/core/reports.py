@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
 from aionode.endpoints.core.callback_runner import callback_name
@@ -42,10 +43,16 @@ def entity_reports(entities: Iterable[Any]) -> list[EntityReport]:
     return [report for report in reports if report is not None]
 
 
+@cache
+def kind_of(cls: Any) -> str | None:
+    """Return what entities of a class are called; None for those without stats."""
+    return next((KINDS[base.__name__] for base in cls.__mro__ if base.__name__ in KINDS), None)
+
+
 def entity_report(entity: Any) -> EntityReport | None:
     """Return the counts of an entity; None for infrastructure, and for what counts nothing."""
-    names = (cls.__name__ for cls in type(entity).__mro__)
-    kind = next((KINDS[name] for name in names if name in KINDS), None)
+    cls: Any = type(entity)
+    kind = kind_of(cls)
     if kind is None:
         return None
     name = type_name = ""

@@ -33,6 +33,9 @@ REPORT: Final = "report"
 LINKS: Final = "links"
 """The end of a key on which contexts without reports answer as well."""
 
+OLDER_S: Final = 0.2
+"""Time for which those that have sent no report are asked whether they are there, in seconds."""
+
 
 class Observed:
     """Answers tools of other processes, and asks them; does nothing before somebody asks.
@@ -87,31 +90,41 @@ class Observed:
         session = self._state.session
         if session is None:
             return {}
-        told: dict[str, bytes] = {}
-        older: dict[str, bytes] = {}
-        ended = asyncio.Semaphore(0)
+        told = await self._answers(session, REPORT, timeout_s)
+        missing = self._peer_directory.contexts() - told.keys()
+        if not missing:
+            return {**told}
+        # Those without reports answer here, so that only others count as silent; and one that was
+        # just found may not have been asked.
+        older, again = await asyncio.gather(
+            self._answers(session, LINKS, OLDER_S), self._answers(session, REPORT, OLDER_S)
+        )
+        empty = dict.fromkeys(missing & older.keys(), b"")
+        return {**dict.fromkeys(missing), **empty, **told, **again}
+
+    async def _answers(
+        self, session: zenoh.Session, what: str, timeout_s: float
+    ) -> dict[str, bytes]:
+        """Return what each context answers on one of its keys."""
+        found: dict[str, bytes] = {}
+        ended = asyncio.Event()
 
         def take(reply: zenoh.Reply | None) -> None:
             if reply is None:
-                ended.release()
+                ended.set()
             elif reply.ok is not None:
-                participant, _, what = str(reply.ok.key_expr)[len(self._prefix) :].partition("/")
-                if what == REPORT:
-                    told[participant] = reply.ok.payload.to_bytes()
-                else:
-                    older[participant] = b""
+                participant = str(reply.ok.key_expr)[len(self._prefix) :].partition("/")[0]
+                found[participant] = reply.ok.payload.to_bytes()
 
         queue = self._state.queue(take)
-        for what in (REPORT, LINKS):
-            session.get(
-                self._key("*", what),
-                direct(queue.put, lambda: queue.put(None)),
-                target=zenoh.QueryTarget.ALL,
-                timeout=timeout_s,
-                congestion_control=DROP,
-                priority=LOOP_PRIORITY,
-                allowed_destination=zenoh.Locality.REMOTE,
-            )
-        for _ in range(2):
-            await ended.acquire()
-        return {**dict.fromkeys(self._peer_directory.contexts()), **older, **told}
+        session.get(
+            self._key("*", what),
+            direct(queue.put, lambda: queue.put(None)),
+            target=zenoh.QueryTarget.ALL,
+            timeout=timeout_s,
+            congestion_control=DROP,
+            priority=LOOP_PRIORITY,
+            allowed_destination=zenoh.Locality.REMOTE,
+        )
+        await ended.wait()
+        return found
