@@ -19,7 +19,8 @@ from aionode.clock import S_TO_NS
 from aionode.engine.context import Context
 from aionode.errors import PolicyFileError
 from aionode.gateway import Gateway, Identity, Policy, Rule, Session
-from aionode.gateway.policy.policy import LIMITED, VERBS
+from aionode.gateway.policy.policy import LIMITED
+from aionode.gateway.policy.policy import VERBS as ALL_VERBS
 from aionode.gateway.server.door import STATUS
 from aionode.gateway.session import audit as _audit
 from aionode.interfaces.example_interfaces.action import Fibonacci
@@ -34,6 +35,9 @@ from aionode.parameter import Parameter
 from aionode.qos import DurabilityPolicy, QoSProfile
 from aionode.testing import settle
 from tests.support.ways_in import WAYS, Answer, Ask, Way, until, way_in
+
+VERBS: Final = tuple(verb for verb in ALL_VERBS if verb != "stop")
+"""All but that of assistants, whose rules have a test of their own: test_mcp_policy.py."""
 
 USED: Final = tuple(verb for verb in VERBS if verb != "see")
 SENT: Final = ("publish", "call", "goal")
@@ -520,7 +524,7 @@ def test_the_table_has_every_key_of_a_rule() -> None:
         key: {verb for row in ROWS.values() if row.key == key for verb in row.verbs} for key in keys
     }
 
-    assert keys | set(VERBS) | {"because"} == {*Rule.__struct_fields__, "names", "refuse"}
+    assert keys | set(ALL_VERBS) | {"because"} == {*Rule.__struct_fields__, "names", "refuse"}
     assert {key: set(VERBS) - set(verbs) for key, verbs in LIMITED.items()} == {
         key: set(verbs) for key, verbs in NO_KEYS.items()
     }
