@@ -67,7 +67,7 @@ OFFERED = {
     "ServerGoalHandle": {"abort", "canceled", "execute", "goal_id", "info", "is_active"}
     | {"is_cancel_requested", "publish_feedback", "request", "status", "succeed", "text"},
     "ClientGoalHandle": {"accepted", "cancel", "cancel_goal_async", "done", "get_result_async"}
-    | {"goal_id", "result", "stamp", "status", "text"},
+    | {"goal_id", "reason", "result", "stamp", "status", "text"},
     "ActionResult": {"error_text", "result", "status"},
     "TimerInfo": {"actual_call_time", "expected_call_time"},
     "CallbackContext": {"entity", "node", "subject"},
@@ -134,7 +134,12 @@ def test_what_completion_offers_is_documented() -> None:
 
 
 def is_documented(owner: type, name: str) -> bool:
-    """Return whether a member has a docstring, or its class or a base describes it as a field."""
+    """Return whether a member has a docstring, or its class or a base describes it as a field.
+
+    What every exception has is Python's.
+    """
+    if issubclass(owner, BaseException) and hasattr(BaseException, name):
+        return True
     member = inspect.getattr_static(owner, name, None)
     is_described = inspect.isroutine(member) or inspect.isclass(member)
     if (is_described or isinstance(member, property)) and inspect.getdoc(member):
