@@ -280,7 +280,7 @@ async def test_a_handler_that_fails_warns_once(
         await until(lambda: server.stats.errors == 2)
         for call in calls:
             call.cancel()
-    assert caplog.text.count("/fail: a request failed, and its client waits for ever") == 1
+    assert caplog.text.count("/fail: a request failed, and its client waits forever") == 1
 
 
 # Graph
