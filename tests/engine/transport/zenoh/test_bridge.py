@@ -544,7 +544,7 @@ async def test_no_bridge_gets_a_name_that_one_of_another_namespace_takes_for_its
 
         assert root.deaths == one.deaths == []
         assert any("/MP/bot1§chatter/" in found for found in one.announced)
-    assert sum("but goes on without a slash" in found.getMessage() for found in caplog.records) == 1
+    assert sum("continue without a slash" in found.getMessage() for found in caplog.records) == 1
 
 
 async def test_what_a_new_bridge_takes_for_its_own_is_withdrawn(node: Node) -> None:

@@ -75,7 +75,7 @@ def sayings(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
     return [
         (record.levelno, record.getMessage())
         for record in caplog.records
-        if "other programs hold" in record.getMessage()
+        if "other programs use" in record.getMessage()
     ]
 
 
