@@ -355,7 +355,8 @@ def main() -> None:
     ]
     for peer, price in prices.items():
         cells = [
-            f"{price[key]:.1f} ms" if key in price else "" for key in ("own domain", "other domain")
+            f"{max(price[key], 0.0):.1f} ms" if key in price else ""
+            for key in ("own domain", "other domain")
         ]
         lines.append(f"| {peer} | {' | '.join(cells)} |")
     print("\n".join(lines))
